@@ -1,0 +1,10 @@
+"""What went wrong, as data: places in a text, messages, and the registry of codes.
+
+Nothing here prints. ``rulec.report`` turns diagnostics into text.
+"""
+
+from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
+from rulec.diagnostics.nearest import nearest_name
+from rulec.diagnostics.source import Place, Source, Span
+
+__all__ = ["Diagnostic", "Label", "Place", "RulecError", "Source", "Span", "nearest_name"]

@@ -1,0 +1,65 @@
+"""A diagnostic is a value: a code, one place, words. Rendering is elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.diagnostics.codes import CODES
+from rulec.diagnostics.source import Place, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A second place worth showing, with a few words on it."""
+
+    place: Place
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One mistake (or remark).
+
+    ``message`` says what is wrong in one clause; ``expected`` stands under the underlined place and
+    says what was expected there; ``help`` is the way out. ``code`` is a key of
+    ``rulec.diagnostics.codes.CODES``.
+    """
+
+    code: str
+    message: str
+    place: Place | None = None
+    expected: str = ""
+    help: str = ""
+    labels: tuple[Label, ...] = ()
+    notes: tuple[str, ...] = ()
+    severity: Literal["error", "warning"] = "error"
+
+    def __post_init__(self) -> None:
+        if self.code not in CODES:
+            raise ValueError(f"unregistered diagnostic code {self.code!r}")
+
+
+def at(span: Span | None) -> Place | None:
+    """The place of a span that may be missing."""
+    return None if span is None else span.place
+
+
+class RulecError(Exception):
+    """One or more diagnostics that end a piece of work; the only exception users need to catch."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:
+        if isinstance(diagnostics, Diagnostic):
+            diagnostics = (diagnostics,)
+        self.diagnostics = tuple(diagnostics)
+        super().__init__("; ".join(_one_line(d) for d in self.diagnostics))
+
+
+def _one_line(diagnostic: Diagnostic) -> str:
+    place = diagnostic.place
+    where = ""
+    if place is not None:
+        parts = [place.file, place.line, place.column]
+        where = ":".join(str(part) for part in parts if part is not None) + ": "
+    return f"{where}{diagnostic.message} [{diagnostic.code}]"

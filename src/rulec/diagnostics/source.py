@@ -1,0 +1,76 @@
+"""Texts and places in them."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a file, as a reader counts: lines and columns start at 1.
+
+    ``end_column`` is the column behind the last character. ``excerpt`` is the text of line ``line``
+    (without its line end); empty when there is nothing worth showing.
+    """
+
+    file: str
+    line: int | None = None
+    column: int | None = None
+    end_line: int | None = None
+    end_column: int | None = None
+    excerpt: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A text with the name of the file it came from."""
+
+    name: str
+    text: str = field(repr=False)
+    _line_starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    def _lines(self) -> list[int]:
+        if not self._line_starts:
+            starts = [0]
+            for offset, character in enumerate(self.text):
+                if character == "\n":
+                    starts.append(offset + 1)
+            self._line_starts.extend(starts)
+        return self._line_starts
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """Line and column, both from 1, of a character offset."""
+        starts = self._lines()
+        line = bisect_right(starts, offset)
+        return line, offset - starts[line - 1] + 1
+
+    def line(self, number: int) -> str:
+        """The text of a line, counted from 1, without its line end."""
+        starts = self._lines()
+        end = starts[number] if number < len(starts) else len(self.text)
+        return self.text[starts[number - 1] : end].rstrip("\r\n")
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Characters ``start`` to ``end`` (exclusive) of a source."""
+
+    source: Source
+    start: int
+    end: int
+
+    @property
+    def text(self) -> str:
+        return self.source.text[self.start : self.end]
+
+    @property
+    def place(self) -> Place:
+        line, column = self.source.position(self.start)
+        end_line, end_column = self.source.position(max(self.start, self.end))
+        excerpt = self.source.line(line)
+        return Place(self.source.name, line, column, end_line, end_column, excerpt)
+
+    def to(self, other: Span) -> Span:
+        """From the start of this span to the end of another one in the same source."""
+        return Span(self.source, self.start, other.end)

@@ -1,0 +1,1 @@
+"""Rulebooks as meant: found, read, names resolved, types checked."""

@@ -1,0 +1,82 @@
+"""The vocabulary as resolved data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectType:
+    """A type of traffic participant; every object of it is also one of ``parent``."""
+
+    name: str
+    parent: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Enumeration:
+    """A state with exactly one of ``values`` at a time, global or per object.
+
+    ``parameters`` are the names of the object types it is about: none for a global one. Every value
+    is an atom of the language, so values are unique within a vocabulary.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    values: tuple[str, ...]
+    default: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A Boolean, global or per object."""
+
+    name: str
+    parameters: tuple[str, ...] = ()
+    default: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with a unit (as written, such as ``km/h``), global or per object."""
+
+    name: str
+    parameters: tuple[str, ...]
+    unit: str
+    default: float | None = None
+
+
+Declaration = Enumeration | Signal | Quantity
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """Types and declarations by name, in the order in which they were declared."""
+
+    name: str
+    types: Mapping[str, ObjectType] = field(default_factory=lambda: MappingProxyType({}))
+    declarations: Mapping[str, Declaration] = field(default_factory=lambda: MappingProxyType({}))
+
+    @cached_property
+    def enumeration_of(self) -> Mapping[str, Enumeration]:
+        """Value name -> the enumeration it belongs to."""
+        return {
+            value: item
+            for item in self.declarations.values()
+            if isinstance(item, Enumeration)
+            for value in item.values
+        }
+
+    def ancestors(self, type_name: str) -> Iterator[str]:
+        """The type itself, its parent, and so on upward."""
+        current: str | None = type_name
+        while current is not None:
+            yield current
+            current = self.types[current].parent
+
+    def is_subtype(self, type_name: str, of: str) -> bool:
+        """Is every ``type_name`` also an ``of``? (Every type is a subtype of itself.)"""
+        return of in self.ancestors(type_name)
