@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from rulec.diagnostics import Place
+
 Value = bool | float | str
 
 State = Mapping[str, "Value | Mapping[str, Value]"]
@@ -17,7 +19,8 @@ class Trace:
     """A finite sequence of states, ``step_s`` seconds apart.
 
     ``objects`` maps each object's id to its type. ``present`` gives, for an object that is not there
-    all the time, the first and the last state (both from 0, inclusive) in which it is.
+    all the time, the first and the last state (both from 0, inclusive) in which it is. ``place``
+    is where it was read, for messages.
     """
 
     id: str
@@ -25,6 +28,7 @@ class Trace:
     objects: Mapping[str, str]
     states: tuple[State, ...]
     present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    place: Place | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,147 @@
+"""From a deterministic automaton to the smallest table with stutter acceptance.
+
+Repeating the last letter for ever turns acceptance into a table: looping on a letter from a state
+runs into one cycle, whose colours decide. Letters with equal columns are merged, then states that
+no word tells apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.machine import Machine, Read, trap
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """An edge: the letters on it (the bits of an integer), where it leads, its colours (bits)."""
+
+    letters: int
+    target: int
+    colours: int
+
+
+@dataclass(frozen=True, slots=True)
+class DeterministicAutomaton:
+    """A complete deterministic automaton over letters, starting in state ``initial``.
+
+    ``accepts`` tells from the colours seen for ever whether a run is accepting.
+    """
+
+    edges: tuple[tuple[Edge, ...], ...]
+    initial: int
+    accepts: Callable[[int], bool]
+
+
+def build_machine(
+    automaton: DeterministicAutomaton, reads: tuple[Read, ...], n_letters: int
+) -> Machine:
+    """The minimal machine of the automaton over ``n_letters`` letters."""
+    classes = _letter_classes(automaton, n_letters)
+    following, accepting = _tables(automaton, classes)
+    following, accepting = _minimise(following, accepting, automaton.initial)
+    columns = list(zip(*following, *accepting, strict=True))
+    merged = {column: index for index, column in enumerate(dict.fromkeys(columns))}
+    kept = [columns.index(column) for column in merged]
+    letters = [0] * n_letters
+    for members, column in zip(classes, columns, strict=True):
+        while members:
+            lowest = members & -members
+            letters[lowest.bit_length() - 1] = merged[column]
+            members ^= lowest
+    return Machine(
+        reads,
+        tuple(letters),
+        tuple(tuple(row[c] for c in kept) for row in following),
+        tuple(tuple(row[c] for c in kept) for row in accepting),
+        dead=trap(following, accepting, verdict=False),
+        safe=trap(following, accepting, verdict=True),
+    )
+
+
+def _letter_classes(automaton: DeterministicAutomaton, n_letters: int) -> list[int]:
+    """The coarsest partition of the letters that every edge respects, as sets of bits."""
+    classes = [(1 << n_letters) - 1]
+    for letters in {edge.letters for edges in automaton.edges for edge in edges}:
+        refined = []
+        for members in classes:
+            inside = members & letters
+            refined += [part for part in (inside, members ^ inside) if part]
+        classes = refined
+    return classes
+
+
+def _tables(
+    automaton: DeterministicAutomaton, classes: Sequence[int]
+) -> tuple[list[list[int]], list[list[bool]]]:
+    following = [[0] * len(classes) for _ in automaton.edges]
+    accepting = [[False] * len(classes) for _ in automaton.edges]
+    for column, members in enumerate(classes):
+        letter = members & -members
+        taken = [_edge_on(edges, letter) for edges in automaton.edges]
+        verdicts = _loop_verdicts([(edge.target, edge.colours) for edge in taken], automaton)
+        for state, edge in enumerate(taken):
+            following[state][column] = edge.target
+            accepting[state][column] = verdicts[state]
+    return following, accepting
+
+
+def _edge_on(edges: Sequence[Edge], letter: int) -> Edge:
+    return next(edge for edge in edges if edge.letters & letter)
+
+
+def _loop_verdicts(
+    step: Sequence[tuple[int, int]], automaton: DeterministicAutomaton
+) -> list[bool]:
+    """For each state: does reading the same letter for ever, ``step``, accept?"""
+    verdicts: dict[int, bool] = {}
+    for first in range(len(step)):
+        path: dict[int, int] = {}
+        state = first
+        while state not in verdicts and state not in path:
+            path[state] = len(path)
+            state = step[state][0]
+        if state in path:
+            colours = 0
+            for member in list(path)[path[state] :]:
+                colours |= step[member][1]
+            verdicts[state] = automaton.accepts(colours)
+        verdicts.update(dict.fromkeys(path, verdicts[state]))
+    return [verdicts[state] for state in range(len(step))]
+
+
+def _minimise(
+    following: list[list[int]], accepting: list[list[bool]], initial: int
+) -> tuple[list[list[int]], list[list[bool]]]:
+    """Merge states that no word tells apart; number them from ``initial`` in breadth-first order.
+
+    Moore's partition refinement, with the verdicts as the machine's output.
+    """
+    blocks = _number([tuple(row) for row in accepting])
+    while True:
+        refined = _number(
+            [(block, *(blocks[t] for t in row)) for block, row in zip(blocks, following, strict=True)]
+        )
+        if max(refined) == max(blocks):
+            break
+        blocks = refined
+    representative: dict[int, int] = {}
+    for state, block in enumerate(blocks):
+        representative.setdefault(block, state)
+    position = {blocks[initial]: 0}
+    rows = [representative[blocks[initial]]]
+    for row in rows:
+        for target in following[row]:
+            if blocks[target] not in position:
+                position[blocks[target]] = len(rows)
+                rows.append(representative[blocks[target]])
+    return (
+        [[position[blocks[t]] for t in following[row]] for row in rows],
+        [accepting[row] for row in rows],
+    )
+
+
+def _number(keys: Sequence[tuple[object, ...]]) -> list[int]:
+    numbers: dict[tuple[object, ...], int] = {}
+    return [numbers.setdefault(key, len(numbers)) for key in keys]

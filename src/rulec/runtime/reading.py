@@ -1,0 +1,185 @@
+"""What rules read of states: checked against the vocabulary, then turned into letters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rulec.automata.machine import Machine, Read
+from rulec.diagnostics import Diagnostic, Place, RulecError, nearest_name
+from rulec.trace import State, Value
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+
+
+def check_objects(
+    objects: Mapping[str, str], vocabulary: Vocabulary, place: Place | None = None
+) -> None:
+    """Every object is of a type that the vocabulary knows. Raises RulecError R0505."""
+    for name, kind in objects.items():
+        if kind not in vocabulary.types:
+            raise _error(
+                "R0505",
+                f"object `{name}` is of type `{kind}`, which vocabulary "
+                f"`{vocabulary.name}` does not know",
+                place,
+                _suggest(kind, vocabulary.types),
+            )
+
+
+def check_state(
+    state: State,
+    objects: Mapping[str, str],
+    vocabulary: Vocabulary,
+    where: str,
+    place: Place | None = None,
+) -> None:
+    """Every name and value of a state fits its declaration. Raises RulecError R0502, R0503, R0505.
+
+    ``where`` names the state in messages.
+    """
+    for name, value in state.items():
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None:
+            raise _error(
+                "R0502",
+                f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
+                place,
+                _unknown_name(name, vocabulary),
+            )
+        _check_value(value, declaration, declaration.parameters, objects, vocabulary, where, place)
+
+
+def _check_value(
+    value: Any,
+    declaration: Declaration,
+    parameters: Sequence[str],
+    objects: Mapping[str, str],
+    vocabulary: Vocabulary,
+    where: str,
+    place: Place | None,
+) -> None:
+    name = declaration.name
+    if not parameters:
+        if not _fits(value, declaration):
+            message = f"{where} says `{name}` is {_shown(value)}; {_wanted(declaration)}"
+            raise _error("R0503", message, place, _nearest_value(value, declaration))
+        return
+    if not isinstance(value, Mapping):
+        message = f"{where} gives `{name}` one value; it is about each `{parameters[0]}`"
+        way_out = f'write {{"{name}": {{"OBJECT": VALUE}}}}'
+        raise _error("R0503", message, place, way_out)
+    for item, inner in value.items():
+        if item not in objects:
+            message = f"{where} gives `{name}` for `{item}`, which is not among the objects"
+            raise _error("R0505", message, place, _suggest(item, objects))
+        if not vocabulary.is_subtype(objects[item], parameters[0]):
+            message = (
+                f"{where} gives `{name}` for `{item}`, which is of type `{objects[item]}`; "
+                f"`{name}` is about each `{parameters[0]}`"
+            )
+            raise _error("R0505", message, place)
+        _check_value(inner, declaration, parameters[1:], objects, vocabulary, where, place)
+
+
+def _fits(value: Any, declaration: Declaration) -> bool:
+    match declaration:
+        case Enumeration():
+            return isinstance(value, str) and value in declaration.values
+        case Signal():
+            return isinstance(value, bool)
+        case Quantity():
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            return number and math.isfinite(value)
+
+
+def _wanted(declaration: Declaration) -> str:
+    match declaration:
+        case Enumeration():
+            return f"it is one of {', '.join(declaration.values)}"
+        case Signal():
+            return "it is true or false"
+        case Quantity():
+            return f"it is a number, in {declaration.unit}"
+
+
+def _nearest_value(value: Any, declaration: Declaration) -> str:
+    if isinstance(declaration, Enumeration) and isinstance(value, str):
+        return _suggest(value, declaration.values)
+    return ""
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Mapping):
+        return "given per object"
+    text = str(value)
+    return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
+
+
+def _suggest(name: str, known: Iterable[str]) -> str:
+    known = list(known)
+    nearest = nearest_name(name, known)
+    if nearest is not None:
+        return f"did you mean `{nearest}`?"
+    return f"known: {', '.join(known[:12])}{' …' if len(known) > 12 else ''}" if known else ""
+
+
+def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
+    enumeration = vocabulary.enumeration_of.get(name)
+    if enumeration is not None:
+        return f'`{name}` is a value: write {{"{enumeration.name}": … "{name}"}}'
+    return _suggest(name, vocabulary.declarations)
+
+
+def value_in(
+    state: State, name: str, objects: Sequence[str], declaration: Declaration
+) -> Value | None:
+    """The value that a state gives, or the declared default; None if there is neither."""
+    value: Any = state.get(name)
+    for item in objects:
+        value = value.get(item) if value is not None else None
+    return declaration.default if value is None else value
+
+
+def letter(
+    machine: Machine,
+    binding: Mapping[str, str],
+    state: State,
+    vocabulary: Vocabulary,
+    where: str,
+    rule: str,
+    place: Place | None = None,
+) -> int:
+    """The class of the letter that a machine reads in a state. Raises RulecError R0504.
+
+    The state must have passed ``check_state``.
+    """
+    index = 0
+    stride = 1
+    for read in machine.reads:
+        declaration = vocabulary.declarations[read.name]
+        items = [binding[variable] for variable in read.variables]
+        value = value_in(state, read.name, items, declaration)
+        if value is None:
+            raise _missing(read, items, where, rule, place)
+        index += stride * read.digit(value)
+        stride *= read.size
+    return machine.letters[index]
+
+
+def _missing(
+    read: Read, items: Sequence[str], where: str, rule: str, place: Place | None
+) -> RulecError:
+    of = f" of `{', '.join(items)}`" if items else ""
+    return _error(
+        "R0504",
+        f"{where} does not say the `{read.name}`{of}, which rule {rule} needs",
+        place,
+        "supply it in every state, or declare a default in the vocabulary",
+    )
+
+
+def _error(code: str, message: str, place: Place | None, help_text: str = "") -> RulecError:
+    return RulecError(Diagnostic(code, message, place, help=help_text))

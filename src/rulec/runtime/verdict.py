@@ -1,0 +1,35 @@
+"""Verdicts as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rulec.rulebook.model import Strength
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A rule that a trace violates, for one binding of its variables.
+
+    ``step`` is the first state (from 0) after which no continuation can save the rule; None if only
+    the trace's end decides.
+    """
+
+    rule: str
+    strength: Strength
+    binding: Mapping[str, str]
+    step: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a rulebook says of a trace: the violations in the order of rules and objects."""
+
+    trace: str
+    violations: tuple[Violation, ...]
+
+    @property
+    def satisfied(self) -> bool:
+        """Is every hard rule kept? Soft rules may yield."""
+        return all(violation.strength != "hard" for violation in self.violations)

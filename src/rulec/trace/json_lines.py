@@ -1,0 +1,131 @@
+"""Traces as JSON Lines: one trace a line, read and written one at a time. See docs/traces.md."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import IO, Any
+
+import msgspec
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.trace.model import Trace
+
+LONGEST_LINE_BYTES = 256 << 20
+"""A longer line is refused: it is not a trace but a file that lacks its line ends."""
+
+
+class _Record(msgspec.Struct, forbid_unknown_fields=True):
+    states: list[dict[str, bool | float | str | dict[str, Any]]]
+    id: str | int = ""
+    step_s: float = 1.0
+    objects: dict[str, str] = {}
+    present: dict[str, tuple[int, int]] = {}
+
+
+_DECODER = msgspec.json.Decoder(_Record)
+
+
+def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
+    """The traces of a stream, one per line, blank lines skipped; never more than a line in memory.
+
+    Args:
+        stream: the open file.
+        file: its name, for messages.
+
+    Yields:
+        For every line a Trace, or the RulecError (R0501, R0505, R0506) that says what is wrong
+        with it.
+    """
+    number = 0
+    while line := stream.readline(LONGEST_LINE_BYTES + 1):
+        number += 1
+        if number == 1:
+            line = line.removeprefix(b"\xef\xbb\xbf")
+        place = Place(file, number)
+        if len(line) > LONGEST_LINE_BYTES:
+            yield _bad("R0501", f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
+            while line and not line.endswith(b"\n"):
+                line = stream.readline(LONGEST_LINE_BYTES)
+        elif line.strip():
+            yield _trace(line, place)
+
+
+def _trace(line: bytes, place: Place) -> Trace | RulecError:
+    try:
+        record = _DECODER.decode(line)
+    except RecursionError:
+        return _bad("R0501", "this is not a trace: it is nested too deep", place)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
+        return _bad("R0501", f"this is not a trace: {_in_words(str(problem))}", place)
+    if not record.states:
+        return _bad("R0506", "the trace has no states; it needs at least one to judge", place)
+    if not (record.step_s > 0 and math.isfinite(record.step_s)):
+        return _bad("R0501", f"step_s is {record.step_s:g}; it has to be more than 0 s", place)
+    for name, (first, last) in record.present.items():
+        if name not in record.objects:
+            message = f"`present` speaks of `{name}`, which is not among the trace's objects"
+            return _bad("R0505", message, place)
+        if not 0 <= first <= last < len(record.states):
+            message = (
+                f"`present` has `{name}` in states {first} to {last}; "
+                f"the trace has states 0 to {len(record.states) - 1}"
+            )
+            return _bad("R0505", message, place)
+    return Trace(
+        str(record.id) or f"line {place.line}",
+        record.step_s,
+        record.objects,
+        tuple(record.states),
+        record.present,
+        place,
+    )
+
+
+def _in_words(problem: str) -> str:
+    """msgspec's message, its path ``$.states[3]`` turned into a reader's ``in states[3]``."""
+    text, _, path = problem.partition(" - at `$")
+    path = path.rstrip("`").lstrip(".")
+    text = text[:1].lower() + text[1:]
+    for theirs, ours in _JSON_WORDS.items():
+        text = text.replace(theirs, ours)
+    return f"{text} (in `{path}`)" if path else text
+
+
+_JSON_WORDS = {
+    "jSON": "JSON",
+    "`bool | float | str | object`": "true, false, a number, a string or an object",
+    "`array`": "a list",
+    "`object`": "an object",
+    "`str`": "a string",
+    "`int | str`": "a string",
+    "`float`": "a number",
+    "`int`": "a whole number",
+    "`bool`": "true or false",
+    "`null`": "null",
+}
+
+
+def _bad(code: str, message: str, place: Place) -> RulecError:
+    help_text = "docs/traces.md shows a whole trace" if code == "R0501" else ""
+    return RulecError(Diagnostic(code, message, place, help=help_text))
+
+
+def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
+    """Write traces, one a line, and return how many."""
+    encoder = msgspec.json.Encoder()
+    count = 0
+    for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
+        stream.write(encoder.encode(_as_record(trace)))
+        stream.write(b"\n")
+    return count
+
+
+def _as_record(trace: Trace) -> dict[str, Any]:
+    record: dict[str, Any] = {
+        "id": trace.id,
+        "step_s": trace.step_s,
+        "objects": trace.objects,
+        "states": trace.states,
+    }
+    return {**record, "present": trace.present} if trace.present else record
