@@ -12,6 +12,7 @@ CODES: dict[str, str] = {
     "R0402": "the compiled automaton failed its check against the formula",
     "R0403": "Spot is not installed",
     "R0404": "a compiled rulebook is damaged or of another version",
+    "R0405": "a rulebook reads relations of two partitions",
     # 5: traces
     "R0501": "a line is not a trace in JSON",
     "R0502": "a state uses a name that the vocabulary does not know",
@@ -20,6 +21,15 @@ CODES: dict[str, str] = {
     "R0505": "an object is unknown or of an unknown type",
     "R0506": "a trace has no states",
     # 6: scenarios and graphs
+    "R0601": "a scenario's name is unknown",
+    "R0602": "a scenario file is not text in TOML",
+    "R0603": "a field of a scenario is missing or unknown",
+    "R0604": "a field's value in a scenario does not fit",
+    "R0605": "parts of a scenario contradict each other",
+    "R0606": "horizon and step do not fit together",
+    "R0607": "ego has no free cell to start from",
+    "R0608": "a partition or an adjacency is unknown",
+    "R0609": "a path does not follow the navigation graph",
     # 7: files
     "R0701": "a file cannot be read",
     "R0702": "a file cannot be written",

@@ -1,0 +1,41 @@
+"""Rectangles in street-wise coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """The closed rectangle ``[s_min, s_max] x [d_min, d_max]``, in metres.
+
+    ``s`` is the arc length along the road, ``d`` the perpendicular offset, positive to the left.
+    """
+
+    s_min: float
+    s_max: float
+    d_min: float
+    d_max: float
+
+    @property
+    def area(self) -> float:
+        """In square metres."""
+        return (self.s_max - self.s_min) * (self.d_max - self.d_min)
+
+    def overlaps(self, other: Box) -> bool:
+        """Do the interiors meet, not only the borders?"""
+        return (
+            self.s_min < other.s_max
+            and other.s_min < self.s_max
+            and self.d_min < other.d_max
+            and other.d_min < self.d_max
+        )
+
+    def covers(self, s: float, d: float) -> bool:
+        """Does the closed rectangle hold the point?"""
+        return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max
+
+
+def centred(s: float, d: float, length: float, width: float) -> Box:
+    """The rectangle around a centre, ``length`` along the road and ``width`` across it."""
+    return Box(s - length / 2, s + length / 2, d - width / 2, d + width / 2)

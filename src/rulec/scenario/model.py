@@ -1,0 +1,142 @@
+"""A scenario as data: the road, ego, what else is on the road, and what is known about it.
+
+Lengths are metres, times seconds, speeds m/s, accelerations m/s². ``s`` runs along the road in
+ego's direction, ``d`` across it, positive to the left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from rulec.scenario.geometry import Box, centred
+
+Surface = Literal["carriageway", "crossing"]
+SURFACES: tuple[Surface, ...] = get_args(Surface)
+
+Interval = tuple[float, float]
+SignalValue = bool | float | str
+
+PEDESTRIAN = "pedestrian"
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A surface that reaches across the whole road from ``s[0]`` to ``s[1]``."""
+
+    surface: Surface
+    s: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class MissingLane:
+    """Where a lane (counted from the right, from 1) has ended or has not begun."""
+
+    lane: int
+    s: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """A road of lanes side by side.
+
+    ``s`` is its extent, ``lanes`` are the bounds of its lanes in ``d`` from right to left: one more
+    than there are lanes. What no stretch names is carriageway.
+    """
+
+    s: Interval
+    lanes: tuple[float, ...]
+    surfaces: tuple[Stretch, ...] = ()
+    missing: tuple[MissingLane, ...] = ()
+
+    def holes(self) -> tuple[Box, ...]:
+        """The pieces between the outer bounds that are not road."""
+        return tuple(
+            Box(*gap.s, self.lanes[gap.lane - 1], self.lanes[gap.lane]) for gap in self.missing
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantAcceleration:
+    """Motion of a centre from time 0 on, with constant acceleration along the road.
+
+    A negative ``speed`` is oncoming traffic. Who brakes to standstill stays there and does not
+    reverse; that ends the sideways motion too. From standstill only a positive acceleration sets
+    off. ``lateral_speed`` is constant, up to ``until_d`` if that is given.
+    """
+
+    s: float
+    d: float
+    speed: float = 0.0
+    acceleration: float = 0.0
+    lateral_speed: float = 0.0
+    until_d: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """Timed positions ``(t, s, d)`` of a centre, straight lines in between.
+
+    Before the first and after the last one the obstacle is not there.
+    """
+
+    points: tuple[tuple[float, float, float], ...]
+
+
+Motion = ConstantAcceleration | Trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """Another traffic participant: a rectangle along the road that moves by a prediction.
+
+    ``walking_direction`` is in degrees from ego's direction, counter-clockwise: 90 is to the left.
+    """
+
+    id: str
+    type: str
+    length: float
+    width: float
+    motion: Motion
+    walking_direction: float | None = None
+    signals: Mapping[str, SignalValue] = field(default_factory=dict)
+
+    @property
+    def walks(self) -> bool:
+        """Are its regions those of its own frame (paper, section II-B, for pedestrians)?"""
+        return self.type == PEDESTRIAN or self.walking_direction is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Ego:
+    """Where ego's centre is at time 0; its size only tells whether it stands in something."""
+
+    s: float
+    d: float
+    length: float = 0.0
+    width: float = 0.0
+
+    @property
+    def body(self) -> Box:
+        """What ego occupies at time 0; a point if its size is not known."""
+        return centred(self.s, self.d, self.length, self.width)
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """A scene and its prediction: everything that a partition is computed from.
+
+    ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
+    that every cell of the last layer will do.
+    """
+
+    name: str
+    road: Road
+    ego: Ego
+    obstacles: tuple[Obstacle, ...] = ()
+    signals: Mapping[str, SignalValue] = field(default_factory=dict)
+    goal: Box | None = None
+    horizon_s: float = 4.0
+    step_s: float = 1.0
+    about: str = ""

@@ -1,0 +1,142 @@
+"""Scenarios by name or from a file."""
+
+from __future__ import annotations
+
+import os
+import re
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import Diagnostic, Place, RulecError, Source, nearest_name
+from rulec.resources import scenarios_folder
+from rulec.scenario.convert import to_scenario
+from rulec.scenario.fields import Findings
+from rulec.scenario.model import Scenario
+from rulec.scenario.places import TomlText
+
+LARGEST_BYTES = 4_000_000
+
+
+def available_scenarios() -> tuple[str, ...]:
+    """The names of the built-in scenarios, in alphabetical order."""
+    return tuple(sorted(path.stem for path in scenarios_folder().glob("*.toml")))
+
+
+def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
+    """A built-in scenario by its name, or a scenario file (TOML, ``docs/scenarios.md``).
+
+    A built-in name comes first; ``./s1`` is a file in any case.
+
+    Raises:
+        RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0602 to R0606
+            for what is wrong in it, all mistakes of one file together.
+    """
+    name = os.fspath(name_or_path)
+    known = available_scenarios()
+    if isinstance(name_or_path, str) and name.casefold() in known:
+        return read_scenario(scenarios_folder() / f"{name.casefold()}.toml")
+    looks_like_a_path = not isinstance(name_or_path, str) or os.sep in name or "." in name
+    if looks_like_a_path or _exists(name):
+        return read_scenario(Path(name))
+    near = nearest_name(name, known)
+    raise RulecError(
+        Diagnostic(
+            "R0601",
+            f"there is no scenario {name!r}",
+            expected=f"a built-in scenario ({', '.join(known)}) or the path of a file",
+            help=f'did you mean "{near}"?' if near else "give one of these names, or a file's path",
+        )
+    )
+
+
+def read_scenario(path: Path) -> Scenario:
+    """The scenario in a file. Raises RulecError like ``load_scenario``."""
+    source = Source(str(path), _text(path))
+    return to_scenario(_parse(source), path.stem, Findings(TomlText(source)))
+
+
+def _exists(name: str) -> bool:
+    try:
+        return Path(name).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _text(path: Path) -> str:
+    place = Place(str(path))
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise RulecError(
+            Diagnostic(
+                "R0701",
+                f"the file cannot be read: {reason}",
+                place,
+                help="check the path; built-in scenarios are " + ", ".join(available_scenarios()),
+            )
+        ) from None
+    if len(content) > LARGEST_BYTES:
+        raise RulecError(
+            Diagnostic(
+                "R0602",
+                "the file is too large for a scenario",
+                place,
+                expected=f"at most {LARGEST_BYTES // 1_000_000} MB",
+                help="keep the obstacles near ego, and the part of their motion that matters",
+            )
+        )
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
+        binary = b"\x00" in content[:4096]
+        raise RulecError(
+            Diagnostic(
+                "R0602",
+                "the file is not text" if binary else "the file is not in UTF-8",
+                Place(str(path), line, column),
+                expected="a scenario in TOML, as text in UTF-8",
+                help="save it as UTF-8" + (", or give another file" if binary else ""),
+            )
+        ) from None
+
+
+def _parse(source: Source) -> dict[str, Any]:
+    try:
+        tomllib: Any = import_module("tomllib")
+    except ModuleNotFoundError:  # Python 3.10
+        tomllib = import_module("tomli")
+    try:
+        parsed: dict[str, Any] = tomllib.loads(source.text)
+    except RecursionError:
+        message, place = "brackets are nested too deeply", Place(source.name)
+    except ValueError as error:
+        message, place = _syntax_error(str(error), source)
+    else:
+        return parsed
+    raise RulecError(
+        Diagnostic(
+            "R0602",
+            f"the file is not TOML: {message}",
+            place,
+            help="numbers are written 1.5, texts in quotes, tables [road], lists of tables "
+            "[[obstacle]]",
+        )
+    ) from None
+
+
+def _syntax_error(message: str, source: Source) -> tuple[str, Place]:
+    words = re.sub(r" \(at [^()]*\)$", "", message)
+    words = re.sub(r":? value has \d+ digits;.*", "", words)
+    at = re.search(r"\(at line (\d+), column (\d+)\)$", message)
+    if at is not None:
+        line, column = int(at.group(1)), int(at.group(2))
+    elif message.endswith("(at end of document)"):
+        line, column = source.position(len(source.text))
+    else:
+        return words, Place(source.name)
+    return words, Place(source.name, line, column, line, column + 1, source.line(line)[:400])

@@ -1,0 +1,141 @@
+"""The fields of a scenario file: names, types, bounds, and what each is in words.
+
+The words become the "expected" part of messages; ``docs/scenarios.md`` says the same at length.
+The bounds also keep out NaN and infinity.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct
+
+from rulec.scenario.model import SURFACES, Surface
+
+FARTHEST_M = 1_000_000
+_Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
+_Speed = Annotated[float, Meta(ge=-1000, le=1000)]
+_PRINTABLE = r"^[^\x00-\x1f\x7f]+$"
+_IDENTIFIER = r"^[A-Za-z_][A-Za-z0-9_]*$"
+
+Name = Annotated[
+    str, Meta(max_length=200, pattern=_PRINTABLE, description="a name in quotes, on one line")
+]
+Text = Annotated[str, Meta(description="a text in quotes")]
+Kind = Annotated[
+    str,
+    Meta(
+        max_length=200,
+        pattern=_IDENTIFIER,
+        description='a type of traffic participant in quotes, such as "vehicle"',
+    ),
+]
+Seconds = Annotated[
+    float, Meta(gt=0, le=100_000, description="seconds, above 0 and at most 100000")
+]
+Along = Annotated[_Metres, Meta(description="a place along the road, in metres")]
+Across = Annotated[_Metres, Meta(description="an offset in metres, positive to the left")]
+FromTo = Annotated[
+    tuple[_Metres, _Metres],
+    Meta(description="two numbers in metres, from and to, such as [30.0, 34.0]"),
+]
+Size = Annotated[float, Meta(ge=0.01, le=1000, description="metres, from 0.01 to 1000")]
+AlongSpeed = Annotated[
+    _Speed, Meta(description="m/s along the road, negative for oncoming traffic, at most 1000")
+]
+Acceleration = Annotated[_Speed, Meta(description="m/s² along the road, at most 1000")]
+SidewaysSpeed = Annotated[_Speed, Meta(description="m/s to the left, at most 1000")]
+Degrees = Annotated[
+    float, Meta(ge=-360, le=360, description="degrees from ego's direction, 90 being to the left")
+]
+LaneNumber = Annotated[
+    int, Meta(ge=1, le=100, description="a lane's number, counted from the right, from 1")
+]
+LaneBounds = Annotated[
+    list[_Metres],
+    Meta(
+        min_length=2,
+        max_length=101,
+        description="the lanes' bounds in d (metres) from right to left, one number more than "
+        "there are lanes, such as [-1.75, 1.75, 5.25]",
+    ),
+]
+SurfaceName = Annotated[Surface, Meta(description=f"one of {', '.join(SURFACES)}, in quotes")]
+TimedPositions = Annotated[
+    list[tuple[Annotated[float, Meta(ge=-100_000, le=100_000)], _Metres, _Metres]],
+    Meta(min_length=1, description="a list of [t, s, d] in seconds and metres"),
+]
+Table = Annotated[dict[str, Any], Meta(description="a table")]
+Tables = Annotated[list[Any], Meta(description="tables, each under its own [[heading]]")]
+Obstacles = Annotated[list[Any], Meta(max_length=500, description="at most 500 [[obstacle]]")]
+
+
+class RawScenario(Struct, forbid_unknown_fields=True):
+    """The top of the file; its tables are read one by one."""
+
+    road: Table
+    ego: Table
+    name: Name = ""
+    about: Text = ""
+    horizon_s: Seconds = 4.0
+    step_s: Seconds = 1.0
+    obstacle: Obstacles = []
+    signals: Table = {}
+    goal: Table | None = None
+
+
+class RawRoad(Struct, forbid_unknown_fields=True):
+    """``[road]``."""
+
+    s: FromTo
+    lanes: LaneBounds
+    surface: Tables = []
+    missing: Tables = []
+
+
+class RawSurface(Struct, forbid_unknown_fields=True):
+    """``[[road.surface]]``."""
+
+    type: SurfaceName
+    s: FromTo
+
+
+class RawMissing(Struct, forbid_unknown_fields=True):
+    """``[[road.missing]]``."""
+
+    lane: LaneNumber
+    s: FromTo
+
+
+class RawEgo(Struct, forbid_unknown_fields=True):
+    """``[ego]``."""
+
+    s: Along
+    d: Across
+    length: Size | None = None
+    width: Size | None = None
+
+
+class RawGoal(Struct, forbid_unknown_fields=True):
+    """``[goal]``."""
+
+    s: FromTo | None = None
+    d: FromTo | None = None
+
+
+class RawObstacle(Struct, forbid_unknown_fields=True):
+    """``[[obstacle]]``."""
+
+    id: Name
+    type: Kind
+    length: Size
+    width: Size
+    s: Along | None = None
+    d: Across | None = None
+    speed: AlongSpeed = 0.0
+    acceleration: Acceleration = 0.0
+    lateral_speed: SidewaysSpeed = 0.0
+    until_d: Across | None = None
+    trajectory: TimedPositions | None = None
+    walking_direction: Degrees | None = None
+    signals: Table = {}

@@ -1,0 +1,71 @@
+"""Horizon and step: how many layers there are, and when they begin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isfinite
+
+from rulec.diagnostics import Diagnostic, RulecError
+
+MAX_LAYERS = 10_000
+# a step typed as 0.3333333333 is meant as a third; one typed as 0.3333 is not
+_ROUNDING = Fraction(1, 10**9)
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """``layers`` layers, exactly ``step`` seconds apart."""
+
+    step: Fraction
+    layers: int
+
+    def start(self, layer: int) -> float:
+        """The time (s) at which a layer begins."""
+        return float(self.step * layer)
+
+
+def timing(horizon_s: float, step_s: float) -> Timing:
+    """The layers of a horizon (s) cut into steps (s): ``horizon / step + 1`` of them.
+
+    Decimals count as typed, so that 4.0 s is forty steps of 0.1 s.
+
+    Raises:
+        RulecError: R0606 if one of them is no time above 0, the horizon is not a whole multiple of
+            the step, or there were more than ``MAX_LAYERS`` layers.
+    """
+    for name, value in (("horizon", horizon_s), ("step", step_s)):
+        number = not isinstance(value, bool) and isinstance(value, (int, float))
+        if not number or not isfinite(value) or value <= 0:
+            raise RulecError(
+                Diagnostic(
+                    "R0606",
+                    f"the {name} is {value!r}",
+                    expected="a time in seconds, above 0",
+                    help=f"give the {name} as a number of seconds, such as 0.5",
+                )
+            )
+    horizon, step = Fraction(str(horizon_s)), Fraction(str(step_s))
+    steps = round(horizon / step)
+    if steps >= MAX_LAYERS:
+        raise RulecError(
+            Diagnostic(
+                "R0606",
+                f"a horizon of {horizon_s:g} s in steps of {step_s:g} s has too many layers",
+                expected=f"fewer than {MAX_LAYERS} steps",
+                help="take a longer step or a shorter horizon",
+            )
+        )
+    if steps == 0 or abs(horizon - steps * step) > _ROUNDING * horizon:
+        raise RulecError(_no_multiple(horizon_s, step_s, max(steps, 1)))
+    return Timing(horizon / steps, steps + 1)
+
+
+def _no_multiple(horizon_s: float, step_s: float, steps: int) -> Diagnostic:
+    return Diagnostic(
+        "R0606",
+        f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
+        expected="a horizon that is a multiple of the step",
+        help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "
+        f"{float(Fraction(str(step_s)) * steps):g} s",
+    )
