@@ -1,0 +1,149 @@
+"""Help for mistakes that people make: what stands there, what could, and so what was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rulec.syntax.expectations import wants_operand, wants_operator
+from rulec.syntax.scanner import Token
+from rulec.syntax.words import OPERATOR_WORDS, RESERVED
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A piece that cannot go on: its kind, the token there (None at its end), the one before."""
+
+    kind: str
+    first: str
+    found: Token | None
+    before: Token | None
+    accepted: frozenset[str]
+
+
+_OTHER_SPELLINGS = {
+    "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
+    "iff": ("<=>", "==", "===", "=", "↔", "⇔", "⟺", "≡"),
+    "and": ("∧", "*", "/"),
+    "or": ("∨", "+"),
+    "not": ("¬", "~", "-"),
+    "always": ("□", "◻", "[", "globally"),
+    "eventually": ("◇", "◊", "⋄", "<", "finally"),
+    "next": ("○", "◯", "@"),
+    "until": ("𝒰",),
+}
+_MEANT = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
+_SYMBOL_OF = {"implies": "->", "iff": "<->", "and": "&", "or": "|", "not": "!", "always": "G"} | {
+    "eventually": "F",
+    "next": "X",
+    "until": "U",
+}
+_PAST_WORDS = frozenset("once historically since previously O H S Y".split())
+
+
+def advise(scene: Scene) -> str:
+    """The way out, empty when there is none to suggest."""
+    for rule in _RULES:
+        found = rule(scene)
+        if found:
+            return found
+    return ""
+
+
+def _quotes(scene: Scene) -> str:
+    found = scene.found
+    if found is None:
+        return ""
+    if found.kind == "quoted" or found.text in ("'", "“", "”", "„", "‘", "’", "«", "»"):
+        return 'texts stand in straight double quotes: "…"'
+    if scene.accepted == {"STRING"}:
+        return 'put the text in double quotes: "…"'
+    if scene.before is not None and scene.before.kind == "string" and found.kind == "word":
+        return 'a quote inside a text is written \\"'
+    return ""
+
+
+def _rule_head(scene: Scene) -> str:
+    if scene.kind != "rule_head":
+        return ""
+    if "HARD" in scene.accepted:
+        return "a rule begins with `hard rule` or `soft rule`"
+    if scene.accepted == {"RULE"}:
+        name = scene.found.text if scene.found and scene.found.text not in RESERVED else "NAME"
+        return f"write `{scene.first} rule {name}`"
+    if scene.accepted == {"COLON"}:
+        return "a variable is written with its type, such as `v: vehicle`"
+    return ""
+
+
+def _declaration(scene: Scene) -> str:
+    if scene.kind != "item":
+        return ""
+    if "ONE" in scene.accepted:
+        return "the values stand behind `is one of`, such as `is one of a, b`"
+    if "COMMA" in scene.accepted and scene.found and scene.found.text in (";", "|", "or", "and"):
+        return "separate the names by `,`"
+    if {"TRUE", "FALSE"} == scene.accepted:
+        return "a signal is true or false: write `default true` or `default false`"
+    return ""
+
+
+def _state(scene: Scene) -> str:
+    if scene.kind != "state":
+        return ""
+    text = scene.found.text if scene.found else ""
+    if text == ",":
+        return "states are separated by `;`, the facts of one state by `and`"
+    if text in ("or", "|", "||"):
+        return "a state says what holds; for another possibility write another example"
+    if text in OPERATOR_WORDS or text in "GFX":
+        return "a state holds atoms and `not` before a signal; no other operator"
+    if scene.found is None and "NAME" in scene.accepted:
+        return "a `;` stands between two states; write in each what holds there"
+    return ""
+
+
+def _operators(scene: Scene) -> str:
+    if scene.found is None:
+        return ""
+    text = scene.found.text
+    before = scene.before.text if scene.before else ""
+    operand, operator = wants_operand(scene.accepted), wants_operator(scene.accepted)
+    if not (operand or operator or "AND" in scene.accepted):
+        return ""
+    if before == "never":
+        return "write `always not …`"
+    if text in _PAST_WORDS or (before in _PAST_WORDS and operator):
+        return "this language speaks of the present and the future, not of the past"
+    if text == "[" and before in ("always", "eventually", "next", "G", "F", "X"):
+        return "bounds of time cannot be written; `next` goes one step ahead"
+    word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
+    if word is not None and text != word:
+        symbol = _SYMBOL_OF.get(word)
+        return f"write `{word}` or `{symbol}`" if symbol else f"write `{word}`"
+    if before == "weak" or text == "weak":
+        return "`weak` stands before `until` or before `next`"
+    if before == "strong" or text == "strong":
+        return "`strong` stands before `release`"
+    if text in ("<", ">", "<=", ">=", "!="):
+        return "formulas are about signals and values; numbers cannot be compared"
+    return ""
+
+
+def _punctuation(scene: Scene) -> str:
+    text = scene.found.text if scene.found else ""
+    if text in (";", ".", ",", ":") and ("$END" in scene.accepted or scene.accepted == {"STRING"}):
+        return f"delete the `{text}`"
+    if text == "=" and scene.accepted:
+        return "the language has no `=`"
+    return ""
+
+
+_RULES: tuple[Callable[[Scene], str], ...] = (
+    _quotes,
+    _rule_head,
+    _declaration,
+    _state,
+    _operators,
+    _punctuation,
+)

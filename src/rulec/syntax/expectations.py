@@ -1,0 +1,66 @@
+"""What the grammar would have accepted, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+_OPERANDS = frozenset(
+    ("NOT", "ALWAYS", "EVENTUALLY", "NEXT", "WEAK_NEXT", "LPAR", "TRUE", "FALSE", "NAME")
+)
+_OPERATORS = frozenset(
+    (
+        *("IFF", "IMPLIES", "XOR", "OR", "AND"),
+        *("UNTIL", "RELEASE", "WEAK_UNTIL", "STRONG_RELEASE"),
+    )
+)
+_WORDS = {
+    "NAME": "a name",
+    "STRING": "a text in double quotes",
+    "DATE": "a date such as 2006-03-28",
+    "NUMBER": "a number",
+    "UNIT": "a unit such as km/h",
+    "LPAR": "`(`",
+    "RPAR": "`)`",
+    "COMMA": "`,`",
+    "COLON": "`:`",
+    "AND": "`and`",
+    "NOT": "`not`",
+    "$END": "the end of it",
+}
+_ORDER = ("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT", "RPAR", "LPAR", "COLON", "COMMA")
+
+
+def in_words(accepted: Iterable[str]) -> str:
+    """``expected an atom, `not`, or `(``` for the grammar's names of tokens."""
+    rest = set(accepted)
+    parts: list[str] = []
+    if rest >= _OPERANDS:
+        parts += ["an atom", "`not`", "`(`"]
+        rest -= _OPERANDS
+    if rest >= _OPERATORS:
+        parts.append("an operator such as `and`")
+        rest -= _OPERATORS | {"LPAR"}
+    rest.discard("$END" if parts or len(rest) > 1 else "")
+    ranked = sorted(rest, key=lambda kind: (_rank(kind), kind))
+    parts = [*parts, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked)]
+    return f"expected {_any_of(parts)}" if parts else ""
+
+
+def _rank(kind: str) -> int:
+    return _ORDER.index(kind) if kind in _ORDER else len(_ORDER)
+
+
+def _any_of(parts: list[str]) -> str:
+    if len(parts) < 3:
+        return " or ".join(parts)
+    return f"{', '.join(parts[:-1])}, or {parts[-1]}"
+
+
+def wants_operand(accepted: frozenset[str]) -> bool:
+    """Could a formula begin here?"""
+    return accepted >= _OPERANDS
+
+
+def wants_operator(accepted: frozenset[str]) -> bool:
+    """Could a binary operator stand here?"""
+    return accepted >= _OPERATORS

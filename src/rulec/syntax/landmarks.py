@@ -1,0 +1,125 @@
+"""Where items and clauses begin, told from a few tokens: for files that are right and for others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.syntax.scanner import Token
+from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS, RESERVED, RULE_WORDS
+
+_COMPLETE_WORDS = frozenset(("true", "false"))
+_OPEN_SYMBOLS = frozenset(
+    ("(", ",", ":", ";", "{", "!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>", "=", "=>")
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Landmarks:
+    """Questions about the tokens of one file, by index."""
+
+    tokens: list[Token]
+
+    def is_symbol(self, index: int, text: str) -> bool:
+        return (
+            index < len(self.tokens)
+            and self.tokens[index].text == text
+            and self.tokens[index].kind == "symbol"
+        )
+
+    def is_word(self, index: int, *texts: str) -> bool:
+        """Is it one of these words?"""
+        return (
+            0 <= index < len(self.tokens)
+            and self.tokens[index].kind == "word"
+            and self.tokens[index].text in texts
+        )
+
+    def is_name(self, index: int) -> bool:
+        """Is it a word that may be a name?"""
+        return (
+            0 <= index < len(self.tokens)
+            and self.tokens[index].kind == "word"
+            and self.tokens[index].text not in RESERVED
+        )
+
+    def wants_more(self, index: int) -> bool:
+        """Can the text not end behind this token? (``signal``, ``until``, ``(``, ``;`` …)"""
+        if index < 0:
+            return False
+        token = self.tokens[index]
+        if token.kind == "word":
+            return token.text in RESERVED and token.text not in _COMPLETE_WORDS
+        return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
+
+    def begins_rule(self, index: int) -> bool:
+        """``hard``, ``soft``, ``rule``, or a word before ``rule`` that was meant to be the former."""
+        if self.is_word(index, *RULE_WORDS, "rule"):
+            return True
+        return self.is_name(index) and self.is_word(index + 1, "rule")
+
+    def begins_item(self, index: int) -> bool:
+        """Does an item begin here, seen from outside of any braces?"""
+        token = self.tokens[index]
+        if token.kind != "word":
+            return False
+        follows_on = self.wants_more(index - 1) and not token.first
+        if token.text in ITEM_WORDS:
+            if token.text == "rule" and not token.first:
+                return False
+            return not follows_on
+        if token.text in RESERVED:
+            return False
+        if self._begins_enumeration(index) and not self.wants_more(index - 1):
+            return True
+        return token.first and not self.wants_more(index - 1)
+
+    def begins_item_inside(self, index: int) -> bool:
+        """Does an item begin here although braces are still open?
+
+        That takes more evidence: a line of its own and a plausible next token, or ``hard rule``.
+        """
+        token = self.tokens[index]
+        if token.kind != "word":
+            return False
+        if self.is_word(index, *RULE_WORDS):
+            return self.is_word(index + 1, "rule") or (token.first and self.is_name(index + 1))
+        if not token.first:
+            return False
+        if self.is_word(index, "title", "law"):
+            return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "string"
+        if token.text in ITEM_WORDS:
+            return self.is_name(index + 1)
+        return self._begins_enumeration(index)
+
+    def begins_clause(self, index: int) -> bool:
+        """A clause's word on a line of its own, or where the text before is complete."""
+        token = self.tokens[index]
+        if token.kind != "word" or token.text not in CLAUSE_WORDS:
+            return False
+        if token.first or not self.wants_more(index - 1):
+            return True
+        return self.is_symbol(index - 1, "{") and not self._stands_alone(index)
+
+    def _stands_alone(self, index: int) -> bool:
+        """``{ accept; …`` or ``{ accept }``: a clause's word where an atom should be."""
+        return any(self.is_symbol(index + 1, text) for text in (";", "}", "&")) or self.is_word(
+            index + 1, "and"
+        )
+
+    def _begins_enumeration(self, index: int) -> bool:
+        """``name is one``, ``name is a,`` or ``name(…) is``; but not ``type name is``."""
+        if not self.is_name(index):
+            return False
+        behind = index + 1
+        if self.is_symbol(behind, "("):
+            behind += 1
+            while behind < len(self.tokens) and self._fits_parameters(behind):
+                behind += 1
+            if not self.is_symbol(behind, ")"):
+                return False
+            behind += 1
+        return self.is_word(behind, "is")
+
+    def _fits_parameters(self, index: int) -> bool:
+        token = self.tokens[index]
+        return self.is_name(index) or (token.kind == "symbol" and token.text in (",", ":"))

@@ -1,0 +1,172 @@
+"""A piece that cannot be parsed, as a diagnostic: exactly one for each."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
+from rulec.syntax.advice import Scene, advise
+from rulec.syntax.expectations import in_words, wants_operand, wants_operator
+from rulec.syntax.parser import MAX_DEPTH, Mismatch
+from rulec.syntax.pieces import Piece, span_of
+from rulec.syntax.scanner import Token
+from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
+
+_WHAT = {
+    "title": "the title",
+    "law": "the law's line",
+    "use": "the `use` line",
+    "type": "the declaration of a type",
+    "signal": "the declaration of a signal",
+    "quantity": "the declaration of a quantity",
+    "rulebook": "the `rulebook` line",
+    "vocabulary": "the `vocabulary` line",
+    "cite": "`cite`",
+    "says": "`says`",
+    "require": "the formula",
+    "accept": "the example",
+    "reject": "the example",
+}
+_BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
+
+
+def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
+    """Why the piece cannot be read."""
+    inside = tokens[piece.first : piece.last]
+    at = bisect_left([token.end for token in inside], mismatch.position + 1)
+    found = inside[at] if at < len(inside) else None
+    before = inside[at - 1] if at else None
+    first = inside[0].text if inside else ""
+    scene = Scene(piece.kind, first, found, before, mismatch.accepted)
+    end = span_of(source, tokens, piece).end
+    span = Span(source, end, end) if found is None else _span(source, found)
+    if found is not None and found.kind == "unterminated":
+        return _unterminated(span)
+    if found is not None and _is_word_for_name(scene):
+        return _reserved(span, found.text)
+    if piece.kind == "item" and at < 2 and first not in ITEM_WORDS:
+        return _unknown_item(source, inside[0])
+    what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
+    if found is None:
+        message = f"{what} ends too early" if inside else f"{what} is empty"
+    elif at == 0:
+        message = f"{what} cannot begin with `{_short(found.text)}`"
+    else:
+        message = f"{what} cannot go on with `{_short(found.text)}`"
+    return Diagnostic(
+        "R0104",
+        message,
+        span.place,
+        expected=in_words(mismatch.accepted),
+        help=advise(scene) or _parenthesis_help(scene),
+        labels=_open_parenthesis(source, inside[:at], scene),
+    )
+
+
+def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
+    """A piece that begins with nothing that the language has, inside a rule."""
+    found = tokens[piece.first]
+    word = nearest_name(found.text, CLAUSE_WORDS)
+    return Diagnostic(
+        "R0104",
+        f"`{_short(found.text)}` begins no clause",
+        _span(source, found).place,
+        expected="expected `cite`, `says`, `require`, `accept`, or `reject`",
+        help=f"did you mean `{word}`?" if word else "",
+    )
+
+
+def _unknown_item(source: Source, found: Token) -> Diagnostic:
+    word = nearest_name(found.text, ITEM_WORDS | CLAUSE_WORDS) if found.kind == "word" else None
+    if word is not None:
+        way_out = f"did you mean `{word}`?"
+    elif found.kind == "word" and found.text not in RESERVED:
+        way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
+    else:
+        way_out = ""
+    return Diagnostic(
+        "R0104",
+        f"`{_short(found.text)}` begins nothing that a file may hold",
+        _span(source, found).place,
+        expected="expected a declaration or a rule",
+        help=way_out,
+    )
+
+
+def too_deep(span: Span) -> Diagnostic:
+    """A formula with more levels than anyone can read."""
+    return Diagnostic(
+        "R0111",
+        f"the formula is nested more than {MAX_DEPTH} levels deep",
+        span.place,
+        help="split it into several rules",
+    )
+
+
+def too_long(span: Span, limit: int) -> Diagnostic:
+    """A piece with more tokens than are worth parsing."""
+    return Diagnostic(
+        "R0111",
+        f"this goes on for more than {limit:,} words and signs",
+        span.place,
+        help="split it into several rules",
+    )
+
+
+def _span(source: Source, token: Token) -> Span:
+    return Span(source, token.start, token.end)
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:39]}…"
+
+
+def _is_word_for_name(scene: Scene) -> bool:
+    """A reserved word where only a name could stand: it was meant as one."""
+    found = scene.found
+    if found is None or found.kind != "word" or found.text not in RESERVED:
+        return False
+    if "NAME" not in scene.accepted:
+        return False
+    if wants_operand(scene.accepted):
+        return found.text in ITEM_WORDS | CLAUSE_WORDS
+    return scene.kind != "state" or found.text in ITEM_WORDS | CLAUSE_WORDS
+
+
+def _reserved(span: Span, word: str) -> Diagnostic:
+    kind = "an operator" if word in OPERATOR_LETTERS else "a word of the language"
+    return Diagnostic(
+        "R0113",
+        f"`{word}` is {kind} and cannot be a name",
+        span.place,
+        expected="expected a name",
+        help=f"choose another name, such as `{word.lower()}_1`",
+    )
+
+
+def _unterminated(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "R0105",
+        "this text has no closing quote",
+        span.place,
+        expected='expected `"` before the end of the line',
+        help="close it on the same line; texts do not run over a line's end",
+    )
+
+
+def _parenthesis_help(scene: Scene) -> str:
+    if scene.found is not None and scene.found.text == ")" and wants_operator(scene.accepted):
+        return "delete the `)`, or open it before"
+    return ""
+
+
+def _open_parenthesis(source: Source, before: list[Token], scene: Scene) -> tuple[Label, ...]:
+    if "RPAR" not in scene.accepted or scene.kind not in ("clause", "formula"):
+        return ()
+    opened: list[Token] = []
+    for token in before:
+        if token.kind == "symbol" and token.text == "(":
+            opened.append(token)
+        elif token.kind == "symbol" and token.text == ")":
+            opened.pop()
+    return tuple(Label(_span(source, one).place, "this is still open") for one in opened[-1:])

@@ -1,0 +1,173 @@
+"""The front door of the syntax: a source in, its tree and all its mistakes out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar, cast
+
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.syntax import tree
+from rulec.syntax.assemble import assemble_file, assemble_rule
+from rulec.syntax.build import Builder
+from rulec.syntax.mismatch import explain, too_deep, too_long, unknown_clause
+from rulec.syntax.parser import Branch, Mismatch, Start, TooDeep, parse_piece
+from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
+from rulec.syntax.scanner import Token, scan
+from rulec.syntax.split_file import FileSplitter
+from rulec.syntax.text import checked
+from rulec.syntax.words import RESERVED
+
+MAX_PIECE = 10_000
+"""Tokens in one piece; keeps what one formula can cost in time and memory small."""
+
+_Built = TypeVar("_Built")
+
+
+def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+    """The syntax tree of a rulebook or a vocabulary, and every mistake in it, in order.
+
+    What cannot be read is left out of the tree and leaves a mark there (``BrokenItem``,
+    ``complete``), so that later stages need not complain about it a second time.
+    """
+    try:
+        tokens = scan(checked(source))
+    except RulecError as error:
+        return tree.File("rulebook", None, complete=False), error.diagnostics
+    if not tokens:
+        return tree.File("rulebook", None, complete=False), (_empty(source),)
+    reader = _Reader(source, tokens)
+    splitter = FileSplitter(source, tokens)
+    parts = [
+        reader.rule(part) if isinstance(part, RulePieces) else reader.item(part)
+        for part in splitter.split()
+    ]
+    file, order_mistakes = assemble_file(source, parts)
+    mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
+    return file, tuple(sorted(mistakes, key=_position))
+
+
+def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
+    """The tree of one formula.
+
+    Raises:
+        RulecError: it is not a formula.
+    """
+    source = checked(Source(name, text))
+    tokens = scan(source)
+    reader = _Reader(source, tokens)
+    formula = reader.read("formula", Piece("clause", 0, len(tokens)), Builder.formula)
+    if formula is None:
+        raise RulecError(reader.mistakes)
+    return formula
+
+
+def _empty(source: Source) -> Diagnostic:
+    return Diagnostic(
+        "R0103",
+        "the file is empty",
+        Span(source, 0, 0).place,
+        expected="expected `rulebook NAME`",
+        help="a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`",
+    )
+
+
+def _position(diagnostic: Diagnostic) -> tuple[int, int]:
+    place = diagnostic.place
+    return (0, 0) if place is None else (place.line or 0, place.column or 0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Parses piece by piece; None stands for a piece whose mistake is in ``mistakes``."""
+
+    source: Source
+    tokens: list[Token]
+    mistakes: list[Diagnostic] = field(default_factory=list)
+
+    def read(
+        self, start: Start, piece: Piece, build: Callable[[Builder, Branch], _Built]
+    ) -> _Built | None:
+        if piece.reported:
+            return None
+        span = span_of(self.source, self.tokens, piece)
+        if piece.last - piece.first > MAX_PIECE:
+            return self._fail(too_long(self._first_token(piece), MAX_PIECE))
+        match parse_piece(start, self.source.text, span.start, span.end):
+            case Mismatch() as mismatch:
+                return self._fail(explain(self.source, self.tokens, piece, mismatch))
+            case TooDeep():
+                return self._fail(too_deep(self._first_token(piece)))
+            case branch:
+                builder = Builder(self.source)
+                built = build(builder, branch)
+        if piece.then is not None:
+            self.mistakes.append(piece.then)
+        self.mistakes.extend(builder.mistakes)
+        return built
+
+    def _fail(self, mistake: Diagnostic) -> None:
+        self.mistakes.append(mistake)
+
+    def _first_token(self, piece: Piece) -> Span:
+        token = self.tokens[piece.first]
+        return Span(self.source, token.start, token.end)
+
+    def item(
+        self, piece: Piece
+    ) -> (
+        tree.FileLine
+        | tree.TitleLine
+        | tree.LawLine
+        | tree.UseLine
+        | tree.Declaration
+        | tree.BrokenItem
+    ):
+        return self.read("item", piece, Builder.item) or self._broken(piece)
+
+    def _broken(self, piece: Piece | RulePieces) -> tree.BrokenItem:
+        words = self.tokens[piece.first : piece.last]
+        names = {token.text for token in words if token.kind == "word"} - RESERVED
+        first = self.tokens[piece.first].text
+        return tree.BrokenItem(frozenset(names), span_of(self.source, self.tokens, piece), first)
+
+    def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
+        head = self.read("rule_head", pieces.head, Builder.rule_head)
+        parts = [
+            self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
+            for part in pieces.body
+        ]
+        if head is None:
+            return tree.BrokenItem(
+                frozenset(), span_of(self.source, self.tokens, pieces.head), "rule"
+            )
+        span = span_of(self.source, self.tokens, pieces)
+        head_span = span_of(self.source, self.tokens, pieces.head)
+        readable = pieces.head.then is None
+        rule, mistakes = assemble_rule(head, parts, span, head_span, complete=readable)
+        self.mistakes.extend(mistakes)
+        return rule
+
+    def _clause(self, piece: Piece) -> tuple[str, tree.Text | tree.Formula | None, Span]:
+        keyword = self.tokens[piece.first].text
+        span = self._first_token(piece)
+        if piece.kind == "junk":
+            self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
+            return keyword, None, span
+        return keyword, self.read("clause", piece, _build_clause), span
+
+    def _example(self, pieces: ExamplePieces) -> tree.Example | None:
+        head = self.read("example_head", pieces.head, Builder.example_head)
+        states = [self.read("state", piece, Builder.state) for piece in pieces.states]
+        if head is None or not states or None in states:
+            return None
+        span = span_of(self.source, self.tokens, pieces)
+        good = cast("list[tree.ExampleState]", states)
+        return tree.Example(head.accepts, tuple(good), head.label, span)
+
+
+def _build_clause(builder: Builder, branch: Branch) -> tree.Text | tree.Formula:
+    if branch.kind == "require_clause":
+        (formula,) = (child for child in branch.children if isinstance(child, Branch))
+        return builder.formula(formula)
+    return builder.text(branch)

@@ -1,0 +1,87 @@
+"""A coarse tokenisation that never fails, for finding where the pieces of a file begin and end.
+
+It knows strings, comments and line starts; the grammar decides what the tokens mean.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+
+MAX_TOKENS = 1_000_000
+"""Far above what a file of the permitted size holds, far below what would exhaust memory."""
+
+_TOKEN = re.compile(
+    r"""
+      (?P<skip>\s+|\#[^\n]*)
+    | (?P<string>"(?:[^"\\\r\n]|\\[^\r\n])*")
+    | (?P<unterminated>"[^\r\n]*)
+    | (?P<quoted>'[^'\r\n]*')
+    | (?P<word>[^\W\d]\w*)
+    | (?P<number>[0-9]\w*(?:[-.]\w+)*)
+    | (?P<symbol><->|<=>|==>|===|-->|->|=>|==|!=|:=|<=|>=|&&|\|\||\[\]|<>|.)
+    """,
+    re.VERBOSE,
+)
+
+
+class Token(NamedTuple):
+    """Characters ``start`` to ``end``; ``first`` tells the first token of a line."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+    first: bool
+
+
+def scan(source: Source) -> list[Token]:
+    """All tokens of a text, without white space and comments.
+
+    ``kind`` is one of string, unterminated, quoted (in single quotes), word, number, symbol.
+
+    Raises:
+        RulecError: the text has more than ``MAX_TOKENS`` tokens.
+    """
+    text = source.text
+    tokens: list[Token] = []
+    first = True
+    position = 0
+    match = _TOKEN.match
+    while position < len(text):
+        found = match(text, position)
+        assert found is not None, "the last alternative takes any character"
+        kind, end = found.lastgroup or "", found.end()
+        if kind == "skip":
+            first = first or "\n" in found.group()
+        else:
+            if kind == "unterminated":
+                end = _end_of_unterminated(text, position, end)
+            tokens.append(Token(kind, text[position:end], position, end, first))
+            first = False
+            if len(tokens) > MAX_TOKENS:
+                raise RulecError(_too_many(source, position))
+        position = end
+    return tokens
+
+
+def _end_of_unterminated(text: str, start: int, end: int) -> int:
+    """Leave out the brace that the rest of the file needs, so that one quote costs one error."""
+    line = text[start:end]
+    surplus = line.count("{") - line.count("}")
+    if surplus > 0:
+        return start + line.rindex("{")
+    if surplus < 0:
+        return start + line.rindex("}")
+    return start + len(line.rstrip())
+
+
+def _too_many(source: Source, position: int) -> Diagnostic:
+    return Diagnostic(
+        "R0102",
+        f"the file holds more than {MAX_TOKENS:,} words and signs",
+        Span(source, position, position + 1).place,
+        help="split it into several rulebooks",
+    )

@@ -1,0 +1,114 @@
+"""Cutting a file into header lines, declarations and rules.
+
+Where braces are missing, the next item that begins on a line of its own says where they belong; such
+structural mistakes are reported here, one for each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from rulec.diagnostics import Diagnostic, Source
+from rulec.syntax.landmarks import Landmarks
+from rulec.syntax.pieces import Piece, RulePieces
+from rulec.syntax.scanner import Token
+from rulec.syntax.split_rule import RuleSplitter
+from rulec.syntax.structure_messages import StructureMessages
+
+
+@dataclass(slots=True)
+class FileSplitter:
+    """Walks over the tokens once, in time proportional to their number."""
+
+    source: Source
+    tokens: list[Token]
+    mistakes: list[Diagnostic] = field(default_factory=list)
+    marks: Landmarks = field(init=False)
+    say: StructureMessages = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.marks = Landmarks(self.tokens)
+        self.say = StructureMessages(self.source, self.tokens)
+
+    def split(self) -> Iterator[Piece | RulePieces]:
+        """The pieces in order; ``mistakes`` is complete when the last one has been taken."""
+        rules = RuleSplitter(self.tokens, self.marks, self.say, self.mistakes)
+        index, count = 0, len(self.tokens)
+        opened: int | None = None
+        closed: int | None = None
+        if count and self.marks.is_word(0, "vocabulary"):
+            head = self._vocabulary_line()
+            yield head
+            index = head.last
+            if self.marks.is_symbol(index, "{"):
+                opened, index = index, index + 1
+            elif self._has_spare_close(index):
+                opened = index
+        while index < count:
+            if self.marks.is_symbol(index, "}") and opened is not None:
+                opened, closed, index = None, index, index + 1
+                if index < count:
+                    self.mistakes.append(self.say.behind_vocabulary(index, closed))
+                    yield Piece("junk", index, count, reported=True)
+                    index = count
+            elif self.marks.is_symbol(index, "}") or self.marks.begins_clause(index):
+                self.mistakes.append(self.say.outside(index, closed))
+                end = self._skip_to_item(index + 1)
+                yield Piece("junk", index, end, reported=True)
+                index = end
+            elif self.marks.begins_rule(index):
+                rule = rules.rule(index)
+                yield rule
+                index, closed = rule.last, rule.last - 1
+            else:
+                end = self._over_block(self._end_of_item(index))
+                yield Piece("item", index, end)
+                index = end
+        if opened is not None:
+            self.mistakes.append(self.say.no_close(opened, count))
+
+    def _vocabulary_line(self) -> Piece:
+        end = self._end_of_item(0)
+        if self.marks.is_symbol(end, "{"):
+            return Piece("item", 0, end)
+        return Piece("item", 0, end, then=self.say.no_open(end - 1, "the vocabulary's items"))
+
+    def _has_spare_close(self, index: int) -> bool:
+        depth = 0
+        for token in self.tokens[index:]:
+            depth += (token.text == "{") - (token.text == "}")
+            if depth < 0:
+                return True
+        return False
+
+    def _end_of_item(self, index: int) -> int:
+        """Behind an item that has no braces of its own."""
+        end = index + 1
+        while end < len(self.tokens):
+            if self.marks.is_symbol(end, "{") or self.marks.is_symbol(end, "}"):
+                break
+            if self.marks.begins_item(end):
+                break
+            if self.tokens[end].first and self.marks.begins_clause(end):
+                break
+            end += 1
+        return end
+
+    def _over_block(self, index: int) -> int:
+        """Behind a block in braces that does not belong where it stands."""
+        depth = 0
+        while index < len(self.tokens):
+            if depth and self.marks.begins_item_inside(index):
+                break
+            if depth == 0 and not self.marks.is_symbol(index, "{"):
+                break
+            depth += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
+            index += 1
+        return index
+
+    def _skip_to_item(self, index: int) -> int:
+        """To the next item: what stands outside of a rule was reported where it began."""
+        while index < len(self.tokens) and not self.marks.begins_item_inside(index):
+            index += 1
+        return index

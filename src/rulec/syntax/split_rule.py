@@ -1,0 +1,117 @@
+"""Cutting a rule into its head, its clauses, and the states of its examples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.diagnostics import Diagnostic
+from rulec.syntax.landmarks import Landmarks
+from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces
+from rulec.syntax.scanner import Token
+from rulec.syntax.structure_messages import StructureMessages
+
+
+@dataclass(frozen=True, slots=True)
+class RuleSplitter:
+    """Adds structural mistakes to ``mistakes``."""
+
+    tokens: list[Token]
+    marks: Landmarks
+    say: StructureMessages
+    mistakes: list[Diagnostic]
+
+    def rule(self, first: int) -> RulePieces:
+        """The rule whose head begins at token ``first``."""
+        index = first + 1
+        while not self._ends_head(index):
+            index += 1
+        if self.marks.is_symbol(index, "{"):
+            opened, index = index, index + 1
+            head = Piece("rule_head", first, opened)
+        else:
+            opened = index - 1
+            missing = self.say.no_open(opened, "the rule's clauses")
+            head = Piece("rule_head", first, index, then=missing)
+            if not self._at_clause(index):
+                index += self.marks.is_symbol(index, "}")
+                return RulePieces(head, (), first, index)
+        body: list[Piece | ExamplePieces] = []
+        while index < len(self.tokens) and not self.marks.begins_item_inside(index):
+            if self.marks.is_symbol(index, "}"):
+                return RulePieces(head, tuple(body), first, index + 1)
+            if self.tokens[index].text in ("accept", "reject"):
+                example, ended = self._example(index)
+                body.append(example)
+                index = example.last
+                if ended:
+                    return RulePieces(head, tuple(body), first, index)
+            else:
+                kind = self.marks.begins_clause(index)
+                end = self._end_of_clause(index)
+                body.append(Piece("clause" if kind else "junk", index, end))
+                index = end
+        self.mistakes.append(self.say.no_close(opened, index))
+        return RulePieces(head, tuple(body), first, index)
+
+    def _at_clause(self, index: int) -> bool:
+        return index < len(self.tokens) and self.marks.begins_clause(index)
+
+    def _ends_head(self, index: int) -> bool:
+        return (
+            index >= len(self.tokens)
+            or self.marks.is_symbol(index, "{")
+            or self.marks.is_symbol(index, "}")
+            or self.marks.begins_clause(index)
+            or self.marks.begins_item_inside(index)
+        )
+
+    def _end_of_clause(self, first: int) -> int:
+        index, depth = first + 1, 0
+        while index < len(self.tokens):
+            if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
+                break
+            if self.marks.is_symbol(index, "}") and depth == 0:
+                break
+            depth += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
+            index += 1
+        return index
+
+    def _example(self, first: int) -> tuple[ExamplePieces, bool]:
+        """The example, and whether the file ends inside it."""
+        opened = first + 1
+        while not self._ends_head(opened) and not self.marks.is_symbol(opened, ";"):
+            opened += 1
+        if not self.marks.is_symbol(opened, "{"):
+            return self._example_without_open(first, opened), False
+        head = Piece("example_head", first, opened)
+        states: list[Piece] = []
+        index = begin = opened + 1
+        depth = 0
+        while index < len(self.tokens):
+            if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
+                break
+            closes = self.marks.is_symbol(index, "}")
+            if depth == 0 and (closes or self.marks.is_symbol(index, ";")):
+                states.append(Piece("state", begin, index))
+                begin = index + 1
+                if closes:
+                    return ExamplePieces(head, tuple(states), begin), False
+            depth += self.marks.is_symbol(index, "{") - closes
+            index += 1
+        self.mistakes.append(self.say.no_close(opened, index))
+        states.append(Piece("state", begin, index, reported=begin == index))
+        return ExamplePieces(head, tuple(states), index), index == len(self.tokens)
+
+    def _example_without_open(self, first: int, index: int) -> ExamplePieces:
+        """``accept b; l }``: the next ``}`` is the example's own unless the rule would lack one."""
+        end = index
+        while not self._ends_head(end):
+            end += 1
+        behind = end + 1
+        if self.marks.is_symbol(end, "}") and (
+            self.marks.is_symbol(behind, "}") or self._at_clause(behind)
+        ):
+            end = behind
+        labelled = first + 1 < end and self.tokens[first + 1].kind == "string"
+        self.mistakes.append(self.say.no_open(first + labelled, "the example's states"))
+        return ExamplePieces(Piece("example_head", first, end, reported=True), (), end)

@@ -1,0 +1,83 @@
+"""What is said about braces and about clauses that stand in the wrong place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics.source import Place
+from rulec.syntax.scanner import Token
+
+
+@dataclass(frozen=True, slots=True)
+class StructureMessages:
+    """Diagnostics about tokens of one file, by index."""
+
+    source: Source
+    tokens: list[Token]
+
+    def place(self, index: int) -> Place:
+        """The token, or the empty place behind the last one."""
+        if index < len(self.tokens):
+            token = self.tokens[index]
+            return Span(self.source, token.start, token.end).place
+        return self._behind(len(self.tokens) - 1)
+
+    def _behind(self, index: int) -> Place:
+        end = self.tokens[index].end
+        return Span(self.source, end, end).place
+
+    def no_close(self, opened: int, index: int) -> Diagnostic:
+        """The brace at ``opened`` should have been closed before ``index``."""
+        at_end = index >= len(self.tokens)
+        return Diagnostic(
+            "R0108",
+            "the file ends inside of braces" if at_end else "a `}` is missing before this",
+            self.place(index),
+            expected="expected `}`" if at_end else "expected `}` before this",
+            help="close what was opened",
+            labels=(Label(self.place(opened), "this is still open"),),
+        )
+
+    def no_open(self, before: int, what: str) -> Diagnostic:
+        """A ``{`` is missing behind token ``before``."""
+        return Diagnostic(
+            "R0108",
+            f"{what} stand in braces, and their `{{` is missing",
+            self._behind(before),
+            expected="expected `{`",
+            help=f"put {what} between `{{` and `}}`",
+        )
+
+    def outside(self, index: int, closed: int | None) -> Diagnostic:
+        """A clause or a ``}`` that belongs to no rule; ``closed`` is the last rule's end."""
+        labels = ()
+        if closed is not None:
+            labels = (Label(self.place(closed), "what came before ended here"),)
+        if self.tokens[index].text == "}":
+            return Diagnostic(
+                "R0108",
+                "this `}` closes nothing",
+                self.place(index),
+                help="delete it, or look for a `{` that is missing before it",
+                labels=labels,
+            )
+        return Diagnostic(
+            "R0109",
+            f"`{self.tokens[index].text}` stands outside of a rule",
+            self.place(index),
+            expected="expected a declaration or a rule",
+            help="clauses stand between the `{` and the `}` of their rule",
+            labels=labels,
+        )
+
+    def behind_vocabulary(self, index: int, closed: int) -> Diagnostic:
+        """Something stands behind the vocabulary's closing brace."""
+        return Diagnostic(
+            "R0109",
+            "nothing can stand behind a vocabulary's `}`",
+            self.place(index),
+            expected="expected the end of the file",
+            help="move it before the `}`, or into a file of its own",
+            labels=(Label(self.place(closed), "the vocabulary ended here"),),
+        )
