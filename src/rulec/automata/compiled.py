@@ -9,7 +9,6 @@ from rulec.rulebook.model import SourceFile, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
 
-
 @dataclass(frozen=True, slots=True)
 class CompiledRule:
     """A rule with its machine; ``formula`` in words, ``hoa`` its automaton in HOA v1."""

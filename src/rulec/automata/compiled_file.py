@@ -12,6 +12,7 @@ import msgspec
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.machine import Machine, Read, trap
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.files import make_folder, opened, written_whole
 from rulec.rulebook.model import SourceFile, Strength, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
@@ -238,11 +239,12 @@ def _machine(read: _Machine, rule: str) -> Machine:
         n_letters *= item.size
     n_states = len(read.following)
     n_classes = len(read.following[0]) if read.following else 0
-    fits = [
+    fits: list[bool] = [
         n_states > 0,
         len(read.letters) == n_letters,
         all(0 <= letter < n_classes for letter in read.letters),
-        all(len(row) == n_classes for row in (*read.following, *read.accepting)),
+        all(len(row) == n_classes for row in read.following),
+        all(len(row) == n_classes for row in read.accepting),
         len(read.accepting) == n_states,
         all(0 <= state < n_states for state in chain.from_iterable(read.following)),
     ]
@@ -277,9 +279,25 @@ def _damaged(file: str, message: str) -> RulecError:
 
 def read_compiled(path: Path) -> CompiledRulebook:
     """Read a compiled rulebook's file. Raises RulecError: R0701, R0404."""
-    try:
-        data = path.read_bytes()
-    except OSError as problem:
-        reason = problem.strerror or str(problem)
-        raise RulecError(Diagnostic("R0701", f"cannot read {path}: {reason}")) from None
-    return from_json(data, str(path))
+    with opened(path) as stream:
+        return from_json(stream.read(), str(path))
+
+
+def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
+    """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` into a folder, made if need be.
+
+    Each file appears whole or not at all; the compiled rulebook comes last.
+
+    Returns:
+        The files, in the order in which they were written.
+
+    Raises:
+        RulecError: R0702.
+    """
+    make_folder(folder)
+    texts = {folder / f"{rule.name}.hoa": rule.hoa for rule in rulebook.rules}
+    texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
+    for path, text in texts.items():
+        with written_whole(path) as stream:
+            stream.write(text.encode())
+    return list(texts)

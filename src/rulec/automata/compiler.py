@@ -26,7 +26,9 @@ CPU_LIMIT_S = 5
 
 _PACKAGE_ROOT = Path(__file__).resolve().parents[2]
 # The working directory's files must not be importable, so no `-m`.
-_WORKER = "import sys; sys.path[0] = sys.argv[1]; from rulec.automata.spot_worker import main; main()"
+_WORKER = (
+    "import sys; sys.path[0] = sys.argv[1]; from rulec.automata.spot_worker import main; main()"
+)
 
 
 def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> CompiledRulebook:
@@ -86,7 +88,7 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     try:
         assert process.stdout is not None
         try:
-            ready: Ready = pickle.load(process.stdout)  # noqa: S301 - our own child process
+            ready: Ready = pickle.load(process.stdout)
         except EOFError:
             ready = Ready(None, f"its process ended with status {process.wait()}")
         if ready.spot is None:
@@ -104,7 +106,7 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
     try:
         pickle.dump(job, process.stdin)
         process.stdin.flush()
-        answer: Done | Failed = pickle.load(process.stdout)  # noqa: S301 - our own child process
+        answer: Done | Failed = pickle.load(process.stdout)
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
         return None
     return answer

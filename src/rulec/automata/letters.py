@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import reduce
 from itertools import combinations
 from math import prod
 
@@ -68,14 +67,17 @@ def _repeat(pattern: int, period: int, total: int) -> int:
 
 
 def knowledge(reads: tuple[Read, ...]) -> Formula:
-    """What the vocabulary knows of these reads at any instant: one value at a time, no more, no less."""
+    """What the vocabulary knows of these reads: at any instant one value, no more and no less."""
     facts: Formula = Constant(True)
     for read in reads:
         atoms = [Atom(read.name, read.variables, value) for value in read.values]
         for one, other in combinations(atoms, 2):
             facts = _and(facts, Unary(NOT, Binary(AND, one, other)))
         if atoms and not read.others:
-            facts = _and(facts, reduce(lambda some, atom: Binary(OR, some, atom), atoms[1:], atoms[0]))
+            some: Formula = atoms[0]
+            for atom in atoms[1:]:
+                some = Binary(OR, some, atom)
+            facts = _and(facts, some)
     return facts
 
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import spot  # buddy can only be imported once spot has been
-import buddy  # isort: skip
+import spot
+
+import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.letters import count_letters, knowledge, letters_with
 from rulec.automata.machine import Read
@@ -20,7 +21,7 @@ from rulec.logic.printing import in_spot
 VERSION: str = spot.version()
 
 
-class CheckFailed(Exception):
+class CheckError(Exception):
     """Spot's automaton does not have the formula's language."""
 
 
@@ -28,7 +29,7 @@ def translate(formula: Formula, reads: tuple[Read, ...]) -> Any:
     """The ``twa_graph`` of ``formula`` over the letters that the vocabulary allows.
 
     Deterministic and complete, with parity acceptance; its language is that of the formula and of
-    ``knowledge(reads)`` holding at every instant. Raises CheckFailed where Spot got it wrong.
+    ``knowledge(reads)`` holding at every instant. Raises CheckError where Spot got it wrong.
     """
     facts = knowledge(reads)
     meant = formula
@@ -51,7 +52,7 @@ def _check(automaton: Any, language: Any) -> None:
         or automaton.intersects(outside)
         or spot.dualize(automaton).intersects(inside)
     ):
-        raise CheckFailed
+        raise CheckError
 
 
 def in_hoa(automaton: Any, name: str, headers: tuple[tuple[str, str], ...]) -> str:

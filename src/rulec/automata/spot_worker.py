@@ -76,7 +76,7 @@ def main() -> None:
     answers.flush()
     while True:
         try:
-            job: Job = pickle.load(sys.stdin.buffer)  # noqa: S301 - from our own parent process
+            job: Job = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
         _limit(resource.RLIMIT_CPU, int(time.process_time()) + 1 + job.cpu_s)
@@ -99,7 +99,7 @@ def _answer(job: Job) -> Done | Failed:
         return Failed("letters")
     try:
         automaton = spot_bridge.translate(job.formula, job.reads)
-    except spot_bridge.CheckFailed:
+    except spot_bridge.CheckError:
         return Failed("check")
     machine = build_machine(spot_bridge.explore(automaton, job.reads), job.reads, n_letters)
     return Done(machine, spot_bridge.in_hoa(automaton, job.name, job.headers))

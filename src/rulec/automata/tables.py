@@ -121,7 +121,10 @@ def _minimise(
     blocks = _number([tuple(row) for row in accepting])
     while True:
         refined = _number(
-            [(block, *(blocks[t] for t in row)) for block, row in zip(blocks, following, strict=True)]
+            [
+                (block, *(blocks[t] for t in row))
+                for block, row in zip(blocks, following, strict=True)
+            ]
         )
         if max(refined) == max(blocks):
             break

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name closest to ``name``, whatever the case of its letters; None if none is close."""
+    """The known name closest to ``name``, whatever the letters' case; None if none is close."""
     by_folded: dict[str, str] = {}
     for candidate in known:
         by_folded.setdefault(candidate.casefold(), candidate)

@@ -62,10 +62,12 @@ class Span:
 
     @property
     def text(self) -> str:
+        """The characters themselves."""
         return self.source.text[self.start : self.end]
 
     @property
     def place(self) -> Place:
+        """The span as a reader counts, with the text of its first line."""
         line, column = self.source.position(self.start)
         end_line, end_column = self.source.position(max(self.start, self.end))
         excerpt = self.source.line(line)

@@ -50,17 +50,23 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
+    """``true`` or ``false``."""
+
     value: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Unary:
+    """An operator on one formula."""
+
     operator: UnaryOperator
     operand: Formula
 
 
 @dataclass(frozen=True, slots=True)
 class Binary:
+    """An operator between two formulas."""
+
     operator: BinaryOperator
     left: Formula
     right: Formula

@@ -1,4 +1,4 @@
-"""The meaning of a formula on a word, straight from the definitions: the yardstick for every engine.
+"""The meaning of a formula on a word, straight from the definitions.
 
 Definitions: Esterle, Aravantinos, Knoll (2019), section IV-A, with the standard until, as the
 paper's own tables I and II have it. A finite word stands for the infinite one that repeats its last

@@ -114,7 +114,7 @@ def _shown(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, Mapping):
         return "given per object"
-    text = str(value)
+    text = f"{value:g}" if isinstance(value, float) else str(value)
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rulec.diagnostics import RulecError
 from rulec.rulebook.model import Strength
 
 
@@ -33,3 +34,11 @@ class Verdict:
     def satisfied(self) -> bool:
         """Is every hard rule kept? Soft rules may yield."""
         return all(violation.strength != "hard" for violation in self.violations)
+
+
+@dataclass(frozen=True, slots=True)
+class NotJudged:
+    """A trace without a verdict: its id, if it could be read that far, and what is wrong with it."""
+
+    trace: str | None
+    error: RulecError

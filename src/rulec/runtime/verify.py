@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.machine import Machine
+from rulec.diagnostics import RulecError
 from rulec.runtime.binding import Binding, bindings
 from rulec.runtime.reading import check_objects, check_state, letter
-from rulec.runtime.verdict import Verdict, Violation
+from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
@@ -26,15 +27,32 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
         check_state(state, trace.objects, vocabulary, f"state {number}", trace.place)
     violations = []
     for rule in rulebook.rules:
-        for binding in bindings(
-            rule, vocabulary, trace.objects, trace.present, len(trace.states)
-        ):
+        for binding in bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states)):
             letters = _letters(rule, binding, trace, vocabulary)
             accepted, step = run(rule.machine, letters)
             if not accepted:
                 step = None if step is None else binding.first + step
                 violations.append(Violation(rule.name, rule.strength, binding.objects, step))
     return Verdict(trace.id, tuple(violations))
+
+
+def verify_all(
+    traces: Iterable[Trace | RulecError], rulebook: CompiledRulebook
+) -> Iterator[Verdict | NotJudged]:
+    """Judge traces one by one; one that cannot be judged does not stop the others.
+
+    ``traces`` may hold, in place of a trace, the error that kept it from being read.
+    """
+    for trace in traces:
+        if isinstance(trace, RulecError):
+            yield NotJudged(None, trace)
+            continue
+        try:
+            verdict = verify(trace, rulebook)
+        except RulecError as error:
+            yield NotJudged(trace.id, error)
+        else:
+            yield verdict
 
 
 def run(machine: Machine, letters: Sequence[int]) -> tuple[bool, int | None]:

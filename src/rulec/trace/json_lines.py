@@ -35,20 +35,23 @@ def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
 
     Yields:
         For every line a Trace, or the RulecError (R0501, R0505, R0506) that says what is wrong
-        with it.
+        with it; for a stream without any trace one RulecError (R0501).
     """
-    number = 0
+    number = found = 0
     while line := stream.readline(LONGEST_LINE_BYTES + 1):
         number += 1
         if number == 1:
             line = line.removeprefix(b"\xef\xbb\xbf")
         place = Place(file, number)
+        found += bool(line.strip())
         if len(line) > LONGEST_LINE_BYTES:
             yield _bad("R0501", f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
             while line and not line.endswith(b"\n"):
                 line = stream.readline(LONGEST_LINE_BYTES)
         elif line.strip():
             yield _trace(line, place)
+    if not found:
+        yield _bad("R0501", "there is no trace in this file", Place(file))
 
 
 def _trace(line: bytes, place: Place) -> Trace | RulecError:
@@ -83,7 +86,7 @@ def _trace(line: bytes, place: Place) -> Trace | RulecError:
 
 
 def _in_words(problem: str) -> str:
-    """msgspec's message, its path ``$.states[3]`` turned into a reader's ``in states[3]``."""
+    """Msgspec's message, its path ``$.states[3]`` turned into a reader's ``in states[3]``."""
     text, _, path = problem.partition(" - at `$")
     path = path.rstrip("`").lstrip(".")
     text = text[:1].lower() + text[1:]

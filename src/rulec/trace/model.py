@@ -18,9 +18,9 @@ State = Mapping[str, "Value | Mapping[str, Value]"]
 class Trace:
     """A finite sequence of states, ``step_s`` seconds apart.
 
-    ``objects`` maps each object's id to its type. ``present`` gives, for an object that is not there
-    all the time, the first and the last state (both from 0, inclusive) in which it is. ``place``
-    is where it was read, for messages.
+    ``objects`` maps each object's id to its type. ``present`` gives, for an object that is not
+    there all the time, the first and the last state (both from 0, inclusive) in which it is.
+    ``place`` is where it was read, for messages.
     """
 
     id: str
@@ -35,8 +35,8 @@ class Trace:
 class TraceGraph:
     """A layered directed graph whose paths from ``start`` to ``goals`` are traces.
 
-    ``states[p][i]`` is the state of node ``i`` of layer ``p``; ``successors[p][i]`` are its followers'
-    indices in layer ``p + 1`` in ascending order, ``weights[p][i]`` the whole-number costs of these
+    ``states[p][i]`` is the state of node ``i`` of layer ``p``; ``successors[p][i]`` are the indices
+    in layer ``p + 1`` of its followers, ascending, ``weights[p][i]`` the whole-number costs of these
     edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers (None
     for staying). ``objects`` and ``present`` are as in a trace, counted in layers.
     """

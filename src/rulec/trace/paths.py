@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from rulec.trace.model import Trace, TraceGraph
 
@@ -46,6 +47,12 @@ def _alive(graph: TraceGraph) -> list[set[int]]:
             {node for node, onward in enumerate(successors) if not following.isdisjoint(onward)}
         )
     return alive[::-1]
+
+
+def all_traces(graph: TraceGraph, name: str, limit: int) -> Iterator[Trace]:
+    """The traces of the first ``limit`` paths, named ``name-1``, ``name-2``, …."""
+    for number, path in enumerate(islice(paths(graph), limit), 1):
+        yield trace_of(graph, path, f"{name}-{number}")
 
 
 def trace_of(graph: TraceGraph, path: Sequence[int], name: str) -> Trace:

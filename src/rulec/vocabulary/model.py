@@ -78,5 +78,5 @@ class Vocabulary:
             current = self.types[current].parent
 
     def is_subtype(self, type_name: str, of: str) -> bool:
-        """Is every ``type_name`` also an ``of``? (Every type is a subtype of itself.)"""
+        """Is every ``type_name`` also an ``of``? Every type is one of itself."""
         return of in self.ancestors(type_name)

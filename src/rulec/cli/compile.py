@@ -1,0 +1,33 @@
+"""``rulec compile``: a rulebook into automata files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rulec.report.console import print_result
+
+
+@click.command()
+@click.argument("rulebook")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="DIR",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="The folder for the files, made if need be.",
+)
+def command(rulebook: str, output: Path) -> None:
+    """Compile RULEBOOK: a name, or the path of a source.
+
+    Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
+    RULEBOOK.json, which every other command takes in place of the source and which runs without
+    Spot. Each file appears whole or not at all.
+    """
+    from rulec.automata.compiled_file import write_compiled
+    from rulec.workflow import compile_rulebook
+
+    for path in write_compiled(compile_rulebook(rulebook), output):
+        print_result(f"wrote {path}")

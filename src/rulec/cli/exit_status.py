@@ -1,0 +1,20 @@
+"""How rulec's commands end."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """The exit status of every command, as docs/commands.md lists them."""
+
+    OK = 0
+    """Done; what was judged is satisfied."""
+    VIOLATED = 1
+    """A hard rule is violated, or no maneuver satisfies all of them."""
+    NOT_ANSWERED = 2
+    """The question could not be answered: wrong usage or bad input."""
+    BUG = 70
+    """A mistake in rulec itself."""
+    INTERRUPTED = 130
+    """Ctrl-C."""

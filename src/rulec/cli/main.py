@@ -1,0 +1,96 @@
+"""The program ``rulec``: finds the verb, and turns whatever happens into words and a status."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.diagnostics import RulecError
+from rulec.version import __version__
+
+VERBS = {
+    "compile": "Compile a rulebook to automata files.",
+    "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
+    "traces": "Write all maneuvers of a scenario as traces.",
+    "verify": "Judge traces by a rulebook.",
+}
+
+
+class _Verbs(click.Group):
+    """Imports a verb's file only when that verb is called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in VERBS:
+            return None
+        command: click.Command = import_module(f"rulec.cli.{cmd_name}").command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        from rulec.diagnostics import nearest_name
+
+        nearest = nearest_name(args[0], VERBS)
+        if args[0] not in VERBS and not args[0].startswith("-") and nearest is not None:
+            ctx.fail(f"No such command '{args[0]}'. Did you mean '{nearest}'?")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(VERBS.items()))
+
+
+@click.command(
+    cls=_Verbs,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Exit status: 0 satisfied, 1 a hard rule violated, 2 could not be answered, "
+    "70 a bug in rulec.",
+)
+@click.version_option(__version__, message="rulec %(version)s")
+def rulec() -> None:
+    """Compile traffic law, and judge traces and maneuvers by it."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command and return its exit status."""
+    try:
+        outcome = rulec.main(
+            args=None if arguments is None else list(arguments),
+            prog_name="rulec",
+            standalone_mode=False,
+        )
+        sys.stdout.flush()
+    except click.ClickException as problem:
+        problem.show()
+        return ExitStatus.NOT_ANSWERED
+    except RulecError as error:
+        from rulec.report.console import print_error
+
+        print_error(error)
+        return ExitStatus.NOT_ANSWERED
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("\nrulec: interrupted", err=True)
+        return ExitStatus.INTERRUPTED
+    except BrokenPipeError:
+        # The reader, such as `head`, has seen enough. Python must not fail on the rest at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ExitStatus.OK
+    except Exception as problem:
+        if os.environ.get("RULEC_TRACEBACK"):
+            raise
+        click.echo(
+            f"rulec: this is a bug in rulec {__version__}: {type(problem).__name__}: {problem}\n"
+            "Please report it, with the input and what this prints: "
+            f"RULEC_TRACEBACK=1 {' '.join(sys.argv)}",
+            err=True,
+        )
+        return ExitStatus.BUG
+    return outcome if isinstance(outcome, int) else ExitStatus.OK

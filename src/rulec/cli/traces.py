@@ -1,0 +1,69 @@
+"""``rulec traces``: all maneuvers of a scenario as traces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.arguments import graph_options
+
+if TYPE_CHECKING:
+    from rulec.trace import Trace
+
+MOST_TRACES = 10_000_000
+
+
+@click.command()
+@graph_options
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+    help="The file to write; `-` is standard output.",
+)
+@click.option(
+    "--limit",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
+)
+def command(scenario: str, output: Path, limit: int | None, **options: Any) -> None:
+    """Write every maneuver of SCENARIO (a name or a file) as a trace, one JSON object a line.
+
+    `rulec verify` reads the file. It appears whole or not at all.
+    """
+    from rulec.files import written_whole
+    from rulec.report.console import print_result, progress
+    from rulec.runtime.product import count_paths
+    from rulec.trace.json_lines import write_traces
+    from rulec.trace.paths import all_traces
+    from rulec.workflow import graph_of_traces
+
+    name, graph = graph_of_traces(scenario, options)
+    total = count_paths(graph)
+    if limit is None and total > MOST_TRACES:
+        raise click.UsageError(
+            f"There are {total:,} traces; that would fill a disk. "
+            "Name how many to write with --limit N, or count them with `rulec maneuvers`."
+        )
+    wanted = total if limit is None else min(limit, total)
+    with progress(f"writing {output}", wanted) as tell:
+        found = _told(all_traces(graph, name, wanted), tell)
+        if str(output) == "-":
+            write_traces(found, click.get_binary_stream("stdout"))
+            return
+        with written_whole(output) as stream:
+            write_traces(found, stream)
+    print_result(f"wrote {wanted:,} of {total:,} traces to {output}")
+
+
+def _told(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:
+    for number, trace in enumerate(traces):
+        if number % 100 == 0:
+            tell(number)
+        yield trace

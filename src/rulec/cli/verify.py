@@ -1,0 +1,87 @@
+"""``rulec verify``: traces judged by a rulebook."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+import click
+
+from rulec.cli.arguments import json_option, rulebook_option
+from rulec.cli.exit_status import ExitStatus
+
+if TYPE_CHECKING:
+    from rulec.automata.compiled import CompiledRulebook
+    from rulec.runtime.verdict import NotJudged, Verdict
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@rulebook_option
+@json_option
+def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
+    """Judge the traces in FILE..., one JSON object a line; `-` is standard input.
+
+    Prints the violations of every trace and a summary; with --json one line per trace. A trace that
+    cannot be judged is reported and does not stop the others.
+
+    Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
+    """
+    from rulec.report import verdicts
+    from rulec.report.console import print_error, print_result
+    from rulec.runtime.verdict import Verdict
+    from rulec.workflow import compile_rulebook
+
+    rules = compile_rulebook(rulebook)
+    satisfied = violated = not_judged = 0
+    for answer in _answers(files, rules):
+        if isinstance(answer, Verdict):
+            satisfied += answer.satisfied
+            violated += not answer.satisfied
+            if json_output:
+                print_result(verdicts.as_json(answer))
+            elif answer.violations:
+                print_result(verdicts.as_text(answer, rules))
+        else:
+            not_judged += 1
+            print_error(answer.error)
+            if json_output:
+                print_result(verdicts.not_judged_as_json(answer))
+    if not json_output:
+        print_result(verdicts.summary(satisfied, violated, not_judged))
+    if not_judged:
+        return ExitStatus.NOT_ANSWERED
+    return ExitStatus.VIOLATED if violated else ExitStatus.OK
+
+
+def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Verdict | NotJudged]:
+    from rulec.diagnostics import RulecError
+    from rulec.files import opened
+    from rulec.runtime.verdict import NotJudged
+
+    for file in files:
+        if file == "-":
+            yield from _judged(sys.stdin.buffer, "standard input", None, rules)
+            continue
+        try:
+            with opened(Path(file)) as stream:
+                yield from _judged(stream, file, os.fstat(stream.fileno()).st_size, rules)
+        except RulecError as error:
+            yield NotJudged(None, error)
+
+
+def _judged(
+    stream: IO[bytes], name: str, size: int | None, rules: CompiledRulebook
+) -> Iterator[Verdict | NotJudged]:
+    from rulec.report.console import progress
+    from rulec.runtime.verify import verify_all
+    from rulec.trace.json_lines import read_traces
+
+    with progress(f"judging {name}", size) as tell:
+        for number, answer in enumerate(verify_all(read_traces(stream, name), rules)):
+            if size is not None and number % 100 == 0:
+                tell(stream.tell())
+            yield answer

@@ -1,0 +1,82 @@
+"""Verdicts as text for people and as JSON for machines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import click
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.runtime.verdict import NotJudged, Verdict, Violation
+
+
+def as_json(verdict: Verdict) -> str:
+    """One line of JSON for a trace, as docs/traces.md describes it."""
+    return json.dumps(
+        {
+            "trace": verdict.trace,
+            "satisfied": verdict.satisfied,
+            "violations": [
+                {
+                    "rule": violation.rule,
+                    "binding": dict(violation.binding),
+                    "step": violation.step,
+                    "strength": violation.strength,
+                }
+                for violation in verdict.violations
+            ],
+        },
+        ensure_ascii=False,
+    )
+
+
+def not_judged_as_json(answer: NotJudged) -> str:
+    """One line of JSON for a trace that could not be judged; ``trace`` is null if it has no id."""
+    diagnostic = answer.error.diagnostics[0]
+    place = diagnostic.place
+    details: dict[str, Any] = {
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "file": place.file if place else None,
+        "line": place.line if place else None,
+    }
+    return json.dumps({"trace": answer.trace, "error": details}, ensure_ascii=False)
+
+
+def as_text(verdict: Verdict, rulebook: CompiledRulebook) -> str:
+    """The violations of a trace, a line each, below a line that names the trace."""
+    if not verdict.violations:
+        return f"{verdict.trace}: {click.style('satisfied', fg='green')}"
+    word = (
+        click.style("satisfied, but for soft rules", fg="yellow")
+        if verdict.satisfied
+        else click.style("violated", fg="red")
+    )
+    cites = {rule.name: rule.cite for rule in rulebook.rules}
+    lines = [f"{verdict.trace}: {word}"]
+    lines += [f"  {_violation(violation, cites)}" for violation in verdict.violations]
+    return "\n".join(lines)
+
+
+def _violation(violation: Violation, cites: Mapping[str, str]) -> str:
+    cite = cites[violation.rule]
+    where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
+    when = (
+        "not fulfilled when the trace ends"
+        if violation.step is None
+        else f"beyond saving after state {violation.step}"
+    )
+    about = f" for {where}" if where else ""
+    article = f" [{cite}]" if cite else ""
+    return f"{violation.strength} rule {violation.rule}{article}{about}: {when}"
+
+
+def summary(satisfied: int, violated: int, not_judged: int) -> str:
+    """The line that ends a run."""
+    total = satisfied + violated + not_judged
+    parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]
+    if not_judged:
+        parts.append(f"{not_judged:,} not judged")
+    return f"{total:,} {'trace' if total == 1 else 'traces'}: {', '.join(parts)}"

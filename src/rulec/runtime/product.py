@@ -1,0 +1,160 @@
+"""A graph of traces times the rules' machines: which paths keep every rule, without walking them.
+
+Two partial paths that end in the same node with every machine in the same state have the same
+futures. So paths are counted per node and joint state, layer by layer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.machine import Machine
+from rulec.runtime.binding import Binding, bindings
+from rulec.runtime.reading import check_objects, check_state, letter
+from rulec.trace import TraceGraph
+
+JointState = tuple[int, ...]
+"""The state of each instance's machine; all zero at the end, where only verdicts are left."""
+
+ProductNode = tuple[int, JointState]
+"""A node's index in its layer, and the joint state behind it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """A rule with objects bound: its machine, and the letter class of every node.
+
+    ``letters[p]`` are those of layer ``first + p``'s nodes.
+    """
+
+    machine: Machine
+    first: int
+    last: int
+    letters: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """The part of graph times machines that can be reached without losing a rule.
+
+    ``counts[p]`` gives for each product node of layer ``p`` how many partial paths lead to it, and
+    ``steps[p]`` its followers in layer ``p + 1``.
+    """
+
+    graph: TraceGraph
+    counts: tuple[dict[ProductNode, int], ...]
+    steps: tuple[dict[ProductNode, list[ProductNode]], ...]
+
+    @property
+    def accepted(self) -> int:
+        """How many paths from start to a goal keep every rule: exact."""
+        goals = set(self.graph.goals)
+        return sum(count for (node, _), count in self.counts[-1].items() if node in goals)
+
+
+def count_paths(graph: TraceGraph) -> int:
+    """How many paths lead from start to a goal: exact."""
+    counts = {graph.start: 1}
+    for successors in graph.successors:
+        following: dict[int, int] = {}
+        for node, count in counts.items():
+            for target in successors[node]:
+                following[target] = following.get(target, 0) + count
+        counts = following
+    return sum(counts.get(goal, 0) for goal in set(graph.goals))
+
+
+def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
+    """Every hard rule with every binding of its variables to the graph's objects.
+
+    Raises:
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read.
+    """
+    vocabulary = rulebook.vocabulary
+    check_objects(graph.objects, vocabulary)
+    for layer, states in enumerate(graph.states):
+        for state in states:
+            check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
+    return [
+        Instance(
+            rule.machine, binding.first, binding.last, _letters(graph, rulebook, rule, binding)
+        )
+        for rule in rulebook.rules
+        if rule.strength == "hard"
+        for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states))
+    ]
+
+
+def _letters(
+    graph: TraceGraph, rulebook: CompiledRulebook, rule: CompiledRule, binding: Binding
+) -> tuple[tuple[int, ...], ...]:
+    return tuple(
+        tuple(
+            letter(
+                rule.machine,
+                binding.objects,
+                state,
+                rulebook.vocabulary,
+                f"a cell of layer {layer}",
+                rule.name,
+            )
+            for state in graph.states[layer]
+        )
+        for layer in range(binding.first, binding.last + 1)
+    )
+
+
+def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:
+    """Build the product forward from the graph's start, dropping every path that loses a rule."""
+    entered = _enter(rules, 0, graph.start, (0,) * len(rules))
+    counts: list[dict[ProductNode, int]] = [{} if entered is None else {(graph.start, entered): 1}]
+    steps: list[dict[ProductNode, list[ProductNode]]] = []
+    for layer, successors in enumerate(graph.successors):
+        following: dict[ProductNode, int] = {}
+        onward: dict[ProductNode, list[ProductNode]] = {}
+        known: dict[ProductNode, ProductNode | None] = {}
+        for origin, count in counts[-1].items():
+            node, joint = origin
+            reached = []
+            for target in successors[node]:
+                key = (target, joint)
+                if key not in known:
+                    entered = _enter(rules, layer + 1, target, joint)
+                    known[key] = None if entered is None else (target, entered)
+                step = known[key]
+                if step is not None:
+                    following[step] = following.get(step, 0) + count
+                    reached.append(step)
+            onward[origin] = reached
+        counts.append(following)
+        steps.append(onward)
+    return Product(graph, tuple(counts), tuple(steps))
+
+
+def _enter(
+    rules: Sequence[Instance], layer: int, node: int, joint: JointState
+) -> JointState | None:
+    """The joint state after a node; None if a rule is lost there.
+
+    A machine waits in state 0 until its objects are there. With their last layer it gives its
+    verdict and returns to state 0, so that paths with nothing left to decide count together.
+    """
+    after = []
+    for instance, state in zip(rules, joint, strict=True):
+        if not instance.first <= layer <= instance.last:
+            after.append(0)
+            continue
+        machine = instance.machine
+        symbol = instance.letters[layer - instance.first][node]
+        if layer == instance.last:
+            if not machine.accepting[state][symbol]:
+                return None
+            after.append(0)
+            continue
+        state = machine.following[state][symbol]
+        if state == machine.dead:
+            return None
+        after.append(state)
+    return tuple(after)

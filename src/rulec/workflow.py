@@ -1,0 +1,139 @@
+"""The whole of rulec on one page.
+
+    source text -> syntax -> rulebook -> logic -> automata -> runtime -> verdicts
+    scenario -> partition -> graph of traces ----------------^
+
+The command line and ``import rulec`` are thin layers over these functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.automata import compiled_file
+from rulec.automata.compiled import CompiledRulebook
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.files import opened
+from rulec.runtime import cheapest, product
+from rulec.runtime.cheapest import Maneuver
+from rulec.trace import Trace, json_lines
+
+if TYPE_CHECKING:
+    from rulec.partition.graph import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.rulebook.model import Rulebook
+    from rulec.scenario import Scenario
+
+RULES_OF = {"paper": {"position"}, "fine": {"station", "lateral"}}
+"""The relations that only one partition supplies."""
+
+
+def load_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Rulebook:
+    """A rulebook as meant, from its name or its source's path. Raises RulecError."""
+    from rulec.rulebook.loader import load_rulebook as load
+
+    return load(reference, search_path)
+
+
+def compile_rulebook(
+    reference: str | Path | Rulebook | CompiledRulebook, search_path: Sequence[Path] = ()
+) -> CompiledRulebook:
+    """Compile a rulebook: given by name, by path (source or compiled), or itself.
+
+    Raises:
+        RulecError: with every mistake in the source, or why it cannot be compiled or read.
+    """
+    if isinstance(reference, CompiledRulebook):
+        return reference
+    if isinstance(reference, str | Path):
+        path = Path(reference)
+        if path.suffix == ".json":
+            return compiled_file.read_compiled(path)
+        reference = load_rulebook(reference, search_path)
+    from rulec.automata.compiler import compile_rulebook as through_spot
+
+    return through_spot(reference)
+
+
+def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
+    """The traces of a JSON Lines file one by one; in place of a bad one, what is wrong with it."""
+    with opened(Path(path)) as stream:
+        yield from json_lines.read_traces(stream, str(path))
+
+
+def navigation_graph(
+    scenario: str | Path | Scenario,
+    *,
+    partition: PartitionName = "paper",
+    adjacency: AdjacencyName = "touch",
+    step_s: float | None = None,
+    horizon_s: float | None = None,
+) -> NavigationGraph:
+    """Partition a scenario, given by name, by path or itself, into cells and their graph."""
+    from rulec.partition import navigation_graph as build
+    from rulec.scenario import Scenario, load_scenario
+
+    if not isinstance(scenario, Scenario):
+        scenario = load_scenario(scenario)
+    return build(
+        scenario, partition=partition, adjacency=adjacency, step_s=step_s, horizon_s=horizon_s
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Maneuvers:
+    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule."""
+
+    graph: NavigationGraph
+    traces: int
+    satisfying: int
+    product: product.Product
+
+    def cheapest(self, n: int) -> list[Maneuver]:
+        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
+        return list(islice(cheapest.cheapest(self.product), n))
+
+
+def find_maneuvers(
+    scenario: str | Path | Scenario,
+    rulebook: str | Path | Rulebook | CompiledRulebook,
+    *,
+    partition: PartitionName | None = None,
+    adjacency: AdjacencyName = "touch",
+    step_s: float | None = None,
+    horizon_s: float | None = None,
+) -> Maneuvers:
+    """Algorithm 1 of the paper, counting instead of enumerating.
+
+    ``partition``: the one whose relations the rulebook reads, unless given. Raises RulecError.
+    """
+    rules = compile_rulebook(rulebook)
+    graph = navigation_graph(
+        scenario,
+        partition=partition or _partition_for(rules),
+        adjacency=adjacency,
+        step_s=step_s,
+        horizon_s=horizon_s,
+    )
+    traces = graph.trace_graph()
+    explored = product.explore(traces, product.instances(traces, rules))
+    return Maneuvers(graph, product.count_paths(traces), explored.accepted, explored)
+
+
+def _partition_for(rules: CompiledRulebook) -> PartitionName:
+    read = {read.name for rule in rules.rules for read in rule.machine.reads}
+    if not read & RULES_OF["fine"]:
+        return "paper"
+    if not read & RULES_OF["paper"]:
+        return "fine"
+    raise RulecError(
+        Diagnostic(
+            "R0405",
+            f"rulebook {rules.name} reads both `position` and `station` or `lateral`, "
+            "which no one partition supplies",
+            help="say it with station and lateral alone: they tell apart all that position does",
+        )
+    )

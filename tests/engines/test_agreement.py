@@ -1,0 +1,134 @@
+"""One suite over every engine: each says of a word what direct evaluation says."""
+
+import pytest
+import spot
+from hypothesis import example, given
+from words import VOCABULARY, formulas, letters, words
+
+from rulec.automata.letters import count_letters, knowledge, reads_of
+from rulec.automata.spot_bridge import explore, in_hoa, translate
+from rulec.automata.tables import build_machine
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Constant,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.logic.printing import in_spot
+from rulec.logic.semantics import holds
+from rulec.runtime.reading import letter
+from rulec.runtime.verify import run
+
+
+def machine_of(formula):
+    reads = reads_of(formula, VOCABULARY)
+    return build_machine(explore(translate(formula, reads), reads), reads, count_letters(reads))
+
+
+def classes(machine, word):
+    binding = {"x": "car1"}
+    return [letter(machine, binding, state, VOCABULARY, "", "") for state in word]
+
+
+def spot_membership(automaton, formula, word):
+    """Spot's word automaton meets the automaton. The word decides every atom of the formula."""
+    known = {atom for letter in word for atom in letter} | set(atoms_of(formula))
+    conjunctions = [
+        " & ".join(("" if atom in letter else "!") + in_spot(atom) for atom in known)
+        for letter in word
+    ]
+    text = "; ".join([*conjunctions[:-1], f"cycle{{{conjunctions[-1]}}}"])
+    return spot.parse_word(text).as_automaton().intersects(automaton)
+
+
+def by_table(formula, word):
+    machine = machine_of(formula)
+    return run(machine, classes(machine, word))[0]
+
+
+def by_spot(formula, word):
+    return spot_membership(spot.translate(in_spot(formula)), formula, letters(word))
+
+
+def by_hoa(formula, word):
+    reads = reads_of(formula, VOCABULARY)
+    text = in_hoa(translate(formula, reads), "rule", (("rulec-cite", 'a "quoted" \\ text'),))
+    return spot_membership(spot.automaton(text), formula, letters(word))
+
+
+ENGINES = {"table": by_table, "Spot": by_spot, "HOA file": by_hoa}
+
+P, NEAR, FAR = Atom("p"), Atom("place", ("x",), "near"), Atom("place", ("x",), "far")
+GFP = Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.EVENTUALLY, P))
+CAR_NEAR = {"place": {"car1": "near"}, "light": "red", "p": True, "q": False}
+CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@given(formulas, words)
+@example(GFP, [CAR_NEAR])
+@example(GFP, [CAR_NEAR, CAR_FAR])
+@example(Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, NEAR)), [CAR_FAR, CAR_NEAR])
+@example(Binary(BinaryOperator.AND, NEAR, FAR), [CAR_NEAR])
+@example(Constant(False), [CAR_NEAR])
+def test_engine_agrees_with_direct_evaluation(engine, formula, word):
+    assert ENGINES[engine](formula, word) == holds(formula, letters(word))
+
+
+@given(formulas, words)
+def test_lost_is_said_as_early_as_possible_and_never_wrongly(formula, word):
+    """After the step no continuation helps; before it, stopping or one of the continuations does."""
+    machine = machine_of(formula)
+    symbols = classes(machine, word)
+    _, lost = run(machine, symbols)
+    state = 0
+    for index, symbol in enumerate(symbols):
+        state = machine.following[state][symbol]
+        assert (index >= lost if lost is not None else False) == (not can_be_saved(machine, state))
+
+
+def can_be_saved(machine, state):
+    seen, waiting = {state}, [state]
+    while waiting:
+        here = waiting.pop()
+        if any(machine.accepting[here]):
+            return True
+        waiting += set(machine.following[here]) - seen
+        seen |= set(machine.following[here])
+    return False
+
+
+@given(formulas)
+def test_machines_are_minimal(formula):
+    """Any two states are told apart by a word, any two letter classes by a state."""
+    machine = machine_of(formula)
+    columns = list(zip(*machine.following, *machine.accepting, strict=True))
+    assert len(set(columns)) == len(columns)
+    n = len(machine.following)
+    apart = {
+        (a, b) for a in range(n) for b in range(n) if machine.accepting[a] != machine.accepting[b]
+    }
+    while True:
+        more = {
+            (a, b)
+            for a in range(n)
+            for b in range(n)
+            if any(
+                pair in apart
+                for pair in zip(machine.following[a], machine.following[b], strict=True)
+            )
+        } - apart
+        if not more:
+            break
+        apart |= more
+    assert apart == {(a, b) for a in range(n) for b in range(n) if a != b}
+
+
+@given(formulas)
+def test_the_automaton_is_the_formula_under_the_vocabularys_knowledge(formula):
+    reads = reads_of(formula, VOCABULARY)
+    meant = f"({in_spot(formula)}) & G({in_spot(knowledge(reads))})"
+    assert spot.are_equivalent(translate(formula, reads), meant)
