@@ -1,0 +1,80 @@
+# shellcheck shell=sh disable=SC2034,SC2154 # the launcher's files share their variables
+# Which Python the environment is made with. Sourced by set_up.sh.
+
+# Four lines: the version ("3.12", with a word more if it is not plain CPython), whether it can
+# make environments, the platform ("wheel" if Spot's fits it), the interpreter itself; the last
+# without symlinks, so that a system upgrade that replaces it breaks the environment visibly.
+# Any Python must be able to run this, to say that it is too old.
+probe='
+import os, platform, sys, sysconfig
+version = "%d.%d" % sys.version_info[:2]
+if platform.python_implementation() != "CPython":
+    version += " " + platform.python_implementation()
+elif sysconfig.get_config_var("Py_GIL_DISABLED"):
+    version += " free-threaded"
+try:
+    import ensurepip, venv
+    venv = "venv"
+except ImportError:
+    venv = "no venv"
+try:
+    libc = os.confstr("CS_GNU_LIBC_VERSION").split()[1]
+except (AttributeError, IndexError, OSError, ValueError):
+    libc = ""
+system, machine = platform.system(), platform.machine()
+if sys.maxsize < 2**32:
+    machine += " (32-bit Python)"
+place = "%s %s" % ({"Darwin": "macOS"}.get(system, system), machine)
+if system == "Linux":
+    place += " with glibc " + libc if libc else " without glibc"
+    if machine == "x86_64" and libc and [int(n) for n in libc.split(".")[:2]] >= [2, 34]:
+        place = "wheel"
+sys.stdout.write("\n".join((version, venv, place, os.path.realpath(sys.executable))))
+'
+
+# Sets python, version and place to those of the first Python that will do.
+find_python() {
+    if [ -n "${RULEC_PYTHON:-}" ]; then
+        set -- "$RULEC_PYTHON"
+    else
+        set -- python3 python3.13 python3.12 python3.11 python3.10 python
+    fi
+    seen=
+    for candidate in "$@"; do
+        if ! command -v "$candidate" >/dev/null 2>&1; then
+            [ -z "${RULEC_PYTHON:-}" ] || seen=", $candidate is not there"
+            continue
+        fi
+        answer=$("$candidate" -E -c "$probe" 2>/dev/null </dev/null) || answer=
+        {
+            IFS= read -r version
+            IFS= read -r venv
+            IFS= read -r place
+            IFS= read -r python
+        } <<EOF
+$answer
+EOF
+        case $version in
+        3.10 | 3.11 | 3.12 | 3.13)
+            if [ "$venv" = venv ] || [ -n "$uv" ]; then return; fi
+            seen="$seen, $candidate ($version) lacks venv and ensurepip (on Debian and Ubuntu:
+ apt install python$version-venv)"
+            ;;
+        '') seen="$seen, $candidate does not run" ;;
+        *) seen="$seen, $candidate is $version" ;;
+        esac
+    done
+    seen=$(printf '%s' "${seen#, }" | tr -d '\n')
+    stop "a Python from 3.10 to 3.13 with venv is needed; ${seen:-there is none on PATH}." \
+        "Install one, or set RULEC_PYTHON to one, and call again."
+}
+
+# Sets own_spot to the version of the Spot that python itself brings, where no wheel fits.
+check_platform() {
+    own_spot=
+    [ "$place" != wheel ] || return 0
+    own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) ||
+        stop "Spot, which is needed, comes ready-made for Linux on x86-64 with glibc 2.34 or" \
+            "newer, and this is $place. Install Spot from conda-forge (conda create -n rulec -c" \
+            "conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's python."
+}
