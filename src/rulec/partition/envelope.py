@@ -1,0 +1,79 @@
+"""Maneuver envelopes: what a trajectory planner is given (paper, equation 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.partition.graph import NavigationGraph
+from rulec.partition.model import Cell
+
+Profile = tuple[tuple[float, float], ...]
+"""Breakpoints (s, d): from each s on the bound is d, until the next one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope:
+    """The bounds of a maneuver in one layer, in metres.
+
+    ``d_left`` and ``d_right`` are constant between breakpoints; the first one stands at ``s_min``,
+    the last one holds up to ``s_max``. Where a missing lane splits a cell in two at one s, they are
+    the outer bounds.
+    """
+
+    s_max: float
+    s_min: float
+    d_left: Profile
+    d_right: Profile
+
+
+def envelope(graph: NavigationGraph, path: Sequence[int]) -> tuple[Envelope, ...]:
+    """The envelope of a path, layer by layer; ``path[p]`` is the index of its cell in layer p.
+
+    Raises:
+        RulecError: R0609 if ``path`` does not follow the graph from its first layer.
+    """
+    if len(path) > len(graph.layers):
+        raise RulecError(
+            _stray(f"the path has {len(path)} cells", f"at most {len(graph.layers)}, one a layer")
+        )
+    for p, i in enumerate(path):
+        if not 0 <= i < len(graph.layers[p].cells):
+            count = len(graph.layers[p].cells)
+            raise RulecError(
+                _stray(f"layer {p} has no cell {i}", f"a cell's index from 0 to {count - 1}")
+            )
+        if p and i not in (followers := graph.successors[p - 1][path[p - 1]]):
+            raise RulecError(
+                _stray(
+                    f"no edge leads from cell {path[p - 1]} of layer {p - 1} to cell {i}",
+                    "one of " + ", ".join(map(str, followers)) if followers else "no successor",
+                )
+            )
+    return tuple(_bounds(graph.layers[p].cells[i]) for p, i in enumerate(path))
+
+
+def _stray(message: str, expected: str) -> Diagnostic:
+    return Diagnostic(
+        "R0609",
+        message,
+        expected=expected,
+        help="give the index of one cell a layer, each a successor of the one before",
+    )
+
+
+def _bounds(cell: Cell) -> Envelope:
+    cuts = sorted({s for box in cell.boxes for s in (box.s_min, box.s_max)})
+    left: list[tuple[float, float]] = []
+    right: list[tuple[float, float]] = []
+    for start in cuts[:-1]:
+        here = [box for box in cell.boxes if box.s_min <= start < box.s_max]
+        _extend(left, start, max(box.d_max for box in here))
+        _extend(right, start, min(box.d_min for box in here))
+    return Envelope(cuts[-1], cuts[0], tuple(left), tuple(right))
+
+
+def _extend(profile: list[tuple[float, float]], s: float, d: float) -> None:
+    if not profile or profile[-1][1] != d:
+        profile.append((s, d))

@@ -1,0 +1,157 @@
+"""The navigation graph: cells of every layer, and the steps between them.
+
+Definitions: Esterle, Aravantinos, Knoll, IV 2019, section "Free Space-Time Partitioning"; where that
+leaves one open, ours is in ``docs/scenarios.md``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import TYPE_CHECKING, get_args
+
+from rulec.diagnostics import Diagnostic, RulecError, nearest_name
+from rulec.partition.adjacency import AdjacencyName, neighbours
+from rulec.partition.cells import plane
+from rulec.partition.continuation import continuations
+from rulec.partition.margin import Edges, Margins, edges
+from rulec.partition.model import Layer
+from rulec.partition.occupancy import scene
+from rulec.partition.regions import PartitionName
+from rulec.partition.snap import snapped
+from rulec.partition.start import start_cell
+from rulec.scenario import Obstacle, Scenario
+from rulec.scenario.timing import timing
+
+if TYPE_CHECKING:
+    import networkx
+
+    from rulec.trace.model import TraceGraph
+
+__all__ = ["AdjacencyName", "NavigationGraph", "PartitionName", "navigation_graph"]
+
+
+@dataclass(frozen=True)
+class NavigationGraph:
+    """A layered directed graph; every path from ``start`` to one of ``goals`` is a maneuver.
+
+    ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
+    order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
+    that are on the road at some time, ``present`` the first and last layer of each.
+    """
+
+    scenario: Scenario
+    partition: PartitionName
+    adjacency: AdjacencyName
+    step: Fraction
+    objects: Mapping[str, Obstacle]
+    present: Mapping[str, tuple[int, int]]
+    layers: tuple[Layer, ...]
+    successors: tuple[Edges, ...]
+    margins: tuple[Margins, ...]
+    start: int
+    goals: tuple[int, ...]
+
+    @property
+    def step_s(self) -> float:
+        """The planning interval in seconds."""
+        return float(self.step)
+
+    @property
+    def nodes(self) -> int:
+        """How many cells there are, all layers together."""
+        return sum(len(layer.cells) for layer in self.layers)
+
+    @property
+    def edges(self) -> int:
+        """How many steps there are, staying included."""
+        return sum(len(followers) for layer in self.successors for followers in layer)
+
+    def trace_graph(self) -> TraceGraph:
+        """The graph as valuations and whole-number costs, without geometry."""
+        from rulec.partition.traces import trace_graph
+
+        return trace_graph(self)
+
+    def to_networkx(self) -> networkx.DiGraph:
+        """The graph for networkx; see ``rulec.partition.handover.to_networkx``."""
+        from rulec.partition.handover import to_networkx
+
+        return to_networkx(self)
+
+
+def navigation_graph(
+    scenario: Scenario,
+    *,
+    partition: PartitionName = "paper",
+    adjacency: AdjacencyName = "touch",
+    step_s: float | None = None,
+    horizon_s: float | None = None,
+) -> NavigationGraph:
+    """Partition a scenario's free space over time and link the cells.
+
+    Args:
+        scenario: the scene and its prediction.
+        partition: ``paper`` (behind, in front, left, right) or ``fine`` (station and lateral).
+        adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
+        step_s: planning interval in seconds, instead of the scenario's.
+        horizon_s: planning horizon in seconds, instead of the scenario's.
+
+    Raises:
+        RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
+            R0608 for an unknown partition or adjacency.
+    """
+    _check_choice("partition", partition, get_args(PartitionName))
+    _check_choice("adjacency", adjacency, get_args(AdjacencyName))
+    times = timing(
+        scenario.horizon_s if horizon_s is None else horizon_s,
+        scenario.step_s if step_s is None else step_s,
+    )
+    places = scene(scenario, times, partition)
+    planes = [
+        plane(places.roadway, regions, partition, names)
+        for regions, names in zip(places.swept, places.names, strict=True)
+    ]
+    start = start_cell(planes[0], places, scenario, times, partition)
+    instants = [
+        plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
+        for regions in places.instants
+    ]
+    onward = [
+        continuations(before, instant, after)
+        for (before, after), instant in zip(pairwise(planes), instants, strict=True)
+    ]
+    layers = tuple(
+        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency))
+        for p, (flat, names) in enumerate(zip(planes, places.names, strict=True))
+    )
+    successors, margins = edges(layers, onward)
+    goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
+    return NavigationGraph(
+        scenario,
+        partition,
+        adjacency,
+        times.step,
+        places.obstacle_of,
+        places.present,
+        layers,
+        successors,
+        margins,
+        start,
+        tuple(i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)),
+    )
+
+
+def _check_choice(what: str, name: str, known: tuple[str, ...]) -> None:
+    if name not in known:
+        near = nearest_name(str(name), known)
+        raise RulecError(
+            Diagnostic(
+                "R0608",
+                f"there is no {what} {name!r}",
+                expected=f"one of {', '.join(known)}",
+                help=f'did you mean "{near}"?' if near else "",
+            )
+        )

@@ -1,0 +1,73 @@
+"""The regions around one obstacle: what each place on the road is called as seen from it.
+
+An obstacle's rectangle, widened, cuts the road in three both ways. A region table names the nine
+parts, row by row from right to left, each row in the direction of ``s``; ``o`` is the obstacle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from rulec.partition.roadway import Roadway
+from rulec.scenario import Box, Obstacle
+from rulec.scenario.motion import Facing, facing
+
+PartitionName = Literal["paper", "fine"]
+
+OCCUPIED = ord("o")
+
+# The paper's figure 3, turned with the direction in which a pedestrian walks.
+_PAPER: Mapping[Facing, bytes] = MappingProxyType(
+    {
+        "along": b"rrrboflll",
+        "against": b"lllfobrrr",
+        "left": b"lbrlorlfr",
+        "right": b"rflrolrbl",
+    }
+)
+_FINE = b"0123o5678"
+
+STATIONS = ("behind", "beside", "in_front_of")
+LATERALS = ("right_of", "same_lane", "left_of")
+
+
+def station_and_lateral(code: int) -> tuple[str, str]:
+    """The pair that a code of the fine partition stands for."""
+    row, column = divmod(code - ord("0"), 3)
+    return STATIONS[column], LATERALS[row]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """An obstacle's widened rectangle and the table that names what lies around it."""
+
+    obstacle: int
+    extent: Box
+    table: bytes
+
+
+def region_of(
+    obstacle: Obstacle,
+    index: int,
+    body: Box,
+    interval: tuple[float, float],
+    partition: PartitionName,
+    roadway: Roadway,
+) -> Region | None:
+    """The region of an obstacle that sweeps ``body`` in a time interval; None if off the road."""
+    lanes = roadway.lanes_touched(body)
+    if lanes is None:
+        return None
+    lane_wide = Box(body.s_min, body.s_max, *lanes)
+    if partition == "fine":
+        return Region(index, lane_wide, _FINE)
+    if not obstacle.walks:
+        return Region(index, lane_wide, _PAPER["along"])
+    direction = facing(obstacle, *interval)
+    if direction in ("along", "against"):
+        return Region(index, lane_wide, _PAPER[direction])
+    across = Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+    return Region(index, across, _PAPER[direction])
