@@ -23,9 +23,11 @@ os.execvp(sys.argv[2], sys.argv[2:])
 '
 
 # Runs a command in the checkout, its words going to the log. In the background, because a shell
-# puts off a signal until a command in front ends; in a group of its own, to be ended whole.
+# puts off a signal until a command in front ends; in a group of its own, to be ended whole. What
+# it leaves in its temporary folder when it is ended goes with the environment.
 quietly() {
-    "$python" -E -c "$in_own_group" "$home" "$@" >>"$log" 2>&1 </dev/null &
+    mkdir -p "$stamps/tmp" 2>/dev/null
+    TMPDIR=$stamps/tmp "$python" -E -c "$in_own_group" "$home" "$@" >>"$log" 2>&1 </dev/null &
     child=$!
     wait "$child"
     status=$?
@@ -68,7 +70,7 @@ give_up() {
     fi
     if [ -n "$keep" ] && [ -d "$stamps/before" ]; then
         mv "$stamps/before/"* "$stamps"
-        rm -rf "$stamps/before" "$log"
+        rm -rf "$stamps/before" "$stamps/tmp" "$log"
     else
         discard
     fi

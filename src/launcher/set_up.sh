@@ -29,8 +29,8 @@ check_space() {
     case $free in
     '' | *[!0-9]*) ;;
     *)
-        [ "$free" -ge 512000 ] || stop "rulec's environment takes up to 500 MB, but the disk of $home" \
-            "has only $((free / 1024)) MB left. Make room and call again."
+        [ "$free" -ge 512000 ] || stop "rulec's environment takes up to 500 MB, but the disk of" \
+            "$home has only $((free / 1024)) MB left. Make room and call again."
         ;;
     esac
 }
@@ -152,7 +152,7 @@ make_ready() {
         make_anew || give_up
     fi
     write_stamps || give_up
-    rm -rf "$stamps/before" "$log"
+    rm -rf "$stamps/before" "$stamps/tmp" "$log"
     trap - HUP INT TERM
     say "ready."
 }
