@@ -1,4 +1,4 @@
-"""Random formulas and random words over one small vocabulary, and what a word looks like to whom."""
+"""Random formulas and random words over one small vocabulary."""
 
 from hypothesis import strategies as st
 

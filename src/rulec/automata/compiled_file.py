@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from itertools import chain
 from pathlib import Path
 from typing import Literal
@@ -14,7 +15,7 @@ from rulec.automata.machine import Machine, Read, trap
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import make_folder, opened, written_whole
 from rulec.rulebook.model import SourceFile, Strength, Variable
-from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 1
@@ -162,6 +163,10 @@ def _checked(read: _File) -> CompiledRulebook:
     )
     _check_vocabulary(vocabulary)
     names = [rule.name for rule in read.rules]
+    for name in (read.name, *names):
+        # They become names of files.
+        plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
+        _require(bool(plain), f"{name!r} is not a name")
     _require(len(set(names)) == len(names), "two rules have the same name")
     return CompiledRulebook(
         read.name,
@@ -210,14 +215,7 @@ def _rule(rule: _Rule, vocabulary: Vocabulary) -> CompiledRule:
     for type_name in types.values():
         _require(type_name in vocabulary.types, f"rule {rule.name} is about an unknown type")
     for read in rule.machine.reads:
-        declaration = vocabulary.declarations.get(read.name)
-        fits = (
-            declaration is not None
-            and not isinstance(declaration, Quantity)
-            and len(declaration.parameters) == len(read.variables)
-            and set(read.variables) <= types.keys()
-            and isinstance(declaration, Enumeration) == bool(read.values)
-        )
+        fits = _fits(read, vocabulary.declarations.get(read.name), types.keys())
         _require(fits, f"rule {rule.name} reads {read.name}, which its vocabulary lacks")
     strength: Strength = rule.strength
     return CompiledRule(
@@ -229,6 +227,22 @@ def _rule(rule: _Rule, vocabulary: Vocabulary) -> CompiledRule:
         rule.formula,
         _machine(rule.machine, rule.name),
         rule.hoa,
+    )
+
+
+def _fits(read: _Read, declaration: Declaration | None, variables: Collection[str]) -> bool:
+    if declaration is None or isinstance(declaration, Quantity):
+        return False
+    about = len(declaration.parameters) == len(read.variables)
+    values = declaration.values if isinstance(declaration, Enumeration) else ()
+    told_apart = set(read.values)
+    return (
+        about
+        and set(read.variables) <= set(variables)
+        and bool(values) == bool(told_apart)
+        and told_apart <= set(values)
+        and len(told_apart) == len(read.values)
+        and read.others == (len(told_apart) < len(values))
     )
 
 

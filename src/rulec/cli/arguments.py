@@ -39,8 +39,12 @@ def graph_options(function: Decorated) -> Decorated:
             type=click.Choice(["paper", "fine"]),
             help="Four regions around an obstacle, or eight.  [default: what the rulebook reads]",
         ),
-        click.option("--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."),
-        click.option("--step", "step_s", type=float, metavar="S", help="The planning interval, in s."),
+        click.option(
+            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+        ),
+        click.option(
+            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
+        ),
         click.argument("scenario"),
     ):
         function = decorate(function)

@@ -38,7 +38,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
-    """A trace without a verdict: its id, if it could be read that far, and what is wrong with it."""
+    """A trace without a verdict: its id, if it could be read that far, and what is wrong."""
 
     trace: str | None
     error: RulecError

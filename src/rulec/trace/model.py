@@ -36,9 +36,9 @@ class TraceGraph:
     """A layered directed graph whose paths from ``start`` to ``goals`` are traces.
 
     ``states[p][i]`` is the state of node ``i`` of layer ``p``; ``successors[p][i]`` are the indices
-    in layer ``p + 1`` of its followers, ascending, ``weights[p][i]`` the whole-number costs of these
-    edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers (None
-    for staying). ``objects`` and ``present`` are as in a trace, counted in layers.
+    in layer ``p + 1`` of its followers, ascending, ``weights[p][i]`` the whole-number costs of
+    these edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers
+    (None for staying). ``objects`` and ``present`` are as in a trace, counted in layers.
     """
 
     step_s: float

@@ -1,0 +1,136 @@
+"""Compiling: Spot in a process of its own, and what becomes of rules that explode."""
+
+import time
+from functools import reduce
+
+import pytest
+from books import P, Q, always, book, far, implies, near, rule
+
+from rulec.automata import compiler
+from rulec.automata.compiler import compile_rulebook
+from rulec.diagnostics import RulecError
+from rulec.logic.formula import Atom, Binary, BinaryOperator
+from rulec.rulebook.model import Rule, Rulebook
+from rulec.vocabulary import Signal, Vocabulary
+
+
+def signals(n):
+    return Vocabulary("signals", {}, {f"s{i}": Signal(f"s{i}", (), False) for i in range(n)})
+
+
+def chain(operator, formulas):
+    return reduce(lambda left, right: Binary(operator, left, right), formulas)
+
+
+def exploding():
+    """Eight untils under exclusive or: every one of the 2^8 combinations matters."""
+    atoms = [Atom(f"s{i}") for i in range(16)]
+    untils = [Binary(BinaryOperator.UNTIL, *atoms[i : i + 2]) for i in range(0, 16, 2)]
+    return chain(BinaryOperator.XOR, untils)
+
+
+def test_a_rule_becomes_its_smallest_table():
+    # always (near -> q): running, or lost. Letters: what of near, q matters: bad or not.
+    compiled = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: thing")))
+    machine = compiled.rules[0].machine
+    assert [(read.name, read.size) for read in machine.reads] == [("place", 2), ("q", 2)]
+    assert len(machine.following) == 2
+    assert len(machine.following[0]) == 2
+    assert machine.dead is not None
+    assert machine.safe is None
+    near_without_q = 0  # digit 0 is `near`, q is false
+    others = {machine.letters[letter] for letter in range(4) if letter != near_without_q}
+    assert len(others) == 1
+    assert machine.following[0][machine.letters[near_without_q]] == machine.dead
+
+
+def test_exclusive_values_make_letters_and_contradictions():
+    never_both = book(
+        rule("A", always(Binary(BinaryOperator.AND, near("x"), far("x"))), "x: thing")
+    )
+    (compiled,) = compile_rulebook(never_both).rules
+    assert compiled.machine.reads[0].size == 3  # near, far, and all else
+    assert compiled.machine.following == ((0,),)
+    assert compiled.machine.dead == 0
+
+
+@pytest.mark.parametrize("position", [0, 1, 2])
+def test_a_rule_that_explodes_is_an_error_and_the_others_compile(position):
+    vocabulary = signals(16)
+    rules = [Rule(name, "hard", (), always(Atom("s0"))) for name in "AB"]
+    rules.insert(position, Rule("Boom", "hard", (), exploding()))
+    begin = time.monotonic()
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(Rulebook("test", vocabulary, tuple(rules)), cpu_limit_s=2)
+    assert [d.code for d in caught.value.diagnostics] == ["R0401"]
+    assert "Boom" in caught.value.diagnostics[0].message
+    assert "rule of its own" in caught.value.diagnostics[0].help
+    # Not a measurement: a formula that explodes must not hang, and this one would, for hours.
+    assert time.monotonic() - begin < 60
+
+
+def test_two_rules_that_explode_are_two_errors():
+    rules = tuple(Rule(name, "hard", (), exploding()) for name in ("Boom", "Bang"))
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(Rulebook("test", signals(16), rules), cpu_limit_s=1)
+    messages = [d.message for d in caught.value.diagnostics]
+    assert ["Boom" in messages[0], "Bang" in messages[1], len(messages)] == [True, True, 2]
+
+
+def test_too_many_letters_are_refused_without_trying():
+    wide = chain(BinaryOperator.OR, [Atom(f"s{i}") for i in range(17)])
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(Rulebook("test", signals(17), (Rule("Wide", "hard", (), wide),)))
+    assert "too many signals" in caught.value.diagnostics[0].message
+
+
+def test_sixteen_signals_still_compile():
+    wide = always(chain(BinaryOperator.OR, [Atom(f"s{i}") for i in range(16)]))
+    (compiled,) = compile_rulebook(
+        Rulebook("test", signals(16), (Rule("Wide", "hard", (), wide),))
+    ).rules
+    assert compiled.machine.letters.count(compiled.machine.letters[0]) == 1
+    assert len(compiled.machine.letters) == 2**16
+
+
+def test_a_rulebook_without_rules_compiles():
+    assert compile_rulebook(book()).rules == ()
+
+
+def test_without_spot_the_way_out_is_named(monkeypatch):
+    absent = "import sys; sys.modules['spot'] = None\n" + compiler._WORKER
+    monkeypatch.setattr(compiler, "_WORKER", absent)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", P)))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0403"
+    assert "conda" in diagnostic.help
+
+
+def test_a_process_that_cannot_start_is_no_traceback(monkeypatch):
+    monkeypatch.setattr(compiler, "_WORKER", "raise SystemExit(3)")
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", P)))
+    assert caught.value.diagnostics[0].code == "R0403"
+
+
+def test_an_automaton_that_fails_its_check_is_refused():
+    """Had Spot translated `p` as `not p`, the check would not let it pass."""
+    import spot
+
+    from rulec.automata import spot_bridge
+
+    wrong = spot.translate("!p", "parity", "det", "complete")
+    with pytest.raises(spot_bridge.CheckError):
+        spot_bridge._check(wrong, spot.formula("p"))
+    weaker = spot.translate("G p", "parity", "det", "complete")
+    with pytest.raises(spot_bridge.CheckError):
+        spot_bridge._check(weaker, spot.formula("p"))
+    with pytest.raises(spot_bridge.CheckError):
+        spot_bridge._check(spot.translate("FG p", "BA"), spot.formula("FG p"))
+
+
+def test_files_of_the_working_directory_are_not_imported(tmp_path, monkeypatch):
+    (tmp_path / "spot.py").write_text("raise RuntimeError('not this one')")
+    monkeypatch.chdir(tmp_path)
+    assert compile_rulebook(book(rule("A", P))).rules

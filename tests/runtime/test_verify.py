@@ -1,0 +1,162 @@
+"""Verdicts on traces: bindings, stretches, defaults, and what does not fit the vocabulary."""
+
+import pytest
+from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
+
+from rulec.automata.compiler import compile_rulebook
+from rulec.diagnostics import Place, RulecError
+from rulec.runtime.verdict import NotJudged, Verdict, Violation
+from rulec.runtime.verify import verify, verify_all
+from rulec.trace import Trace
+
+CARS = {"car1": "car", "car2": "car", "thing1": "thing"}
+
+
+def trace(*places, objects=CARS, present=None, **constant):
+    """A trace from strings such as ``"nfg"``: the place of each object, one string a state."""
+    letters = {"n": "near", "f": "far", "g": "gone"}
+    states = tuple(
+        {
+            "place": {
+                name: letters[letter]
+                for name, letter in zip(objects, text, strict=True)
+                if letter != "."
+            },
+            "q": False,
+            **constant,
+        }
+        for text in places
+    )
+    return Trace("t", 1.0, objects, states, present or {}, Place("t.jsonl", 3))
+
+
+def violations(book_rule, judged):
+    rules = compile_rulebook(book(book_rule))
+    return [
+        (tuple(violation.binding.values()), violation.step)
+        for violation in verify(judged, rules).violations
+    ]
+
+
+def test_every_object_of_the_type_is_judged_by_itself():
+    never_far = rule("A", always(no(far("x"))), "x: car")
+    assert violations(never_far, trace("nnf", "nff", "fff")) == [(("car1",), 2), (("car2",), 1)]
+
+
+def test_subtypes_count_as_their_type():
+    never_far = rule("A", always(no(far("x"))), "x: thing")
+    assert violations(never_far, trace("nnf")) == [(("thing1",), 0)]
+
+
+def test_two_predicates_on_two_objects_are_not_conflated():
+    apart = rule("A", always(implies(near("x"), no(far("y")))), "x: car", "y: car")
+    # car1 near and car2 far at once: the binding (car1, car2) is hit, (car2, car1) is not.
+    assert violations(apart, trace("nfn")) == [(("car1", "car2"), 0)]
+    # car1 near first and car2 far later is no offence.
+    assert violations(apart, trace("ngn", "gfn")) == []
+
+
+def test_one_object_is_never_bound_twice():
+    clash = rule("A", always(no(both(near("x"), near("y")))), "x: thing", "y: thing")
+    assert violations(clash, trace("ngg")) == []
+    assert violations(clash, trace("nng")) == [(("car1", "car2"), 0), (("car2", "car1"), 0)]
+
+
+def test_a_rule_without_objects_to_bind_holds():
+    never = rule("A", always(no(near("x"))), "x: car")
+    assert violations(never, trace("n", objects={"thing1": "thing"})) == []
+
+
+def test_ten_objects_and_more():
+    objects = {f"car{i}": "car" for i in range(12)}
+    never_far = rule("A", always(no(far("x"))), "x: car")
+    assert violations(never_far, trace("n" * 10 + "fn", objects=objects)) == [(("car10",), 0)]
+
+
+def test_only_the_end_decides_a_liveness_rule():
+    assert violations(rule("A", eventually(Q)), trace("ggg", "ggg")) == [((), None)]
+
+
+def test_a_rule_that_nothing_keeps_is_lost_at_once():
+    assert violations(rule("A", both(P, no(P))), trace("ggg")) == [((), 0)]
+
+
+def test_a_binding_is_judged_on_its_stretch():
+    never_far = rule("A", always(no(far("x"))), "x: car")
+    present = {"car1": (1, 2)}
+    # Not there in states 0 and 3, car1 needs no value there, and what stands there does not count.
+    assert violations(never_far, trace(".gg", "ngg", "fgg", "fgg", present=present)) == [
+        (("car1",), 2)
+    ]
+    assert violations(never_far, trace("fgg", "ngg", "ngg", "fgg", present=present)) == []
+
+
+def test_the_last_state_of_the_stretch_goes_on_for_ever():
+    comes_near = rule("A", eventually(near("x")), "x: car")
+    present = {"car1": (0, 0), "car2": (2, 2)}
+    assert violations(comes_near, trace("fgg", "ngg", "gng", present=present)) == [
+        (("car1",), None)
+    ]
+
+
+def test_objects_that_never_meet_are_no_binding():
+    never = rule("A", always(no(both(near("x"), near("y")))), "x: car", "y: car")
+    present = {"car1": (0, 0), "car2": (1, 1)}
+    assert violations(never, trace("nng", "nng", present=present)) == []
+
+
+def test_what_is_missing_takes_its_default():
+    red = rule("A", always(no(P)))
+    assert violations(red, trace("ggg")) == []
+    assert violations(red, trace("ggg", p=True)) == [((), 0)]
+
+
+def test_soft_rules_may_yield():
+    rules = compile_rulebook(book(rule("S", P, strength="soft"), rule("H", Q)))
+    verdict = verify(trace("ggg", q=True), rules)
+    assert verdict == Verdict("t", (Violation("S", "soft", {}, 0),))
+    assert verdict.satisfied
+    assert not verify(trace("ggg"), rules).satisfied
+
+
+RULES = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")))
+
+
+@pytest.mark.parametrize(
+    ("judged", "code", "words", "way_out"),
+    [
+        (trace("g", objects={"a": "cat"}), "R0505", "`a` is of type `cat`", "`car`"),
+        (trace("ggg", plase={}), "R0502", "speaks of `plase`", "`place`"),
+        (trace("ggg", near=True), "R0502", "speaks of `near`", '{"place": … "near"}'),
+        (trace("ggg", q=1.0), "R0503", "`q` is `1`; it is true or false", ""),
+        (trace("ggg", q="true"), "R0503", "`q` is `true`", ""),
+        (trace("ggg", q={"car1": True}), "R0503", "`q` is given per object", ""),
+        (trace("ggg", light="rad"), "R0503", "one of red, green", "`red`"),
+        (trace("ggg", light=True), "R0503", "`light` is true", ""),
+        (trace("ggg", place="near"), "R0503", "gives `place` one value", '{"place"'),
+        (trace("ggg", place={"car3": "near"}), "R0505", "`car3`", "did you mean"),
+        (trace("ggg", place={"car1": "nera"}), "R0503", "near, far, gone", "`near`"),
+        (trace("g.g"), "R0504", "the `place` of `car2`, which rule A needs", "default"),
+        (trace("ggg", q=True, place={}), "R0504", "`place`", "default"),
+    ],
+)
+def test_what_does_not_fit_is_said(judged, code, words, way_out):
+    with pytest.raises(RulecError) as caught:
+        verify(judged, RULES)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == code
+    assert words in diagnostic.message
+    assert "state 0" in diagnostic.message or "object" in diagnostic.message
+    assert way_out in diagnostic.help
+    assert diagnostic.place == Place("t.jsonl", 3)
+
+
+def test_values_are_only_needed_where_a_rule_reads_them():
+    assert verify(trace("gg.", q=True), RULES).satisfied
+
+
+def test_one_bad_trace_does_not_stop_the_others():
+    broken = RulecError(())
+    answers = list(verify_all([trace("ggg"), broken, trace("...")], RULES))
+    assert [type(answer) for answer in answers] == [Verdict, NotJudged, NotJudged]
+    assert (answers[1].trace, answers[2].trace) == (None, "t")

@@ -1,0 +1,130 @@
+"""Traces as JSON Lines: what is read, what is refused, and in which words."""
+
+import io
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.diagnostics import RulecError
+from rulec.trace import Trace, json_lines
+from rulec.trace.json_lines import read_traces, write_traces
+
+GOOD = {
+    "id": "t1",
+    "step_s": 0.5,
+    "objects": {"v1": "vehicle"},
+    "states": [{"position": {"v1": "b"}, "surface": "R_cw", "CONGESTED": False, "speed": 3}],
+}
+
+
+def read(data):
+    return list(read_traces(io.BytesIO(data), "t.jsonl"))
+
+
+def line(**changes):
+    return json.dumps({**GOOD, **changes}).encode() + b"\n"
+
+
+def problem(data):
+    (error,) = read(data)
+    assert isinstance(error, RulecError)
+    (diagnostic,) = error.diagnostics
+    assert diagnostic.place.file == "t.jsonl"
+    return diagnostic
+
+
+def test_a_trace_is_read():
+    (trace,) = read(line())
+    assert trace == Trace("t1", 0.5, GOOD["objects"], tuple(GOOD["states"]))
+    assert (trace.place.file, trace.place.line) == ("t.jsonl", 1)
+
+
+def test_what_may_be_left_out():
+    (trace,) = read(b'{"states": [{}]}')
+    assert trace == Trace("line 1", 1.0, {}, ({},))
+
+
+def test_blank_lines_a_bom_and_a_missing_last_line_end():
+    traces = read(b"\xef\xbb\xbf" + line() + b"\n  \r\n" + line(id=7).rstrip())
+    assert [(trace.id, trace.place.line) for trace in traces] == [("t1", 1), ("7", 4)]
+
+
+def test_a_bad_line_does_not_hide_the_good_ones():
+    found = read(line(id="a") + b"{oops\n" + line(id="b"))
+    assert [item.id for item in found if isinstance(item, Trace)] == ["a", "b"]
+    assert found[1].diagnostics[0].place.line == 2
+
+
+@pytest.mark.parametrize(
+    ("data", "code", "words"),
+    [
+        (b"", "R0501", "there is no trace in this file"),
+        (b"\n\n", "R0501", "there is no trace in this file"),
+        (b"{", "R0501", "truncated"),
+        (b"\xff\xfe{}", "R0501", "not a trace"),
+        (b"\x00", "R0501", "not a trace"),
+        (b"[1]", "R0501", "expected an object, got a list"),
+        (b"[" * 100_000, "R0501", "not a trace"),
+        (b"{}", "R0501", "missing required field `states`"),
+        (line(states=[]), "R0506", "no states"),
+        (line(states=[{}, 3]), "R0501", "(in `states[1]`)"),
+        (line(states=[{"p": None}]), "R0501", "got null"),
+        (line(states=[{"p": [1]}]), "R0501", "got a list"),
+        (b'{"states": [{"speed": NaN}]}', "R0501", "malformed"),
+        (b'{"states": [{"speed": 1e999}]}', "R0501", "out of range"),
+        (line(step_s=0), "R0501", "more than 0 s"),
+        (line(step_s=-1), "R0501", "more than 0 s"),
+        (line(step_s="1"), "R0501", "expected a number, got a string (in `step_s`)"),
+        (line(sates=[]), "R0501", "unknown field `sates`"),
+        (line(objects=["v1"]), "R0501", "(in `objects`)"),
+        (line(present={"v2": [0, 0]}), "R0505", "`v2`"),
+        (line(present={"v1": [0, 1]}), "R0505", "states 0 to 0"),
+        (line(present={"v1": [1, 0]}), "R0505", "`v1` in states 1 to 0"),
+    ],
+)
+def test_what_is_refused(data, code, words):
+    diagnostic = problem(data)
+    assert diagnostic.code == code
+    assert words in diagnostic.message
+
+
+def test_a_line_without_end_is_refused_without_keeping_it(monkeypatch):
+    monkeypatch.setattr(json_lines, "LONGEST_LINE_BYTES", 1000)
+    found = read(b"x" * 5000 + b"\n" + line(id="after"))
+    assert "longer than" in found[0].diagnostics[0].message
+    assert [item.id for item in found[1:]] == ["after"]
+
+
+@given(st.binary(max_size=200))
+def test_random_bytes_are_an_error_with_a_place(data):
+    for found in read(data):
+        assert isinstance(found, Trace) or found.diagnostics[0].place.file == "t.jsonl"
+
+
+values = st.booleans() | st.text() | st.floats(allow_nan=False, allow_infinity=False)
+traces = st.builds(
+    lambda states, step, objects, stretch: Trace(
+        "t",
+        step,
+        objects,
+        tuple(states),
+        {name: stretch(len(states)) for name in objects},
+    ),
+    st.lists(
+        st.dictionaries(st.text(), values | st.dictionaries(st.text(), values)),
+        min_size=1,
+        max_size=4,
+    ),
+    st.floats(min_value=1e-3, max_value=1e3),
+    st.dictionaries(st.text(), st.text(), max_size=3),
+    st.sampled_from([lambda n: (0, n - 1), lambda n: (n - 1, n - 1)]),
+)
+
+
+@given(st.lists(traces, min_size=1, max_size=3))
+def test_written_traces_read_back(written):
+    stream = io.BytesIO()
+    assert write_traces(written, stream) == len(written)
+    assert read(stream.getvalue()) == written
