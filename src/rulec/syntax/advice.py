@@ -38,7 +38,7 @@ _SYMBOL_OF = {"implies": "->", "iff": "<->", "and": "&", "or": "|", "not": "!", 
     "next": "X",
     "until": "U",
 }
-_PAST_WORDS = frozenset("once historically since previously O H S Y".split())
+_PAST_WORDS = frozenset(("once", "historically", "since", "previously", "O", "H", "S", "Y"))
 
 
 def advise(scene: Scene) -> str:
@@ -81,7 +81,10 @@ def _declaration(scene: Scene) -> str:
         return ""
     if "ONE" in scene.accepted:
         return "the values stand behind `is one of`, such as `is one of a, b`"
-    if "COMMA" in scene.accepted and scene.found and scene.found.text in (";", "|", "or", "and"):
+    listed = scene.found is not None and (
+        scene.found.text in (";", "|", "or", "and") or scene.found.kind == "word"
+    )
+    if "COMMA" in scene.accepted and listed:
         return "separate the names by `,`"
     if {"TRUE", "FALSE"} == scene.accepted:
         return "a signal is true or false: write `default true` or `default false`"

@@ -74,6 +74,7 @@ def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, lis
     laws = [part for part in parts if isinstance(part, tree.LawLine)]
     for lines, word in ((titles, "`title`"), (laws, "`law`")):
         mistakes += [_twice(word, line.span, lines[0].span) for line in lines[1:]]
+    mistakes += _used_twice(parts)
     mistakes += _misplaced(parts)
     mistakes += _of_the_other_kind(kind, parts)
     file = tree.File(
@@ -93,6 +94,16 @@ _HEADER = (tree.FileLine, tree.TitleLine, tree.LawLine, tree.UseLine)
 _OPAQUE = ("use", "vocabulary", "rulebook", "}")
 
 
+def _used_twice(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+    first: dict[str, Span] = {}
+    for part in parts:
+        if isinstance(part, tree.UseLine):
+            name = part.name.text
+            if name in first:
+                yield _twice(f"`use {name}`", part.span, first[name])
+            first.setdefault(name, part.span)
+
+
 def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
     """Header lines behind the first item, and a second ``rulebook`` line."""
     item: Item | None = None
@@ -105,7 +116,7 @@ def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
                 help="move it to a file of its own",
                 labels=(Label(parts[0].span.place, "the file begins here"),),
             )
-        elif not isinstance(part, _HEADER):
+        elif not isinstance(part, (*_HEADER, tree.BrokenItem)):
             item = item or part
         elif item is not None:
             yield Diagnostic(

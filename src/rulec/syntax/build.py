@@ -61,17 +61,21 @@ class Builder:
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def span(self, node: Branch | Leaf) -> Span:
+        """The characters of a node."""
         return Span(self.source, node.start, node.end)
 
     def name(self, leaf: Leaf) -> tree.Name:
+        """An identifier."""
         return tree.Name(leaf.text, self.span(leaf))
 
     def names(self, node: Branch) -> tuple[tree.Name, ...]:
+        """The identifiers directly below a node."""
         return tuple(self.name(leaf) for leaf in _leaves(node, "NAME"))
 
     # Formulas
 
     def formula(self, node: Branch) -> tree.Formula:
+        """A formula; as deep as the parser lets it be."""
         span = self.span(node)
         match node:
             case Branch("infix", (Branch() as left, Leaf(kind=operator), Branch() as right)):
@@ -87,6 +91,7 @@ class Builder:
                 return self.atom(node)
 
     def atom(self, node: Branch) -> tree.AtomUse:
+        """An atom with its arguments."""
         arguments = [name for names in _branches(node, "names") for name in self.names(names)]
         return tree.AtomUse(self.name(_leaf(node, "NAME")), tuple(arguments), self.span(node))
 
@@ -95,6 +100,7 @@ class Builder:
     def item(
         self, node: Branch
     ) -> tree.FileLine | tree.TitleLine | tree.LawLine | tree.UseLine | tree.Declaration:
+        """A header line or a declaration."""
         span = self.span(node)
         match node.kind:
             case "rulebook_line":
@@ -112,6 +118,7 @@ class Builder:
                 return self.declaration(node)
 
     def declaration(self, node: Branch) -> tree.Declaration:
+        """A declaration."""
         span = self.span(node)
         names = self.names(node)
         match node.kind:
@@ -136,6 +143,7 @@ class Builder:
                 return tree.SignalItem(signals, bool(true) if true or false else None, span)
 
     def parameters(self, node: Branch) -> tuple[tree.Parameter, ...]:
+        """A declaration's parameters, or a rule's variables."""
         return tuple(
             tree.Parameter(names[0], names[1] if len(names) > 1 else None, self.span(one))
             for group in (*_branches(node, "parameters"), *_branches(node, "variables"))
@@ -146,14 +154,17 @@ class Builder:
     # Rules
 
     def rule_head(self, node: Branch) -> RuleHead:
+        """A rule's head."""
         strength = "hard" if _leaves(node, "HARD") else "soft"
         return RuleHead(strength, self.names(node)[0], self.parameters(node))
 
     def example_head(self, node: Branch) -> ExampleHead:
+        """An example's head."""
         label = self.text(node).value if _leaves(node, "STRING") else ""
         return ExampleHead(bool(_leaves(node, "ACCEPT")), label)
 
     def state(self, node: Branch) -> tree.ExampleState:
+        """A state of an example."""
         literals = tuple(
             tree.StateLiteral(
                 self.atom(_branches(one, "atom")[0]), bool(_leaves(one, "NOT")), self.span(one)
@@ -194,6 +205,7 @@ class Builder:
             return ""
 
     def number(self, leaf: Leaf) -> float:
+        """A finite number; 0 in place of one that is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
             self._mistake("R0112", leaf.start, len(leaf.text), "this number is too large")

@@ -1,4 +1,4 @@
-"""Where items and clauses begin, told from a few tokens: for files that are right and for others."""
+"""Where items and clauses begin, told from a few tokens, in files that may be wrong."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ class Landmarks:
     tokens: list[Token]
 
     def is_symbol(self, index: int, text: str) -> bool:
+        """Is it this symbol, and not behind the end or a text in quotes?"""
         return (
             index < len(self.tokens)
             and self.tokens[index].text == text
@@ -43,7 +44,7 @@ class Landmarks:
         )
 
     def wants_more(self, index: int) -> bool:
-        """Can the text not end behind this token? (``signal``, ``until``, ``(``, ``;`` …)"""
+        """Does the text have to go on behind it, as behind ``signal``, ``until``, ``(``, ``;``?"""
         if index < 0:
             return False
         token = self.tokens[index]
@@ -52,7 +53,7 @@ class Landmarks:
         return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
 
     def begins_rule(self, index: int) -> bool:
-        """``hard``, ``soft``, ``rule``, or a word before ``rule`` that was meant to be the former."""
+        """``hard``, ``soft``, ``rule``, or a misspelt word before ``rule``."""
         if self.is_word(index, *RULE_WORDS, "rule"):
             return True
         return self.is_name(index) and self.is_word(index + 1, "rule")

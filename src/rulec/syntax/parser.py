@@ -61,7 +61,7 @@ class TooDeep:
 def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Mismatch | TooDeep:
     """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
     try:
-        tree = _lark().parse(TextSlice(text, begin, end), start=start)  # type: ignore[arg-type]
+        tree = _lark().parse(TextSlice(text, begin, end), start=start)
     except UnexpectedInput as error:
         return Mismatch(_position(error, end), _accepted(error))
     return _neutral(tree)
@@ -89,7 +89,7 @@ def _accepted(error: UnexpectedInput) -> frozenset[str]:
     assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
     state = getattr(error, "interactive_parser", None)
     if isinstance(state, InteractiveParser):
-        return frozenset(state.accepts())
+        return frozenset(state.accepts())  # type: ignore[no-untyped-call]
     return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
 
 

@@ -6,7 +6,6 @@ Reading what is printed gives the same tree back. Comments are not part of the t
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import singledispatch
 from typing import Literal
 
 from rulec.syntax import tree
@@ -82,38 +81,28 @@ def print_file(file: tree.File, style: Style = "words") -> str:
     return "\n".join(lines) + "\n"
 
 
-@singledispatch
-def _item(item: object, style: Style) -> str:
-    raise ValueError(f"{type(item).__name__} cannot be printed")
+def _item(item: tree.Declaration | tree.RuleItem | tree.BrokenItem, style: Style) -> str:
+    match item:
+        case tree.TypeItem(name, parent):
+            return f"type {name.text}" + (f" is {parent.text}" if parent else "")
+        case tree.EnumerationItem(name, parameters, values, chosen):
+            default = f" default {chosen.text}" if chosen else ""
+            head = name.text + _parameters(parameters)
+            return f"{head} is one of {_comma(values)}{default}"
+        case tree.SignalItem(signals, truth):
+            default = "" if truth is None else f" default {str(truth).lower()}"
+            heads = (head.name.text + _parameters(head.parameters) for head in signals)
+            return f"signal {', '.join(heads)}{default}"
+        case tree.QuantityItem(name, parameters, unit, number):
+            default = "" if number is None else f" default {repr(number).removesuffix('.0')}"
+            return f"quantity {name.text}{_parameters(parameters)} in {unit}{default}"
+        case tree.RuleItem():
+            return _rule(item, style)
+        case tree.BrokenItem():
+            raise ValueError("an item that could not be read cannot be printed")
 
 
-@_item.register
-def _(item: tree.TypeItem, style: Style) -> str:
-    return f"type {item.name.text}" + (f" is {item.parent.text}" if item.parent else "")
-
-
-@_item.register
-def _(item: tree.EnumerationItem, style: Style) -> str:
-    default = f" default {item.default.text}" if item.default else ""
-    parameters = _parameters(item.parameters)
-    return f"{item.name.text}{parameters} is one of {_comma(item.values)}{default}"
-
-
-@_item.register
-def _(item: tree.SignalItem, style: Style) -> str:
-    default = "" if item.default is None else f" default {str(item.default).lower()}"
-    heads = (head.name.text + _parameters(head.parameters) for head in item.signals)
-    return f"signal {', '.join(heads)}{default}"
-
-
-@_item.register
-def _(item: tree.QuantityItem, style: Style) -> str:
-    default = "" if item.default is None else f" default {repr(item.default).removesuffix('.0')}"
-    return f"quantity {item.name.text}{_parameters(item.parameters)} in {item.unit}{default}"
-
-
-@_item.register
-def _(rule: tree.RuleItem, style: Style) -> str:
+def _rule(rule: tree.RuleItem, style: Style) -> str:
     if rule.require is None:
         raise ValueError(f"rule {rule.name.text} has no formula")
     variables = f" {_parameters(rule.variables)}" if rule.variables else ""

@@ -88,16 +88,20 @@ class _Reader:
     def read(
         self, start: Start, piece: Piece, build: Callable[[Builder, Branch], _Built]
     ) -> _Built | None:
+        """What ``build`` makes of a piece that matches ``start``."""
         if piece.reported:
             return None
         span = span_of(self.source, self.tokens, piece)
         if piece.last - piece.first > MAX_PIECE:
-            return self._fail(too_long(self._first_token(piece), MAX_PIECE))
+            self.mistakes.append(too_long(self._first_token(piece), MAX_PIECE))
+            return None
         match parse_piece(start, self.source.text, span.start, span.end):
             case Mismatch() as mismatch:
-                return self._fail(explain(self.source, self.tokens, piece, mismatch))
+                self.mistakes.append(explain(self.source, self.tokens, piece, mismatch))
+                return None
             case TooDeep():
-                return self._fail(too_deep(self._first_token(piece)))
+                self.mistakes.append(too_deep(self._first_token(piece)))
+                return None
             case branch:
                 builder = Builder(self.source)
                 built = build(builder, branch)
@@ -105,9 +109,6 @@ class _Reader:
             self.mistakes.append(piece.then)
         self.mistakes.extend(builder.mistakes)
         return built
-
-    def _fail(self, mistake: Diagnostic) -> None:
-        self.mistakes.append(mistake)
 
     def _first_token(self, piece: Piece) -> Span:
         token = self.tokens[piece.first]

@@ -1,7 +1,7 @@
 """Cutting a file into header lines, declarations and rules.
 
-Where braces are missing, the next item that begins on a line of its own says where they belong; such
-structural mistakes are reported here, one for each.
+Where braces are missing, the next item that begins on a line of its own says where they belong;
+such structural mistakes are reported here, one for each.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class StructureMessages:
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:
         """A clause or a ``}`` that belongs to no rule; ``closed`` is the last rule's end."""
-        labels = ()
+        labels: tuple[Label, ...] = ()
         if closed is not None:
             labels = (Label(self.place(closed), "what came before ended here"),)
         if self.tokens[index].text == "}":

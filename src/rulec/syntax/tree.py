@@ -33,7 +33,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """``name: type`` of a declaration or of a rule's head; in a declaration the type may be left out."""
+    """``name: type``; in a declaration, not in a rule's head, the type may be left out."""
 
     name: Name
     type: Name | None = None

@@ -11,7 +11,10 @@ ITEM_WORDS: Final = frozenset((*HEADER_WORDS, *DECLARATION_WORDS, *RULE_WORDS, "
 CLAUSE_WORDS: Final = frozenset(("cite", "says", "require", "accept", "reject"))
 
 OPERATOR_WORDS: Final = frozenset(
-    "not and or implies iff xor always eventually next until release weak strong".split()
+    (
+        *("not", "and", "or", "implies", "iff", "xor"),
+        *("always", "eventually", "next", "until", "release", "weak", "strong"),
+    )
 )
 OPERATOR_LETTERS: Final = frozenset("GFXURWM")
 
@@ -20,7 +23,7 @@ RESERVED: Final = (
     | CLAUSE_WORDS
     | OPERATOR_WORDS
     | OPERATOR_LETTERS
-    | frozenset("as of is one in default true false".split())
+    | frozenset(("as", "of", "is", "one", "in", "default", "true", "false"))
 )
 """What cannot be a name."""
 

@@ -1,0 +1,261 @@
+"""Declarations of one or more files as one vocabulary."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from rulec.diagnostics import Diagnostic, Label, Span, nearest_name
+from rulec.syntax import tree
+from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
+
+
+@dataclass(slots=True)
+class Declared:
+    """What the files declare, and where; filled by ``declare``.
+
+    ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
+    be missing for a reason that has been reported. ``uncertain`` are types whose parents are not
+    known for that kind of reason.
+    """
+
+    types: dict[str, ObjectType] = field(default_factory=dict)
+    items: dict[str, Declaration] = field(default_factory=dict)
+    value_of: dict[str, Enumeration] = field(default_factory=dict)
+    type_spans: dict[str, Span] = field(default_factory=dict)
+    spans: dict[str, Span] = field(default_factory=dict)
+    parameter_spans: dict[tuple[str, int], Span] = field(default_factory=dict)
+    suspects: set[str] = field(default_factory=set)
+    uncertain: set[str] = field(default_factory=set)
+    opaque: bool = False
+    mistakes: list[Diagnostic] = field(default_factory=list)
+
+    def vocabulary(self, name: str) -> Vocabulary:
+        """The declarations as data; only of use when there were no mistakes."""
+        return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
+
+    def may_know(self, name: str) -> bool:
+        """Could the name be declared by something that could not be read?"""
+        return self.opaque or name in self.suspects
+
+    def ancestors(self, type_name: str) -> list[str]:
+        """The type and those above it; stops where they close a circle."""
+        found: list[str] = []
+        current: str | None = type_name
+        while current is not None and current in self.types and current not in found:
+            found.append(current)
+            current = self.types[current].parent
+        return found
+
+    def fits(self, type_name: str, wanted: str) -> bool:
+        """Is every ``type_name`` a ``wanted``, as far as can be told?"""
+        above = self.ancestors(type_name)
+        unsure = wanted not in self.types or not self.uncertain.isdisjoint(above) or not above
+        return unsure or wanted in above
+
+
+def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
+    """The declarations of used vocabularies and of the file that uses them, in this order."""
+    declared = Declared(opaque=opaque or not all(file.complete for file in files))
+    for file in files:
+        _note_suspects(declared, file)
+        _declare_types(declared, file)
+    for file in files:
+        for item in file.items:
+            if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
+                _declare_item(declared, item, _roots(declared, file))
+    return declared
+
+
+def _note_suspects(declared: Declared, file: tree.File) -> None:
+    for item in file.items:
+        if isinstance(item, tree.BrokenItem):
+            declared.suspects |= item.names
+
+
+def _declare_types(declared: Declared, file: tree.File) -> None:
+    own = [item for item in file.items if isinstance(item, tree.TypeItem)]
+    fresh: list[tree.TypeItem] = []
+    for item in own:
+        name = item.name.text
+        if name in declared.types:
+            declared.mistakes.append(_twice("type", item.name, declared.type_spans[name]))
+            continue
+        declared.types[name] = ObjectType(name, item.parent.text if item.parent else None)
+        declared.type_spans[name] = item.name.span
+        fresh.append(item)
+    for item in fresh:
+        parent = item.parent
+        if parent is not None and parent.text not in declared.types:
+            _unknown_type(declared, parent)
+            declared.types[item.name.text] = ObjectType(item.name.text)
+            declared.uncertain.add(item.name.text)
+    for item in fresh:
+        _break_circle(declared, item)
+
+
+def _break_circle(declared: Declared, item: tree.TypeItem) -> None:
+    above = declared.ancestors(item.name.text)
+    top = declared.types[above[-1]].parent
+    if top != item.name.text or item.parent is None:
+        return
+    chain = " is ".join(f"`{name}`" for name in [*above, top])
+    declared.mistakes.append(
+        Diagnostic(
+            "R0304",
+            f"the types go round in a circle: {chain}",
+            item.parent.span.place,
+            expected="this closes the circle"
+            if len(above) > 1
+            else "a type cannot be above itself",
+            help="leave out `is …` at the most general of them",
+            labels=tuple(
+                Label(declared.type_spans[name].place, f"`{name}` is declared here")
+                for name in above[1:]
+            ),
+        )
+    )
+    for name in above:
+        declared.types[name] = ObjectType(name)
+        declared.uncertain.add(name)
+
+
+def _roots(declared: Declared, file: tree.File) -> list[str]:
+    """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
+    own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
+    return [
+        one.name
+        for one in declared.types.values()
+        if one.parent is None and (file.kind == "rulebook" or one.name in own)
+    ]
+
+
+def _declare_item(
+    declared: Declared,
+    item: tree.EnumerationItem | tree.SignalItem | tree.QuantityItem,
+    roots: list[str],
+) -> None:
+    match item:
+        case tree.SignalItem(signals, truth):
+            for head in signals:
+                types = _parameter_types(declared, head.name, head.parameters, roots)
+                _add(declared, head.name, Signal(head.name.text, types, truth))
+        case tree.QuantityItem(name, parameters, unit, number):
+            types = _parameter_types(declared, name, parameters, roots)
+            _add(declared, name, Quantity(name.text, types, unit, number))
+        case tree.EnumerationItem(name, parameters, values, chosen):
+            types = _parameter_types(declared, name, parameters, roots)
+            texts = tuple(dict.fromkeys(value.text for value in values))
+            default = None
+            if chosen is not None and chosen.text in texts:
+                default = chosen.text
+            elif chosen is not None:
+                declared.mistakes.append(_no_such_value(name, chosen, texts))
+            enumeration = Enumeration(name.text, types, texts, default)
+            _add(declared, name, enumeration)
+            for value in values:
+                if value.text in declared.spans:
+                    first = declared.spans[value.text]
+                    declared.mistakes.append(_twice("name", value, first))
+                else:
+                    declared.spans[value.text] = value.span
+                    declared.value_of[value.text] = enumeration
+
+
+def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
+    if name.text in declared.spans:
+        declared.mistakes.append(_twice("name", name, declared.spans[name.text]))
+        return
+    declared.spans[name.text] = name.span
+    declared.items[name.text] = item
+
+
+def _parameter_types(
+    declared: Declared,
+    name: tree.Name,
+    parameters: tuple[tree.Parameter, ...],
+    roots: list[str],
+) -> tuple[str, ...]:
+    types: list[str] = []
+    seen: dict[str, Span] = {}
+    for position, one in enumerate(parameters):
+        first = seen.setdefault(one.name.text, one.name.span)
+        if first is not one.name.span:
+            declared.mistakes.append(_twice("parameter", one.name, first))
+        if name.text not in declared.spans:
+            declared.parameter_spans[name.text, position] = one.span
+        if one.type is not None:
+            types.append(one.type.text)
+            if one.type.text not in declared.types:
+                _unknown_type(declared, one.type)
+        elif len(roots) == 1:
+            types.append(roots[0])
+        else:
+            types.append("")
+            if not declared.opaque and not declared.suspects:
+                declared.mistakes.append(_which_type(one, roots))
+    return tuple(types)
+
+
+def _unknown_type(declared: Declared, name: tree.Name) -> None:
+    if not declared.may_know(name.text):
+        declared.mistakes.append(unknown_type(name, list(declared.types)))
+
+
+def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
+    """No type of that name."""
+    near = nearest_name(name.text, known)
+    if near is not None:
+        way_out = f"did you mean `{near}`?"
+    elif known:
+        way_out = f"the types are {_listed(known)}; another is declared by `type {name.text}`"
+    else:
+        way_out = f"declare it by `type {name.text}`, or `use` a vocabulary that has types"
+    return Diagnostic(
+        "R0201",
+        f"there is no type `{name.text}`",
+        name.span.place,
+        expected="expected a type",
+        help=way_out,
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = [f"`{name}`" for name in names[:8]]
+    return ", ".join([*shown, "…"] if len(names) > len(shown) else shown)
+
+
+def _which_type(parameter: tree.Parameter, roots: list[str]) -> Diagnostic:
+    why = f"{_listed(roots)} are all possible" if roots else "no type is declared"
+    example = roots[0] if roots else "road_user"
+    return Diagnostic(
+        "R0308",
+        f"it is not clear which objects `{parameter.name.text}` stands for: {why}",
+        parameter.span.place,
+        expected="expected a type behind the name",
+        help=f"write `{parameter.name.text}: {example}`",
+    )
+
+
+def _no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -> Diagnostic:
+    near = nearest_name(chosen.text, values)
+    return Diagnostic(
+        "R0305",
+        f"`{chosen.text}` is not a value of `{name.text}`",
+        chosen.span.place,
+        expected="expected one of its values",
+        help=f"did you mean `{near}`?" if near else f"its values are {_listed(values)}",
+    )
+
+
+def _twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
+    advice = "; values are names too" if what == "name" else ""
+    return Diagnostic(
+        "R0204",
+        f"the {what} `{again.text}` is declared twice",
+        again.span.place,
+        expected="declared again here",
+        help=f"rename one of the two{advice}",
+        labels=(Label(first.place, "first declared here"),),
+    )

@@ -1,0 +1,160 @@
+"""Where rulebooks and vocabularies are: a search path, then those that ship with rulec."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, Label, RulecError, Span, nearest_name
+from rulec.diagnostics.source import Place
+from rulec.resources import rulebooks_folder
+from rulec.syntax import MAX_BYTES
+
+_SUFFIX = ".rules"
+_LEAD = re.compile(r"(?:\s+|#[^\n]*)*(\w*)")
+_LEAD_BYTES = 65536
+
+
+def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
+    """The file of a rulebook given by name or, with a ``/`` or ``.rules`` in it, by path.
+
+    Raises:
+        RulecError: R0703 with the nearest name and all those available.
+    """
+    text = str(reference)
+    if "/" in text or text.endswith(_SUFFIX):
+        path = Path(text)
+        inside = path / f"{path.name}{_SUFFIX}"
+        return inside if _is_file(inside) else path
+    for folder in _folders(search_path):
+        for candidate in (folder / f"{text}{_SUFFIX}", folder / text / f"{text}{_SUFFIX}"):
+            if text and _is_file(candidate):
+                return candidate
+    raise RulecError(_no_rulebook(text, available_rulebooks(search_path)))
+
+
+def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
+    """The names that ``find_rulebook`` knows, in alphabetical order."""
+    found: set[str] = set()
+    for folder in _folders(search_path):
+        for path in _rules_files(folder):
+            named_like_folder = path.parent != folder and path.stem == path.parent.name
+            if (path.parent == folder or named_like_folder) and _lead(path) == "rulebook":
+                found.add(path.stem)
+    return tuple(sorted(found))
+
+
+def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
+    """The file of a vocabulary: beside the rulebook that uses it, on the search path, or ours.
+
+    Raises:
+        RulecError: R0703 at the ``use`` line.
+    """
+    file = f"{name}{_SUFFIX}"
+    folders = _vocabulary_folders(user, search_path)
+    for folder in folders:
+        candidate = folder / file
+        if _is_file(candidate) and (user is None or not _same(candidate, user)):
+            return candidate
+    known = sorted(
+        {
+            path.stem
+            for folder in folders
+            for path in _rules_files(folder)
+            if path.parent == folder and _lead(path) == "vocabulary"
+        }
+    )
+    raise RulecError(
+        Diagnostic(
+            "R0703",
+            f"there is no vocabulary `{name}`",
+            use.place,
+            expected="expected the name of a vocabulary",
+            help=_suggest(name, known),
+        )
+    )
+
+
+def read_bytes(path: Path, use: Span | None = None) -> bytes:
+    """A file's bytes, but not more than it takes to see that they are too many.
+
+    Raises:
+        RulecError: R0701; ``use`` is the line that asked for the file.
+    """
+    try:
+        with path.open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as problem:
+        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
+        if path.is_dir():
+            reason = "it is a folder"
+        labels = (Label(use.place, "it is used here"),) if use else ()
+        raise RulecError(
+            Diagnostic(
+                "R0701",
+                f"the file cannot be read: {reason}",
+                Place(str(path)),
+                help="check its name and its permissions",
+                labels=labels,
+            )
+        ) from None
+
+
+def _folders(search_path: Sequence[Path]) -> list[Path]:
+    return [*search_path, rulebooks_folder()]
+
+
+def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[Path]:
+    beside = [] if user is None else [user.parent, user.parent / "vocabulary"]
+    listed = [inner for folder in search_path for inner in (folder, folder / "vocabulary")]
+    return [*beside, *listed, rulebooks_folder() / "vocabulary"]
+
+
+def _rules_files(folder: Path) -> Iterator[Path]:
+    try:
+        yield from folder.glob(f"*{_SUFFIX}")
+        yield from folder.glob(f"*/*{_SUFFIX}")
+    except OSError:
+        return
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError:
+        return False
+
+
+def _lead(path: Path) -> str:
+    """The first word of a file, which says what it is."""
+    try:
+        with path.open("rb") as stream:
+            text = stream.read(_LEAD_BYTES).decode("utf-8-sig", "replace")
+    except OSError:
+        return ""
+    found = _LEAD.match(text)
+    return found[1] if found else ""
+
+
+def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
+    return Diagnostic(
+        "R0703",
+        f"there is no rulebook `{name}`",
+        help=_suggest(name, known),
+        notes=("a file is given by its path, such as `./mine.rules`",),
+    )
+
+
+def _suggest(name: str, known: Iterable[str]) -> str:
+    names = list(known)
+    near = nearest_name(name, names)
+    available = f"available: {', '.join(names)}" if names else "none is available"
+    return f"did you mean `{near}`? ({available})" if near else available

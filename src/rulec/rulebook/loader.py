@@ -1,0 +1,176 @@
+"""Rulebooks from files and from text: read, resolved, with all that is wrong in one error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.rulebook.finding import (
+    available_rulebooks,
+    find_rulebook,
+    find_vocabulary,
+    read_bytes,
+)
+from rulec.rulebook.model import Rulebook, SourceFile
+from rulec.rulebook.resolve import resolve, resolve_vocabulary
+from rulec.syntax import decode, parse, tree
+from rulec.vocabulary import Vocabulary
+
+__all__ = [
+    "Loaded",
+    "available_rulebooks",
+    "load_rulebook",
+    "load_vocabulary",
+    "parse_rulebook",
+    "read_rulebook",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A rulebook without errors, and the warnings about it."""
+
+    rulebook: Rulebook
+    warnings: tuple[Diagnostic, ...] = ()
+
+
+def load_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Rulebook:
+    """A rulebook as meant.
+
+    Args:
+        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
+            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
+            contains a ``/`` or ends in ``.rules``.
+        search_path: folders of rulebooks and vocabularies.
+
+    Raises:
+        RulecError: with every mistake in the rulebook and in the vocabularies that it uses.
+    """
+    return read_rulebook(reference, search_path).rulebook
+
+
+def read_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Loaded:
+    """As ``load_rulebook``, with the warnings."""
+    path = find_rulebook(reference, search_path)
+    data = read_bytes(path)
+    return _load(decode(str(path), data), data, path, search_path)
+
+
+def parse_rulebook(text: str, name: str = "<text>", search_path: Sequence[Path] = ()) -> Rulebook:
+    """A rulebook whose text is at hand; messages call it ``name``.
+
+    Raises:
+        RulecError: with every mistake in it and in the vocabularies that it uses.
+    """
+    data = text.encode("utf-8", "surrogatepass")
+    return _load(Source(name, text), data, None, search_path).rulebook
+
+
+def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
+    """A vocabulary by its name.
+
+    Raises:
+        RulecError: it is not found, or with every mistake in it.
+    """
+    asked = Source("<vocabulary>", name)
+    found = _Vocabularies(None, tuple(search_path))
+    use = tree.UseLine(tree.Name(name, Span(asked, 0, len(name))))
+    file = found.read(use)
+    if file is None or found.mistakes:
+        raise RulecError(found.mistakes)
+    vocabulary, mistakes = resolve_vocabulary(file)
+    if vocabulary is None:
+        raise RulecError(mistakes)
+    return vocabulary
+
+
+def _load(source: Source, data: bytes, path: Path | None, search_path: Sequence[Path]) -> Loaded:
+    file, mistakes = parse(source)
+    if file.kind == "vocabulary" and file.name is not None:
+        raise RulecError(_not_a_rulebook(file))
+    found = _Vocabularies(path, tuple(search_path))
+    trees = [found.read(use) for use in _once(file.uses)]
+    rulebook, meanings = resolve(
+        file,
+        [one for one in trees if one is not None],
+        sources=(_record(source.name, data), *found.sources),
+        opaque=None in trees,
+    )
+    everything = _in_order(source.name, [*mistakes, *found.mistakes, *meanings])
+    if rulebook is None or any(one.severity == "error" for one in everything):
+        raise RulecError(everything)
+    return Loaded(rulebook, everything)
+
+
+def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
+    return list({use.name.text: use for use in reversed(uses)}.values())[::-1]
+
+
+def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """The rulebook's own first, each file's from top to bottom."""
+
+    def rank(one: Diagnostic) -> tuple[bool, str, int, int]:
+        place = one.place
+        if place is None:
+            return True, "", 0, 0
+        return place.file != main, place.file, place.line or 0, place.column or 0
+
+    return tuple(sorted(mistakes, key=rank))
+
+
+def _record(name: str, data: bytes) -> SourceFile:
+    return SourceFile(Path(name).name, sha256(data).hexdigest())
+
+
+class _Vocabularies:
+    """Reads the vocabularies that one rulebook uses; collects records and mistakes."""
+
+    def __init__(self, user: Path | None, search_path: tuple[Path, ...]) -> None:
+        self.user = user
+        self.search_path = search_path
+        self.sources: list[SourceFile] = []
+        self.mistakes: list[Diagnostic] = []
+
+    def read(self, use: tree.UseLine) -> tree.File | None:
+        """The tree of a vocabulary; None if there is none to be had."""
+        name = use.name
+        try:
+            path = find_vocabulary(name.text, name.span, self.user, self.search_path)
+            data = read_bytes(path, name.span)
+            source = decode(str(path), data)
+        except RulecError as error:
+            self.mistakes += error.diagnostics
+            return None
+        file, mistakes = parse(source)
+        if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
+            self.mistakes.append(_not_the_vocabulary(use, file, path))
+            return None
+        self.sources.append(_record(path.name, data))
+        self.mistakes += mistakes
+        return file
+
+
+def _not_a_rulebook(file: tree.File) -> Diagnostic:
+    assert file.name is not None, "only files with a name are known to be vocabularies"
+    return Diagnostic(
+        "R0206",
+        f"`{file.name.text}` is a vocabulary, not a rulebook",
+        file.name.span.place,
+        expected="expected `rulebook NAME`",
+        help=f"a rulebook takes its words from it by `use {file.name.text}`",
+    )
+
+
+def _not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
+    assert file.name is not None, "only files with a name have another one"
+    return Diagnostic(
+        "R0206",
+        f"`{path.name}` holds the {file.kind} `{file.name.text}`, "
+        f"not the vocabulary `{use.name.text}`",
+        use.name.span.place,
+        expected="expected the name of a vocabulary",
+        help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",
+    )
