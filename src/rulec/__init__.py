@@ -21,7 +21,7 @@ from rulec.version import __version__
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook as CompiledRulebook
     from rulec.diagnostics import RulecError as RulecError
-    from rulec.partition.graph import NavigationGraph as NavigationGraph
+    from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.rulebook.model import Rulebook as Rulebook
     from rulec.runtime.verdict import Verdict as Verdict
     from rulec.runtime.verify import verify as verify
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _HOME = {
     "CompiledRulebook": "rulec.automata.compiled",
     "Maneuvers": "rulec.workflow",
-    "NavigationGraph": "rulec.partition.graph",
+    "NavigationGraph": "rulec.partition",
     "Rulebook": "rulec.rulebook.model",
     "RulecError": "rulec.diagnostics",
     "Scenario": "rulec.scenario",

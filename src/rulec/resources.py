@@ -1,4 +1,4 @@
-"""Where rulec's own files are: in a checkout at its top level, in an installed package inside it."""
+"""Where rulec's own files are: at the top of a checkout, or inside an installed package."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ The command line and ``import rulec`` are thin layers over these functions.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -23,11 +23,11 @@ from rulec.runtime.cheapest import Maneuver
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
-    from rulec.partition.graph import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.scenario import Scenario
 
-RULES_OF = {"paper": {"position"}, "fine": {"station", "lateral"}}
+RELATIONS_OF = {"paper": {"position"}, "fine": {"station", "lateral"}}
 """The relations that only one partition supplies."""
 
 
@@ -39,23 +39,33 @@ def load_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Ru
 
 
 def compile_rulebook(
-    reference: str | Path | Rulebook | CompiledRulebook, search_path: Sequence[Path] = ()
+    reference: str | Path | Rulebook | CompiledRulebook,
+    search_path: Sequence[Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
 ) -> CompiledRulebook:
     """Compile a rulebook: given by name, by path (source or compiled), or itself.
+
+    ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
+    than it says, for one.
 
     Raises:
         RulecError: with every mistake in the source, or why it cannot be compiled or read.
     """
     if isinstance(reference, CompiledRulebook):
         return reference
-    if isinstance(reference, str | Path):
-        path = Path(reference)
-        if path.suffix == ".json":
-            return compiled_file.read_compiled(path)
-        reference = load_rulebook(reference, search_path)
     from rulec.automata.compiler import compile_rulebook as through_spot
 
-    return through_spot(reference)
+    if not isinstance(reference, str | Path):
+        return through_spot(reference)
+    if Path(reference).suffix == ".json":
+        return compiled_file.read_compiled(Path(reference))
+    from rulec.rulebook.loader import read_rulebook
+    from rulec.runtime.examples import failing_examples
+
+    loaded = read_rulebook(reference, search_path)
+    compiled = through_spot(loaded.rulebook)
+    warn([*loaded.warnings, *failing_examples(loaded.rulebook, compiled)])
+    return compiled
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
@@ -125,9 +135,9 @@ def find_maneuvers(
 
 def _partition_for(rules: CompiledRulebook) -> PartitionName:
     read = {read.name for rule in rules.rules for read in rule.machine.reads}
-    if not read & RULES_OF["fine"]:
+    if not read & RELATIONS_OF["fine"]:
         return "paper"
-    if not read & RULES_OF["paper"]:
+    if not read & RELATIONS_OF["paper"]:
         return "fine"
     raise RulecError(
         Diagnostic(

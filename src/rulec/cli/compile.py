@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from rulec.report.console import print_result
+from rulec.report.console import print_diagnostics, print_result
 
 
 @click.command()
@@ -29,5 +29,5 @@ def command(rulebook: str, output: Path) -> None:
     from rulec.automata.compiled_file import write_compiled
     from rulec.workflow import compile_rulebook
 
-    for path in write_compiled(compile_rulebook(rulebook), output):
+    for path in write_compiled(compile_rulebook(rulebook, warn=print_diagnostics), output):
         print_result(f"wrote {path}")

@@ -72,9 +72,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         problem.show()
         return ExitStatus.NOT_ANSWERED
     except RulecError as error:
-        from rulec.report.console import print_error
+        from rulec.report.console import print_diagnostics
 
-        print_error(error)
+        print_diagnostics(error.diagnostics)
         return ExitStatus.NOT_ANSWERED
     except (click.Abort, KeyboardInterrupt):
         click.echo("\nrulec: interrupted", err=True)

@@ -30,11 +30,11 @@ def command(
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
     from rulec.report import maneuvers as report
-    from rulec.report.console import print_result
+    from rulec.report.console import print_diagnostics, print_result
     from rulec.workflow import compile_rulebook, find_maneuvers
 
     begin = time.perf_counter()
-    rules = compile_rulebook(rulebook)
+    rules = compile_rulebook(rulebook, warn=print_diagnostics)
     found = find_maneuvers(scenario, rules, **options)
     listed = None if n_listed is None else found.cheapest(n_listed)
     seconds = time.perf_counter() - begin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,9 +43,10 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     from rulec.runtime.product import count_paths
     from rulec.trace.json_lines import write_traces
     from rulec.trace.paths import all_traces
-    from rulec.workflow import graph_of_traces
+    from rulec.workflow import navigation_graph
 
-    name, graph = graph_of_traces(scenario, options)
+    cells = navigation_graph(scenario, **{**options, "partition": options["partition"] or "paper"})
+    graph, name = cells.trace_graph(), cells.scenario.name
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(
@@ -55,7 +57,7 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     with progress(f"writing {output}", wanted) as tell:
         found = _told(all_traces(graph, name, wanted), tell)
         if str(output) == "-":
-            write_traces(found, click.get_binary_stream("stdout"))
+            write_traces(found, sys.stdout.buffer)
             return
         with written_whole(output) as stream:
             write_traces(found, stream)

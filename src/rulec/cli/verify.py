@@ -31,11 +31,11 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
     from rulec.report import verdicts
-    from rulec.report.console import print_error, print_result
+    from rulec.report.console import print_diagnostics, print_result
     from rulec.runtime.verdict import Verdict
     from rulec.workflow import compile_rulebook
 
-    rules = compile_rulebook(rulebook)
+    rules = compile_rulebook(rulebook, warn=print_diagnostics)
     satisfied = violated = not_judged = 0
     for answer in _answers(files, rules):
         if isinstance(answer, Verdict):
@@ -47,7 +47,7 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
                 print_result(verdicts.as_text(answer, rules))
         else:
             not_judged += 1
-            print_error(answer.error)
+            print_diagnostics(answer.error.diagnostics)
             if json_output:
                 print_result(verdicts.not_judged_as_json(answer))
     if not json_output:

@@ -49,6 +49,7 @@ CODES: dict[str, str] = {
     "R0403": "Spot is not installed",
     "R0404": "a compiled rulebook is damaged or of another version",
     "R0405": "a rulebook reads relations of two partitions",
+    "R0406": "an example comes out otherwise than it says",
     # 5: traces
     "R0501": "a line is not a trace in JSON",
     "R0502": "a state uses a name that the vocabulary does not know",

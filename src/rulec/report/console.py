@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
 
 import click
 
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import Diagnostic
 from rulec.report.diagnostics import render_diagnostics
 
 if TYPE_CHECKING:
@@ -30,9 +30,11 @@ def print_result(text: str) -> None:
         click.echo(text, color=wants_color(sys.stdout))
 
 
-def print_error(error: RulecError) -> None:
-    """Diagnostics, on standard error."""
-    text = render_diagnostics(error.diagnostics, color=wants_color(sys.stderr)).rstrip("\n")
+def print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
+    """Errors and warnings, on standard error; nothing if there are none."""
+    if not diagnostics:
+        return
+    text = render_diagnostics(diagnostics, color=wants_color(sys.stderr)).rstrip("\n")
     if _bar is not None:
         _print_above(text)
     else:

@@ -1,0 +1,133 @@
+"""What the search for maneuvers found, as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import click
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.partition import Cell, Envelope, NavigationGraph, envelope
+from rulec.runtime.cheapest import Maneuver
+from rulec.workflow import Maneuvers
+
+MOST_NAMED = 6
+"""So many objects' relations fit on a line of text; JSON has them all."""
+
+
+def as_json(
+    found: Maneuvers, listed: Sequence[Maneuver] | None, rules: CompiledRulebook, seconds: float
+) -> str:
+    """The counts and, if maneuvers were asked for, each with cells, cost, margin and envelope."""
+    graph = found.graph
+    data: dict[str, Any] = {
+        "scenario": graph.scenario.name,
+        "rulebook": rules.name,
+        "partition": graph.partition,
+        "adjacency": graph.adjacency,
+        "step_s": graph.step_s,
+        "horizon_s": _horizon_s(graph),
+        "nodes": graph.nodes,
+        "edges": graph.edges,
+        "traces": found.traces,
+        "satisfying": found.satisfying,
+        "seconds": round(seconds, 6),
+    }
+    if listed is not None:
+        data["maneuvers"] = [_as_data(graph, maneuver) for maneuver in listed]
+    return json.dumps(data, ensure_ascii=False)
+
+
+def _as_data(graph: NavigationGraph, maneuver: Maneuver) -> dict[str, Any]:
+    return {
+        "cost": maneuver.cost,
+        "margin_s": maneuver.margin_s,
+        "cells": [
+            {
+                "cell": index,
+                "start_s": layer.start_s,
+                "surface": layer.cells[index].surface,
+                "signature": layer.cells[index].signature,
+            }
+            for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
+        ],
+        "envelope": [_bounds(bounds) for bounds in envelope(graph, maneuver.nodes)],
+    }
+
+
+def _bounds(bounds: Envelope) -> dict[str, Any]:
+    return {
+        "s_min": bounds.s_min,
+        "s_max": bounds.s_max,
+        "d_left": bounds.d_left,
+        "d_right": bounds.d_right,
+    }
+
+
+def as_text(
+    found: Maneuvers, listed: Sequence[Maneuver] | None, rules: CompiledRulebook, seconds: float
+) -> str:
+    """The counts in four lines, and a block for every maneuver that was asked for."""
+    graph = found.graph
+    names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
+    by = f"{rules.name} ({names})" if len(names) <= 60 else rules.name
+    horizon = f"{_horizon_s(graph):g} s in steps of {graph.step_s:g} s"
+    how = f"partition {graph.partition}, adjacency {graph.adjacency}"
+    lines = [
+        f"scenario    {graph.scenario.name}: {horizon}, {how}",
+        f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
+        f"maneuvers   {found.traces:,}",
+        f"satisfying  {click.style(f'{found.satisfying:,}', bold=True)} by {by}",
+        f"computed in {seconds:.3f} s",
+    ]
+    if listed:
+        for number, maneuver in enumerate(listed, 1):
+            lines += ["", *_block(graph, number, maneuver)]
+    return "\n".join(lines)
+
+
+def _block(graph: NavigationGraph, number: int, maneuver: Maneuver) -> list[str]:
+    margin_s = maneuver.margin_s
+    margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
+    lines = [f"{number}. cost {maneuver.cost:.4g} 1/s, {margin}"]
+    rows = [
+        (
+            f"{layer.start_s:g} s",
+            _label(layer.cells[index]),
+            f"s {bounds.s_min:g} … {bounds.s_max:g} m",
+            f"d {_least(bounds.d_right)} … {_most(bounds.d_left)} m",
+        )
+        for layer, index, bounds in zip(
+            graph.layers, maneuver.nodes, envelope(graph, maneuver.nodes), strict=True
+        )
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    for row in rows:
+        padded = [text.ljust(width) for text, width in zip(row, widths, strict=True)]
+        lines.append("   " + "  ".join(padded).rstrip())
+    return lines
+
+
+def _label(cell: Cell) -> str:
+    signature: Mapping[str, str | tuple[str, str]] = cell.signature
+    named = [
+        f"{relation if isinstance(relation, str) else ' '.join(relation)}({name})"
+        for name, relation in list(signature.items())[:MOST_NAMED]
+    ]
+    if len(signature) > MOST_NAMED:
+        named.append(f"and {len(signature) - MOST_NAMED} more")
+    return " ".join([cell.surface, *named])
+
+
+def _least(profile: Sequence[tuple[float, float]]) -> str:
+    return f"{min(d for _, d in profile):g}"
+
+
+def _most(profile: Sequence[tuple[float, float]]) -> str:
+    return f"{max(d for _, d in profile):g}"
+
+
+def _horizon_s(graph: NavigationGraph) -> float:
+    return float((len(graph.layers) - 1) * graph.step)
