@@ -36,8 +36,9 @@ class Declared:
         return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
 
     def may_know(self, name: str) -> bool:
-        """Could the name be declared by something that could not be read?"""
-        return self.opaque or name in self.suspects
+        """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
+        heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
+        return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
     def ancestors(self, type_name: str) -> list[str]:
         """The type and those above it; stops where they close a circle."""
@@ -209,7 +210,7 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
     if near is not None:
         way_out = f"did you mean `{near}`?"
     elif known:
-        way_out = f"the types are {_listed(known)}; another is declared by `type {name.text}`"
+        way_out = f"known are {_listed(known)}; declare another by `type {name.text}`"
     else:
         way_out = f"declare it by `type {name.text}`, or `use` a vocabulary that has types"
     return Diagnostic(

@@ -166,10 +166,13 @@ def _not_a_rulebook(file: tree.File) -> Diagnostic:
 
 def _not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
     assert file.name is not None, "only files with a name have another one"
+    if file.kind == "rulebook":
+        message = f"`{path.name}` is a rulebook, not a vocabulary"
+    else:
+        message = f"`{path.name}` holds another vocabulary, `{file.name.text}`"
     return Diagnostic(
         "R0206",
-        f"`{path.name}` holds the {file.kind} `{file.name.text}`, "
-        f"not the vocabulary `{use.name.text}`",
+        message,
         use.name.span.place,
         expected="expected the name of a vocabulary",
         help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",

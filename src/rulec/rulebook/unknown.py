@@ -22,7 +22,7 @@ def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> 
         values = ", ".join(f"`{_call(value, item)}`" for value in item.values)
         return _not_an_atom(use, declared, "has several values", f"write one of them: {values}")
     if isinstance(item, Quantity):
-        why = f"is a number, in {item.unit}"
+        why = f"is a number (in {item.unit})"
         return _not_an_atom(use, declared, why, "formulas are about signals and values only")
     if name in variables:
         return Diagnostic(
@@ -31,6 +31,15 @@ def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> 
             use.name.span.place,
             expected="expected an atom",
             help=f"say something about it, such as `behind({name})`",
+        )
+    if name in declared.types:
+        return Diagnostic(
+            "R0303",
+            f"`{name}` is a type of objects and cannot be true or false",
+            use.name.span.place,
+            expected="expected an atom",
+            help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
+            labels=(Label(declared.type_spans[name].place, f"`{name}` is declared here"),),
         )
     return _unknown(use, declared, variables)
 
@@ -65,6 +74,9 @@ def _unknown(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) ->
     elif _arity(declared, head) == 1 and not use.arguments:
         known = ", ".join(f"`{one}`" for one in variables) or "none"
         way_out = f"`{head}_{tail}` means `{head}({tail})`; the rule's variables: {known}"
+    elif _arity(declared, head) is not None and tail in variables and not use.arguments:
+        number = _arity(declared, head)
+        way_out = f"`{head}` is about {number or 'no'} objects, so `_{tail}` cannot stand behind it"
     elif near_short is not None and near is None and not use.arguments:
         way_out = f"did you mean `{near_short}`?"
     elif near is not None:

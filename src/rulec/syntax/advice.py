@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rulec.diagnostics import nearest_name
 from rulec.syntax.expectations import wants_operand, wants_operator
 from rulec.syntax.scanner import Token
-from rulec.syntax.words import OPERATOR_WORDS, RESERVED
+from rulec.syntax.words import OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +67,19 @@ def _quotes(scene: Scene) -> str:
 def _rule_head(scene: Scene) -> str:
     if scene.kind != "rule_head":
         return ""
+    word = scene.found.text if scene.found and scene.found.kind == "word" else ""
+    near = nearest_name(word, ("hard", "soft") if "HARD" in scene.accepted else ("rule",))
+    if near is not None and near != word and not scene.accepted.isdisjoint(("HARD", "RULE")):
+        return f"did you mean `{near}`?"
     if "HARD" in scene.accepted:
         return "a rule begins with `hard rule` or `soft rule`"
     if scene.accepted == {"RULE"}:
-        name = scene.found.text if scene.found and scene.found.text not in RESERVED else "NAME"
-        return f"write `{scene.first} rule {name}`"
+        return f"write `{scene.first} rule {'NAME' if word in RESERVED or not word else word}`"
+    if scene.before is not None and (scene.before.text, scene.found and scene.found.text) == (
+        "(",
+        ")",
+    ):
+        return "a rule without variables has no parentheses"
     if scene.accepted == {"COLON"}:
         return "a variable is written with its type, such as `v: vehicle`"
     return ""
@@ -99,7 +108,7 @@ def _state(scene: Scene) -> str:
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):
         return "a state says what holds; for another possibility write another example"
-    if text in OPERATOR_WORDS or text in "GFX":
+    if text in OPERATOR_WORDS or text in ("G", "F", "X"):
         return "a state holds atoms and `not` before a signal; no other operator"
     if scene.found is None and "NAME" in scene.accepted:
         return "a `;` stands between two states; write in each what holds there"
@@ -121,7 +130,8 @@ def _operators(scene: Scene) -> str:
     if text == "[" and before in ("always", "eventually", "next", "G", "F", "X"):
         return "bounds of time cannot be written; `next` goes one step ahead"
     word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
-    if word is not None and text != word:
+    fits = operand if word in UNARY_OPERATORS else "AND" in scene.accepted
+    if word is not None and text != word and fits:
         symbol = _SYMBOL_OF.get(word)
         return f"write `{word}` or `{symbol}`" if symbol else f"write `{word}`"
     if before == "weak" or text == "weak":

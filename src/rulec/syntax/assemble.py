@@ -72,25 +72,29 @@ def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, lis
         mistakes.append(_no_file_line(first))
     titles = [part for part in parts if isinstance(part, tree.TitleLine)]
     laws = [part for part in parts if isinstance(part, tree.LawLine)]
-    for lines, word in ((titles, "`title`"), (laws, "`law`")):
-        mistakes += [_twice(word, line.span, lines[0].span) for line in lines[1:]]
-    mistakes += _used_twice(parts)
-    mistakes += _misplaced(parts)
-    mistakes += _of_the_other_kind(kind, parts)
+    if kind == "vocabulary":
+        mistakes += _not_for_a_vocabulary(parts)
+    else:
+        for lines, word in ((titles, "`title`"), (laws, "`law`")):
+            mistakes += [_twice(word, line.span, lines[0].span) for line in lines[1:]]
+        mistakes += _used_twice(parts)
+        said = {one.place for one in mistakes}
+        mistakes += [one for one in _misplaced(parts) if one.place not in said]
+        mistakes += _no_rule(parts)
     file = tree.File(
         kind,
         None if file_line is None else file_line.name,
         titles[0] if titles else None,
         laws[0] if laws else None,
         tuple(part for part in parts if isinstance(part, tree.UseLine)),
-        tuple(part for part in parts if not isinstance(part, _HEADER)),
+        tuple(part for part in parts if not isinstance(part, _Header)),
         not any(isinstance(part, tree.BrokenItem) and part.word in _OPAQUE for part in parts),
         Span(source, 0, len(source.text)),
     )
     return file, mistakes
 
 
-_HEADER = (tree.FileLine, tree.TitleLine, tree.LawLine, tree.UseLine)
+_Header = tree.FileLine | tree.TitleLine | tree.LawLine | tree.UseLine
 _OPAQUE = ("use", "vocabulary", "rulebook", "}")
 
 
@@ -116,8 +120,8 @@ def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
                 help="move it to a file of its own",
                 labels=(Label(parts[0].span.place, "the file begins here"),),
             )
-        elif not isinstance(part, (*_HEADER, tree.BrokenItem)):
-            item = item or part
+        elif not isinstance(part, _Header):
+            item = item or (None if isinstance(part, tree.BrokenItem) else part)
         elif item is not None:
             yield Diagnostic(
                 "R0115",
@@ -129,25 +133,25 @@ def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
             )
 
 
-def _of_the_other_kind(kind: str, parts: Sequence[Item]) -> Iterable[Diagnostic]:
-    if kind == "rulebook":
-        rules = (tree.RuleItem, tree.BrokenItem)
-        if not any(isinstance(part, rules) for part in parts):
-            yield Diagnostic(
-                "R0114",
-                "the rulebook has no rule",
-                _start(parts[0].span).place,
-                help="a rule is written `hard rule NAME { require … }`",
-            )
-        return
-    for part in parts:
-        if isinstance(part, tree.RuleItem | tree.TitleLine | tree.LawLine | tree.UseLine):
+def _no_rule(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+    if not any(isinstance(part, tree.RuleItem | tree.BrokenItem) for part in parts):
+        yield Diagnostic(
+            "R0114",
+            "the rulebook has no rule",
+            _start(parts[0].span).place,
+            help="a rule is written `hard rule NAME { require … }`",
+        )
+
+
+def _not_for_a_vocabulary(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+    for part in parts[1:]:
+        if isinstance(part, tree.RuleItem | _Header):
             yield Diagnostic(
                 "R0115",
                 "a vocabulary holds declarations only",
                 _start(part.span).place,
                 expected="expected a declaration",
-                help="rules and their header lines belong into a rulebook",
+                help="rules and header lines belong into a rulebook",
             )
 
 

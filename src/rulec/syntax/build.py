@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from calendar import monthrange
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from datetime import date
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
@@ -195,14 +195,11 @@ class Builder:
 
     def date(self, leaf: Leaf) -> str:
         """ISO text of a date that exists."""
-        try:
-            if not _ISO_DATE.fullmatch(leaf.text):
-                raise ValueError("write year-month-day, such as 2006-03-28")
-            return date.fromisoformat(leaf.text).isoformat()
-        except ValueError as reason:
+        wrong = _why_not_a_day(leaf.text)
+        if wrong:
             why = f"`{leaf.text}` is not a day of the calendar"
-            self._mistake("R0110", leaf.start, len(leaf.text), why, str(reason))
-            return ""
+            self._mistake("R0110", leaf.start, len(leaf.text), why, wrong)
+        return "" if wrong else leaf.text
 
     def number(self, leaf: Leaf) -> float:
         """A finite number; 0 in place of one that is too large."""
@@ -219,6 +216,19 @@ class Builder:
         }
         place = Span(self.source, position, position + length).place
         self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))
+
+
+def _why_not_a_day(text: str) -> str:
+    """Empty for a day of the Gregorian calendar in ISO 8601's form."""
+    if not _ISO_DATE.fullmatch(text):
+        return "write year-month-day, such as 2006-03-28"
+    year, month, day = (int(part) for part in text.split("-"))
+    if year < 1:
+        return "years begin with 0001"
+    if not 1 <= month <= 12:
+        return "months go from 01 to 12"
+    days = monthrange(year, month)[1]
+    return "" if 1 <= day <= days else f"days go from 01 to {days} in that month"
 
 
 def _misleads(character: str) -> bool:

@@ -25,7 +25,7 @@ _WORDS = {
     "COLON": "`:`",
     "AND": "`and`",
     "NOT": "`not`",
-    "$END": "the end of it",
+    "$END": "nothing more",
 }
 _ORDER = ("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT", "RPAR", "LPAR", "COLON", "COMMA")
 

@@ -65,14 +65,15 @@ class Landmarks:
             return False
         follows_on = self.wants_more(index - 1) and not token.first
         if token.text in ITEM_WORDS:
-            if token.text == "rule" and not token.first:
+            if token.text == "rule" and (not token.first or self.is_word(index - 1, *RULE_WORDS)):
                 return False
             return not follows_on
         if token.text in RESERVED:
             return False
-        if self._begins_enumeration(index) and not self.wants_more(index - 1):
-            return True
-        return token.first and not self.wants_more(index - 1)
+        if not self.wants_more(index - 1):
+            return token.first or self._begins_enumeration(index)
+        anew = token.first and not self.is_word(index - 1, "type")
+        return anew and self._begins_enumeration(index)
 
     def begins_item_inside(self, index: int) -> bool:
         """Does an item begin here although braces are still open?
@@ -89,7 +90,7 @@ class Landmarks:
         if self.is_word(index, "title", "law"):
             return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "string"
         if token.text in ITEM_WORDS:
-            return self.is_name(index + 1)
+            return self.is_name(index + 1) and not self.is_word(index - 1, *RULE_WORDS)
         return self._begins_enumeration(index)
 
     def begins_clause(self, index: int) -> bool:

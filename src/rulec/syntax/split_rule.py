@@ -9,6 +9,7 @@ from rulec.syntax.landmarks import Landmarks
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.scanner import Token
 from rulec.syntax.structure_messages import StructureMessages
+from rulec.syntax.words import CLAUSE_WORDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +47,9 @@ class RuleSplitter:
                 if ended:
                     return RulePieces(head, tuple(body), first, index)
             else:
-                kind = self.marks.begins_clause(index)
+                known = self.marks.is_word(index, *CLAUSE_WORDS)
                 end = self._end_of_clause(index)
-                body.append(Piece("clause" if kind else "junk", index, end))
+                body.append(Piece("clause" if known else "junk", index, end))
                 index = end
         self.mistakes.append(self.say.no_close(opened, index))
         return RulePieces(head, tuple(body), first, index)
@@ -66,15 +67,24 @@ class RuleSplitter:
         )
 
     def _end_of_clause(self, first: int) -> int:
-        index, depth = first + 1, 0
+        index, braces, parentheses = first + 1, 0, 0
         while index < len(self.tokens):
             if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
                 break
-            if self.marks.is_symbol(index, "}") and depth == 0:
+            if braces == 0 and self.marks.is_symbol(index, "}"):
                 break
-            depth += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
+            if braces == parentheses == 0 and self._begins_anew(index):
+                break
+            braces += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
+            closes = self.marks.is_symbol(index, ")")
+            parentheses = max(0, parentheses + self.marks.is_symbol(index, "(") - closes)
             index += 1
         return index
+
+    def _begins_anew(self, index: int) -> bool:
+        """A name on a line of its own behind something complete: a clause that is misspelt."""
+        first = self.tokens[index].first and self.marks.is_name(index)
+        return first and not self.marks.wants_more(index - 1)
 
     def _example(self, first: int) -> tuple[ExamplePieces, bool]:
         """The example, and whether the file ends inside it."""
@@ -112,6 +122,8 @@ class RuleSplitter:
             self.marks.is_symbol(behind, "}") or self._at_clause(behind)
         ):
             end = behind
-        labelled = first + 1 < end and self.tokens[first + 1].kind == "string"
-        self.mistakes.append(self.say.no_open(first + labelled, "the example's states"))
+        label = self.tokens[first + 1].kind if first + 1 < end else ""
+        if label == "unterminated":
+            return ExamplePieces(Piece("example_head", first, end), (), end)
+        self.mistakes.append(self.say.no_open(first + (label == "string"), "the example's states"))
         return ExamplePieces(Piece("example_head", first, end, reported=True), (), end)
