@@ -27,7 +27,7 @@ os.execvp(sys.argv[2], sys.argv[2:])
 # it leaves in its temporary folder when it is ended goes with the environment.
 quietly() {
     mkdir -p "$stamps/tmp" 2>/dev/null
-    TMPDIR=$stamps/tmp "$python" -E -c "$in_own_group" "$home" "$@" >>"$log" 2>&1 </dev/null &
+    TMPDIR=$stamps/tmp "$python" -E -c "$in_own_group" "$home" "$@" >"$log" 2>&1 </dev/null &
     child=$!
     wait "$child"
     status=$?

@@ -1,0 +1,53 @@
+"""Where Spot's wheel does not fit, and how a Spot from conda-forge makes up for it."""
+
+import pytest
+
+FOREIGN = {
+    "macOS arm64": {"system": "Darwin", "machine": "arm64", "libc": None},
+    "Linux aarch64 with glibc 2.36": {"machine": "aarch64"},
+    "Linux x86_64 with glibc 2.33": {"libc": "glibc 2.33"},
+    "Linux x86_64 without glibc": {"libc": None},
+    "Linux x86_64 (32-bit Python) with glibc 2.36": {"maxsize": 2**31 - 1},
+    "Windows AMD64": {"system": "Windows", "machine": "AMD64", "libc": None},
+}
+
+
+@pytest.mark.parametrize("place", FOREIGN)
+def test_platform_without_wheel_is_refused_with_the_way_out(checkout, place):
+    checkout.add_tool("python3", **FOREIGN[place])
+    result = checkout.call()
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert f"this is {place}." in result.stderr
+    assert "conda-forge" in result.stderr
+    assert "RULEC_PYTHON" in result.stderr
+    assert checkout.calls() == []
+    assert not checkout.environment.exists()
+
+
+@pytest.mark.parametrize("libc", ["glibc 2.34", "glibc 2.36", "glibc 2.100", "glibc 3.0"])
+def test_glibc_from_2_34_will_do(checkout, libc):
+    checkout.add_tool("python3", libc=libc)
+    assert checkout.call().returncode == 0
+    assert "--system-site-packages" not in checkout.calls("venv")[0]["arguments"]
+
+
+@pytest.mark.parametrize("place", FOREIGN)
+@pytest.mark.parametrize("tool", ["venv", "uv venv"])
+def test_own_spot_stands_for_the_wheel(checkout, place, tool):
+    checkout.add_tool("python3", **FOREIGN[place], spot="2.14.1")
+    if tool == "uv venv":
+        checkout.add_tool("uv")
+    assert checkout.call().returncode == 0
+    assert "--system-site-packages" in checkout.calls(tool)[0]["arguments"]
+    stand_in = checkout.environment / "site" / "spottl-2.14.1.dist-info" / "METADATA"
+    assert "Name: spottl\nVersion: 2.14.1\n" in stand_in.read_text()
+
+
+def test_own_spot_stays_with_the_environment(checkout):
+    looks = FOREIGN["macOS arm64"]
+    checkout.add_tool("python3", **looks)
+    conda = checkout.add_tool("conda", **looks, spot="2.14.1")
+    assert checkout.call(RULEC_PYTHON=str(conda)).returncode == 0
+    (checkout.folder / "pyproject.toml").write_text("# pulled\n")
+    assert checkout.call().returncode == 0  # not asked for again, and python3 would not do

@@ -1,0 +1,95 @@
+"""Once the environment is there, the launcher is invisible."""
+
+import json
+import shutil
+
+import pytest
+
+AWKWARD = ["", "two words", "*", "$HOME", "'\"", "-x", "--", "ä\nb"]
+
+
+def seen(result):
+    return json.loads(result.stdout.splitlines()[0])
+
+
+def test_arguments_arrive_untouched(ready):
+    result = ready.call(*AWKWARD)
+    assert seen(result)["arguments"] == AWKWARD
+    assert result.stderr == ""
+
+
+def test_status_and_standard_input_are_the_commands(ready):
+    result = ready.call("seven", stdin="a trace\n")
+    assert result.returncode == 7
+    assert result.stdout.endswith("a trace\n")
+
+
+def test_standard_input_survives_the_first_call(checkout):
+    assert checkout.call(stdin="a trace\n").stdout.endswith("a trace\n")
+
+
+def test_no_installer_runs_again(ready):
+    ready.call()
+    assert ready.calls() == []
+
+
+def test_command_stays_in_the_callers_folder(ready, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    assert seen(ready.call(cwd=elsewhere))["folder"] == str(elsewhere)
+    assert seen(ready.call(command=["../checkout/rulec"], cwd=elsewhere))["folder"] == str(
+        elsewhere
+    )
+
+
+def test_command_is_found_through_relative_and_absolute_links(ready, tmp_path):
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "rule").symlink_to("../checkout/rulec")
+    (tmp_path / "link").symlink_to(tmp_path / "bin" / "rule")
+    result = ready.call(command=[tmp_path / "link"], cwd=tmp_path)
+    assert seen(result)["script"] == str(ready.environment / "bin/rulec")
+
+
+def test_modules_from_elsewhere_are_kept_out(ready):
+    assert seen(ready.call(PYTHONPATH="/x", PYTHONHOME="/x"))["strangers"] == []
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_command_inherits_no_descriptor_of_the_set_up(checkout, first):
+    if not first:
+        checkout.call()
+    assert seen(checkout.call())["descriptors"] == []
+
+
+@pytest.mark.parametrize("name", ["with space", "größe", "a'b", "$x", "-dash"])
+def test_any_folder_name_will_do(checkout, tmp_path, name):
+    home = tmp_path / name
+    checkout.folder.rename(home)
+    for _ in "first", "second":
+        result = checkout.call("a b", command=[home / "rulec"], cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        assert seen(result)["script"] == str(home / ".venv/bin/rulec")
+    assert result.stderr == ""
+
+
+SHELLS = ["sh", "dash", "bash --posix", "busybox sh", "ksh", "zsh --emulate sh"]
+
+
+@pytest.mark.parametrize("shell", [s for s in SHELLS if shutil.which(s.split()[0])])
+def test_any_posix_shell_will_do(checkout, shell):
+    name, *options = shell.split()
+    command = [shutil.which(name), *options, "rulec"]
+    for _ in "first", "second":
+        result = checkout.call("a b", command=command)
+        assert result.returncode == 0, result.stderr
+        assert seen(result)["arguments"] == ["a b"]
+    assert result.stderr == ""
+
+
+def test_copied_out_of_its_checkout_it_says_so(checkout, tmp_path):
+    alone = shutil.copy(checkout.folder / "rulec", tmp_path / "rulec")
+    result = checkout.call(command=[alone])
+    assert result.returncode == 2
+    assert result.stderr == (
+        f"rulec: {alone} is not in a checkout of rulec. Link to a checkout's rulec instead.\n"
+    )
