@@ -1,0 +1,55 @@
+"""``rulec compile`` as its user meets it."""
+
+import spot
+
+from rulec.cli.main import main
+
+
+def test_files_and_their_contents(tmp_path, capsys):
+    folder = tmp_path / "out"
+    assert main(["compile", "esterle2019", "-o", str(folder)]) == 0
+    names = ["R1.hoa", "R2.hoa", "R3.hoa", "esterle2019.json"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    assert capsys.readouterr().out.splitlines() == [f"wrote {folder / name}" for name in names]
+    hoa = (folder / "R1.hoa").read_text()
+    assert hoa.startswith("HOA: v1\n")
+    assert 'rulec-cite: "Article 11.1, 11.6"' in hoa
+    automaton = spot.automaton(str(folder / "R1.hoa"))
+    assert automaton.get_name() == "R1"
+    assert {ap.ap_name() for ap in automaton.ap()} == {"CONGESTED", "b(v)", "r(v)", "f(v)"}
+
+
+def test_a_rulebook_with_mistakes_writes_nothing(tmp_path, capsys):
+    source = tmp_path / "bad.rules"
+    source.write_text("rulebook bad\nuse paper\nhard rule A { require CONGSTED }\n")
+    assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
+    assert "CONGESTED" in capsys.readouterr().err
+
+
+def test_an_example_that_comes_out_otherwise_is_a_warning(tmp_path, capsys):
+    source = tmp_path / "odd.rules"
+    source.write_text(
+        "rulebook odd\nuse paper\n"
+        "hard rule A (v: vehicle) {\n"
+        "  require always not r(v)\n"
+        "  accept { b(v); l(v) }\n"
+        "  accept { b(v); r(v) }\n"
+        "  reject { b(v); l(v) }\n"
+        "}\n"
+    )
+    assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 0
+    err = capsys.readouterr().err
+    assert "example number 2 of rule A says `accept`, but the rule rejects it" in err
+    assert "example number 3 of rule A says `reject`, but the rule accepts it" in err
+    assert "number 1" not in err
+
+
+def test_a_rule_that_explodes(tmp_path, capsys):
+    atoms = ", ".join(f"s{i}" for i in range(16))
+    untils = " xor ".join(f"(s{i} until s{i + 1})" for i in range(0, 16, 2))
+    source = tmp_path / "boom.rules"
+    source.write_text(f"rulebook boom\nsignal {atoms}\nhard rule Boom {{ require {untils} }}\n")
+    assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
+    assert "rule Boom would be too large" in capsys.readouterr().err

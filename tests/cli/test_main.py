@@ -1,0 +1,139 @@
+"""What all verbs share: help, statuses, terminals, pipes and Ctrl-C."""
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rulec.cli.main import VERBS, main
+
+RULEC = [sys.executable, "-c", "from rulec.cli.main import main; raise SystemExit(main())"]
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == "rulec 0.1.0\n"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_explains_itself(verb, capsys):
+    assert main([verb, "--help"]) == 0
+    assert "Usage: rulec" in capsys.readouterr().out
+
+
+def test_help_lists_the_verbs_and_the_exit_status(capsys):
+    assert main(["--help"]) == 0
+    out = capsys.readouterr().out
+    assert all(verb in out for verb in VERBS)
+    assert "Exit status" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["verfy"], "Did you mean 'verify'?"),
+        (["maneuvers", "s2"], "Missing option '-r' / '--rulebook'"),
+        (["maneuvers", "s2", "-r", "esterle2019", "--adjacency", "near"], "'touch'"),
+        (["maneuvers", "s2", "-r", "esterle2019", "--list", "-1"], "--list"),
+    ],
+)
+def test_wrong_usage_is_status_2(arguments, words, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert words in captured.err
+
+
+def test_a_bug_is_status_70_with_a_line_to_report(monkeypatch, capsys):
+    def broken(*_, **__):
+        raise KeyError("oops")
+
+    monkeypatch.setattr("rulec.workflow.compile_rulebook", broken)
+    assert main(["verify", "x", "-r", "esterle2019"]) == 70
+    err = capsys.readouterr().err
+    assert "bug in rulec" in err
+    assert "RULEC_TRACEBACK=1" in err
+    assert "Traceback" not in err
+
+
+def test_a_reader_that_has_seen_enough_is_no_error():
+    writer = subprocess.Popen(
+        [*RULEC, "traces", "s2", "--step", "0.5", "-o", "-"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert writer.stdout.readline().startswith(b'{"id":"s2-1"')
+    writer.stdout.close()
+    assert writer.stderr.read() == b""
+    writer.stderr.close()
+    writer.wait()
+
+
+def test_ctrl_c_leaves_nothing_half_written(tmp_path):
+    file = tmp_path / "traces.jsonl"
+    writer = subprocess.Popen(
+        [*RULEC, "traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", str(file)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not any(part.stat().st_size for part in tmp_path.iterdir()):
+        assert writer.poll() is None
+        time.sleep(0.01)
+    writer.send_signal(signal.SIGINT)
+    out, err = writer.communicate()
+    assert writer.returncode == 130
+    assert (out, err.strip()) == ("", "rulec: interrupted")
+    assert list(tmp_path.iterdir()) == []
+
+
+def on_terminal(arguments, environment):
+    """What the program shows on a terminal."""
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        [*RULEC, *arguments],
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs,
+        env={**os.environ, "TERM": "xterm-256color", "COLUMNS": "100", **environment},
+    )
+    os.close(theirs)
+    shown = b""
+    try:
+        while chunk := os.read(ours, 65536):
+            shown += chunk
+    except OSError:  # the program has closed its side
+        pass
+    os.close(ours)
+    process.wait()
+    return shown.decode()
+
+
+def test_a_terminal_gets_colour_and_progress(tmp_path):
+    file = str(tmp_path / "t.jsonl")
+    shown = on_terminal(["traces", "s2", "--step", "0.5", "-o", file], {})
+    assert "writing" in shown
+    assert "%" in shown
+    shown = on_terminal(["verify", file, "-r", "esterle2019"], {})
+    assert "\x1b[31m" in shown
+    assert "39,910 violated" in shown
+
+
+def test_no_color_is_obeyed():
+    arguments = ["maneuvers", "s2", "-r", "nope"]
+    assert "\x1b[" in on_terminal(arguments, {})
+    shown = on_terminal(arguments, {"NO_COLOR": "1"})
+    assert "\x1b[" not in shown
+    assert "error" in shown
+
+
+def test_a_pipe_gets_neither(tmp_path):
+    done = subprocess.run(
+        [*RULEC, "traces", "s2", "-o", str(tmp_path / "t")], capture_output=True, check=True
+    )
+    assert done.stderr == b""
+    assert b"\x1b" not in done.stdout

@@ -1,0 +1,159 @@
+"""``rulec maneuvers`` and ``rulec traces`` as their user meets them."""
+
+import json
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.workflow import find_maneuvers
+
+
+def answer(capsys, *arguments):
+    status = main(["maneuvers", *arguments])
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def test_text(capsys):
+    status, out, err = answer(capsys, "s2", "--rulebook", "esterle2019")
+    assert (status, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[:4] == [
+        "scenario    s2: 4 s in steps of 1 s, partition paper, adjacency touch",
+        "graph       35 nodes, 124 edges",
+        "maneuvers   139",
+        "satisfying  83 by esterle2019 (R1, R2, R3)",
+    ]
+    assert len(lines) == 5
+
+
+def test_the_list_is_sorted_and_complete(capsys):
+    _, out, _ = answer(capsys, "s2", "--rulebook", "esterle2019", "--list", "1000", "--json")
+    found = json.loads(out)
+    maneuvers = found["maneuvers"]
+    assert len(maneuvers) == found["satisfying"] == 83
+    costs = [maneuver["cost"] for maneuver in maneuvers]
+    assert costs == sorted(costs)
+    paths = [tuple(cell["cell"] for cell in maneuver["cells"]) for maneuver in maneuvers]
+    assert len(set(paths)) == 83
+    # Staying behind the vehicle costs nothing and is never too late.
+    assert (costs[0], maneuvers[0]["margin_s"], len(set(paths[0]))) == (0, None, 1)
+    for maneuver in maneuvers[1:]:
+        assert maneuver["cost"] > 0
+        assert 1 <= maneuver["margin_s"] <= 5
+        for bounds in maneuver["envelope"]:
+            assert bounds["s_min"] < bounds["s_max"]
+            assert bounds["d_right"][0][0] == bounds["d_left"][0][0] == bounds["s_min"]
+            assert bounds["d_right"][0][1] < bounds["d_left"][0][1]
+
+
+def test_listing_none_and_not_listing(capsys):
+    _, out, _ = answer(capsys, "s1", "-r", "esterle2019", "--list", "0", "--json")
+    assert json.loads(out)["maneuvers"] == []
+    _, out, _ = answer(capsys, "s1", "-r", "esterle2019", "--json")
+    assert "maneuvers" not in json.loads(out)
+
+
+def test_no_satisfying_maneuver_is_status_1(tmp_path, capsys):
+    source = tmp_path / "stop.rules"
+    source.write_text("rulebook stop\nuse paper\nhard rule A (v: vehicle) { require l(v) }\n")
+    status, out, _ = answer(capsys, "s2", "--rulebook", str(source))
+    assert status == 1
+    assert "satisfying  0 by stop (A)" in out
+
+
+def test_soft_rules_reject_nothing(tmp_path, capsys):
+    source = tmp_path / "wish.rules"
+    source.write_text("rulebook wish\nuse paper\nsoft rule A (v: vehicle) { require l(v) }\n")
+    status, out, _ = answer(capsys, "s2", "--rulebook", str(source), "--json")
+    assert status == 0
+    assert json.loads(out)["satisfying"] == 139
+
+
+def test_the_rulebook_chooses_the_partition(tmp_path, capsys):
+    source = tmp_path / "roadwise.rules"
+    source.write_text(
+        "rulebook roadwise\nuse road\n"
+        "hard rule A (v: vehicle) { require always not (beside(v) and right_of(v)) }\n"
+    )
+    for scenario in ("s1", "s2", "s3"):
+        status, out, err = answer(capsys, scenario, "--rulebook", str(source), "--json")
+        assert (status, err) == (0, "")
+        assert json.loads(out)["partition"] == "fine"
+
+
+def test_a_partition_that_does_not_supply_what_rules_read(capsys):
+    status, _, err = answer(capsys, "s2", "-r", "esterle2019", "--partition", "fine")
+    assert status == 2
+    assert "position" in err
+
+
+def test_relations_of_two_partitions(tmp_path, capsys):
+    source = tmp_path / "mixed.rules"
+    source.write_text(
+        "rulebook mixed\ntype vehicle\n"
+        "position(v: vehicle) is one of b, f, l, r\n"
+        "station(v: vehicle) is one of behind, beside, in_front_of\n"
+        "hard rule A (v: vehicle) { require b(v) or behind(v) }\n"
+    )
+    status, _, err = answer(capsys, "s2", "--rulebook", str(source))
+    assert status == 2
+    assert "no one partition" in err
+
+
+@pytest.mark.parametrize("adjacency", ["touch", "edge", "forward"])
+@pytest.mark.parametrize("partition", ["paper", "fine"])
+def test_counting_is_enumerating_for_every_graph(adjacency, partition, tmp_path, capsys):
+    rule = "always not r(v)" if partition == "paper" else "always not right_of(v)"
+    vocabulary = "paper" if partition == "paper" else "road"
+    source = tmp_path / "any.rules"
+    source.write_text(
+        f"rulebook any\nuse {vocabulary}\nhard rule A (v: vehicle) {{ require {rule} }}\n"
+    )
+    how = ["s2", "--adjacency", adjacency, "--horizon", "3"]
+    _, out, _ = answer(capsys, *how, "--rulebook", str(source), "--json")
+    counted = json.loads(out)
+    file = str(tmp_path / "t.jsonl")
+    assert main(["traces", *how, "--partition", partition, "-o", file]) == 0
+    capsys.readouterr()
+    main(["verify", file, "--rulebook", str(source), "--json"])
+    verdicts = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert len(verdicts) == counted["traces"]
+    assert sum(verdict["satisfied"] for verdict in verdicts) == counted["satisfying"]
+
+
+def test_an_unknown_scenario_names_the_nearest(capsys):
+    status, _, err = answer(capsys, "s22", "--rulebook", "esterle2019")
+    assert status == 2
+    assert "s2" in err
+
+
+def test_traces_to_standard_output(capfdbinary):
+    assert main(["traces", "s1", "-o", "-"]) == 0
+    assert len(capfdbinary.readouterr().out.splitlines()) == 16
+
+
+def test_a_limit(tmp_path, capsys):
+    file = tmp_path / "t.jsonl"
+    assert main(["traces", "s2", "--limit", "5", "-o", str(file)]) == 0
+    assert len(file.read_text().splitlines()) == 5
+    assert "wrote 5 of 139 traces" in capsys.readouterr().out
+
+
+def test_too_many_traces_are_not_begun(tmp_path, capsys):
+    file = tmp_path / "t.jsonl"
+    assert main(["traces", "s2", "--step", "0.25", "-o", str(file)]) == 2
+    assert "--limit" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unwritable_file(tmp_path, capsys):
+    assert main(["traces", "s1", "-o", str(tmp_path / "no" / "t.jsonl")]) == 2
+    assert "no such file or directory" in capsys.readouterr().err
+
+
+def test_the_interface_gives_networkx_and_lazy_maneuvers():
+    found = find_maneuvers("s2", "esterle2019", step_s=0.5)
+    graph = found.graph.to_networkx()
+    assert (graph.number_of_nodes(), graph.number_of_edges()) == (63, 248)
+    assert len(found.cheapest(7)) == 7

@@ -1,0 +1,132 @@
+"""``rulec verify`` as its user meets it."""
+
+import json
+
+import pytest
+
+from rulec.cli.main import main
+
+OBJECTS = {"v1": "vehicle"}
+
+
+def line(name, positions, **more):
+    states = [{"position": {"v1": p}, "surface": "R_cw", "CONGESTED": False} for p in positions]
+    return json.dumps({"id": name, "step_s": 1.0, "objects": OBJECTS, "states": states, **more})
+
+
+@pytest.fixture
+def verify(tmp_path, capsys):
+    """Run `rulec verify --rulebook esterle2019` on files of the given lines."""
+
+    def run(*files, options=()):
+        paths = []
+        for number, lines in enumerate(files):
+            path = tmp_path / f"{number}.jsonl"
+            path.write_text("\n".join(lines))
+            paths.append(str(path))
+        status = main(["verify", *paths, "--rulebook", "esterle2019", *options])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return run
+
+
+def test_the_documented_line_of_json(verify):
+    status, out, err = verify([line("t1", "brrf")], options=["--json"])
+    assert (status, err) == (1, "")
+    assert json.loads(out) == {
+        "trace": "t1",
+        "satisfied": False,
+        "violations": [{"rule": "R1", "binding": {"v": "v1"}, "step": 3, "strength": "hard"}],
+    }
+
+
+def test_satisfied(verify):
+    status, out, err = verify([line("t1", "bblf")], options=["--json"])
+    assert (status, err) == (0, "")
+    assert json.loads(out) == {"trace": "t1", "satisfied": True, "violations": []}
+
+
+def test_text(verify):
+    status, out, err = verify([line("t1", "brrf"), line("t2", "bblf")])
+    assert (status, err) == (1, "")
+    assert out == (
+        "t1: violated\n"
+        "  hard rule R1 [Article 11.1, 11.6] for v = v1: beyond saving after state 3\n"
+        "2 traces: 1 satisfied, 1 violated\n"
+    )
+
+
+def test_a_bad_trace_never_hides_the_good_ones(verify):
+    lines = [line("t1", "brrf"), '{"id": "t2", "stat', line("t3", "bblx"), line("t4", "bblf")]
+    status, out, err = verify(lines, options=["--json"])
+    assert status == 2
+    t1, t2, t3, t4 = map(json.loads, out.splitlines())
+    assert (t1["satisfied"], t4["satisfied"]) == (False, True)
+    assert (t2["trace"], t2["error"]["line"], t2["error"]["code"]) == (None, 2, "R0501")
+    assert (t3["trace"], t3["error"]["line"], t3["error"]["code"]) == ("t3", 3, "R0503")
+    assert "0.jsonl:2" in err
+    assert "0.jsonl:3" in err
+
+
+def test_a_missing_file_never_hides_the_others(verify, tmp_path):
+    status, out, err = verify([line("t4", "bblf")], options=[str(tmp_path / "missing.jsonl")])
+    assert status == 2
+    assert "2 traces: 1 satisfied, 0 violated, 1 not judged" in out
+    assert "missing.jsonl: no such file" in err
+
+
+def test_an_empty_file_is_not_satisfied(verify):
+    status, _, err = verify([])
+    assert status == 2
+    assert "no trace" in err
+
+
+def test_several_files(verify):
+    status, out, _ = verify([line("t1", "bblf")], [line("t2", "brrf")])
+    assert status == 1
+    assert "2 traces: 1 satisfied, 1 violated" in out
+
+
+def test_standard_input(capsys, monkeypatch, tmp_path):
+    path = tmp_path / "in"
+    path.write_text(line("t1", "brrf"))
+    with path.open() as stream:
+        monkeypatch.setattr("sys.stdin", stream)
+        status = main(["verify", "-", "--rulebook", "esterle2019"])
+    assert status == 1
+    assert "1 violated" in capsys.readouterr().out
+
+
+def test_an_unknown_rulebook_names_the_nearest(verify, capsys):
+    status = main(["verify", "x.jsonl", "--rulebook", "esterle2091"])
+    captured = capsys.readouterr()
+    assert status == 2
+    assert captured.out == ""
+    assert "esterle2019" in captured.err
+
+
+def test_a_source_and_what_it_compiles_to_judge_alike(tmp_path, capsys):
+    traces = tmp_path / "t.jsonl"
+    traces.write_text("\n".join(line(f"t{n}", word) for n, word in enumerate(["brrf", "bblf"])))
+    source = tmp_path / "mine.rules"
+    source.write_text(
+        "rulebook mine\nuse paper\nsoft rule gentle (v: vehicle) { require never_right }\n".replace(
+            "never_right", "always not r(v)"
+        )
+    )
+    assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 0
+    capsys.readouterr()
+    outputs = []
+    for rulebook in (source, tmp_path / "out" / "mine.json"):
+        status = main(["verify", str(traces), "--json", "--rulebook", str(rulebook)])
+        outputs.append((status, capsys.readouterr().out))
+    assert outputs[0] == outputs[1]
+    status, out = outputs[0]
+    first = json.loads(out.splitlines()[0])
+    # A soft rule may yield: the trace satisfies the rulebook, and the violation is told.
+    assert status == 0
+    assert first["satisfied"]
+    assert first["violations"] == [
+        {"rule": "gentle", "binding": {"v": "v1"}, "step": 1, "strength": "soft"}
+    ]
