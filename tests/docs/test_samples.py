@@ -1,0 +1,95 @@
+"""What the README and the documentation show is what happens."""
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rulec.automata.compiled_file import to_json
+from rulec.cli.main import main
+from rulec.rulebook.loader import parse_rulebook
+from rulec.runtime.examples import failing_examples
+from rulec.runtime.verify import run
+from rulec.workflow import compile_rulebook
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(language):
+    for page in PAGES:
+        for number, text in enumerate(
+            re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+        ):
+            yield pytest.param(text, id=f"{page.name}-{number}")
+
+
+def commands():
+    for block in blocks("console"):
+        (text,) = block.values
+        for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
+            command, _, output = part.partition("\n")
+            if command != "tests/run":  # this is it
+                yield pytest.param(command, output, id=f"{block.id}-{command}")
+
+
+def without_times(text):
+    return re.sub(r"computed in .* s|\"seconds\": [0-9.]+", "", text)
+
+
+@pytest.mark.parametrize(("command", "output"), list(commands()))
+def test_commands_print_what_is_shown(command, output, tmp_path, monkeypatch, capsys):
+    for folder in ("docs", "rulebooks"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
+    monkeypatch.chdir(tmp_path)
+    program, *arguments = shlex.split(command)
+    assert program == "./rulec"
+    main(arguments)
+    captured = capsys.readouterr()
+    assert without_times(captured.out + captured.err) == without_times(output)
+
+
+def test_there_are_commands():
+    assert len(list(commands())) >= 5
+
+
+@pytest.mark.parametrize("text", list(blocks("rulec")))
+def test_rulebooks_check(text):
+    if re.search(r"^rulebook ", text, re.MULTILINE):
+        rulebook = parse_rulebook(text)
+        compiled = compile_rulebook(rulebook)
+        assert list(failing_examples(rulebook, compiled)) == []
+
+
+def test_the_python_sample_prints_what_is_shown():
+    page = (ROOT / "docs" / "python.md").read_text()
+    program, output = re.search(
+        r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL
+    ).groups()
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == output
+
+
+def test_the_run_of_a_compiled_machine_is_as_documented():
+    page = (ROOT / "docs" / "compiled.md").read_text()
+    names = {}
+    exec(re.search(r"```python\n(.*?)```", page, re.DOTALL).group(1), names)
+    rules = compile_rulebook("esterle2019")
+    for rule, data in zip(rules.rules, json.loads(to_json(rules))["rules"], strict=True):
+        machine = data["machine"]
+        everything = range(len(machine["letters"]))
+        for word in ([a, b, c] for a in everything for b in everything for c in everything):
+            classes = [rule.machine.letters[letter] for letter in word]
+            assert names["accepts"](machine, word) == run(rule.machine, classes)[0]
+
+
+def test_every_link_between_pages_leads_somewhere():
+    for page in PAGES:
+        for target in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
