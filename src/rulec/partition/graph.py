@@ -1,7 +1,7 @@
 """The navigation graph: cells of every layer, and the steps between them.
 
-Definitions: Esterle, Aravantinos, Knoll, IV 2019, section "Free Space-Time Partitioning"; where that
-leaves one open, ours is in ``docs/scenarios.md``.
+Definitions: Esterle, Aravantinos, Knoll, IV 2019, "Free Space-Time Partitioning"; where that leaves
+one open, ours is in ``docs/scenarios.md``.
 """
 
 from __future__ import annotations

@@ -2,8 +2,9 @@
 
 An edge from A at layer p to B at p + 1: A continues as some A', B continues some B°, A and B° are
 adjacent or the same at p, A' and B at p + 1. If B continues A it is staying. Else it is a change,
-and it stays open as long as the two remain adjacent: the longest run of layers back from (A, B°) and
-on from (A', B), following continuations. The 2019 paper names the quantity; this reading is ours.
+and it stays open as long as the two remain adjacent: the longest run of layers back from (A, B°)
+and on from (A', B), following continuations. The 2019 paper names the quantity; this reading of it
+is ours.
 """
 
 from __future__ import annotations

@@ -38,12 +38,13 @@ def start_cell(
             )
         )
     blockers = " and ".join(repr(scenario.obstacles[region.obstacle].id) for region in in_the_way)
+    verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
     finer = _step_that_leaves_room(scenario, timing, partition)
     raise RulecError(
         Diagnostic(
             "R0607",
-            f"{blockers} sweeps ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
+            f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
             "so ego has no free cell to start from",
             expected="a free place, the whole width of each obstacle's lanes counting as taken",
             help=f"a step of {float(finer.step):g} s would do"

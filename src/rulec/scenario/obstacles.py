@@ -10,7 +10,7 @@ from rulec.scenario.fields import Findings, read_table, shown
 from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
 from rulec.scenario.places import Table
-from rulec.scenario.schema import RawObstacle
+from rulec.scenario.schema import MOST_OBSTACLES, RawObstacle
 
 Listed = tuple[Obstacle, Table]
 
@@ -19,9 +19,11 @@ _PREDICTED = ("s", "d", "speed", "acceleration", "lateral_speed", "until_d")
 
 def read_obstacles(raw: object, findings: Findings) -> tuple[Listed, ...]:
     """The sound ones among the obstacles, each with its place in the file."""
+    if not isinstance(raw, list) or len(raw) > MOST_OBSTACLES:
+        return ()
     listed: list[Listed] = []
     numbers: dict[str, int] = {}
-    for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
+    for number, item in enumerate(raw, start=1):
         place = Table("obstacle", number, _words(item, number))
         table = read_table(RawObstacle, item, place, findings)
         if isinstance(item, Mapping) and isinstance(name := item.get("id"), str):

@@ -58,7 +58,7 @@ def read_scenario(path: Path) -> Scenario:
 
 def _exists(name: str) -> bool:
     try:
-        return Path(name).exists()
+        return bool(name) and Path(name).exists()
     except (OSError, ValueError):
         return False
 

@@ -13,6 +13,7 @@ from msgspec import Meta, Struct
 from rulec.scenario.model import SURFACES, Surface
 
 FARTHEST_M = 1_000_000
+MOST_OBSTACLES = 500
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 _Speed = Annotated[float, Meta(ge=-1000, le=1000)]
 _PRINTABLE = r"^[^\x00-\x1f\x7f]+$"
@@ -67,7 +68,10 @@ TimedPositions = Annotated[
 ]
 Table = Annotated[dict[str, Any], Meta(description="a table")]
 Tables = Annotated[list[Any], Meta(description="tables, each under its own [[heading]]")]
-Obstacles = Annotated[list[Any], Meta(max_length=500, description="at most 500 [[obstacle]]")]
+Obstacles = Annotated[
+    list[Any],
+    Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} [[obstacle]]"),
+]
 
 
 class RawScenario(Struct, forbid_unknown_fields=True):

@@ -1,0 +1,182 @@
+"""The partition and its graph once more, straight from the definitions, with polygons.
+
+Slow and unoptimised on purpose: it shares no code with ``rulec.partition`` and is what that is
+compared with. Lengths below ``HAIR`` count as nothing.
+"""
+
+from dataclasses import dataclass
+
+import shapely
+from shapely import Polygon
+from shapely.affinity import translate
+
+from rulec.scenario import Obstacle, Scenario, Trajectory
+
+HAIR = 1e-5
+FAR = 1000.0
+
+
+@dataclass(frozen=True)
+class BookCell:
+    surface: str
+    signature: tuple
+    polygon: Polygon
+
+    @property
+    def key(self):
+        """For comparing; shifted a little, so that no figure is halfway between two roundings."""
+        figures = (*self.polygon.bounds, self.polygon.area)
+        return self.surface, self.signature, *(round(x + 0.00137, 2) for x in figures)
+
+
+def rectangle(s0, s1, d0, d1):
+    return shapely.box(s0, d0, s1, d1)
+
+
+def centre(obstacle: Obstacle, t: float):
+    m = obstacle.motion
+    if isinstance(m, Trajectory):
+        for (t0, s0, d0), (t1, s1, d1) in zip(m.points, m.points[1:], strict=False):
+            if t0 <= t <= t1:
+                return s0 + (s1 - s0) * (t - t0) / (t1 - t0), d0 + (d1 - d0) * (t - t0) / (t1 - t0)
+        return None
+    acceleration = m.acceleration if m.speed != 0 or m.acceleration > 0 else 0.0
+    moving = t
+    if m.speed * acceleration < 0 and abs(m.speed) < abs(acceleration) * t:
+        moving = abs(m.speed / acceleration)
+    s = m.s + (m.speed + (m.speed + acceleration * moving)) / 2 * moving
+    d = m.d + m.lateral_speed * moving
+    if m.until_d is not None and (d - m.until_d) * m.lateral_speed > 0:
+        d = m.until_d
+    return s, d
+
+
+def body(obstacle: Obstacle, start: float, end: float):
+    """Bounds of what is swept, from the centre where a piece of the motion begins or ends."""
+    times = {start, end}
+    if isinstance(obstacle.motion, Trajectory):
+        times |= {p[0] for p in obstacle.motion.points if start <= p[0] <= end}
+    centres = [c for t in times if (c := centre(obstacle, t)) is not None]
+    if not centres:
+        return None
+    ss, ds = [c[0] for c in centres], [c[1] for c in centres]
+    length, width = obstacle.length / 2, obstacle.width / 2
+    return min(ss) - length, max(ss) + length, min(ds) - width, max(ds) + width
+
+
+def lanes(scenario: Scenario):
+    """Per lane its bounds and its polygon, without the parts that are missing."""
+    road = scenario.road
+    for i, (right, left) in enumerate(zip(road.lanes, road.lanes[1:], strict=False), start=1):
+        piece = rectangle(*road.s, right, left)
+        for gap in road.missing:
+            if gap.lane == i:
+                piece = piece.difference(rectangle(*gap.s, right, left))
+        yield right, left, piece
+
+
+def extent(scenario: Scenario, obstacle: Obstacle, start: float, end: float, partition: str):
+    """Widened rectangle and direction ("s" or a walking angle); None if it is not on the road."""
+    swept = body(obstacle, start, end)
+    if swept is None:
+        return None
+    s0, s1, d0, d1 = swept
+    touched = [
+        (right, left)
+        for right, left, piece in lanes(scenario)
+        if piece.intersection(rectangle(*swept)).area > HAIR * HAIR
+        and min(left, d1) - max(right, d0) > HAIR
+    ]
+    if not touched:
+        return None
+    wide = (s0, s1, min(x[0] for x in touched), max(x[1] for x in touched))
+    if partition == "fine" or obstacle.type != "pedestrian":
+        return wide, 0
+    turned = {0: 0, 45: 90, 90: 90, 180: 180, -90: -90, -135: -90}[obstacle.walking_direction]
+    if turned in (0, 180):
+        return wide, turned
+    for stretch in scenario.road.surfaces:
+        c0, c1 = stretch.s
+        if min(c1, s1) - max(c0, s0) > HAIR:
+            s0, s1 = min(s0, c0), max(s1, c1)
+    return (s0, s1, d0, d1), turned
+
+
+def regions(box, angle, partition):
+    """Letter -> polygon, for one obstacle."""
+    s0, s1, d0, d1 = box
+    if partition == "fine":
+        stations = {"behind": (-FAR, s0), "beside": (s0, s1), "in_front_of": (s1, FAR)}
+        laterals = {"right_of": (-FAR, d0), "same_lane": (d0, d1), "left_of": (d1, FAR)}
+        return {
+            (a, b): rectangle(*stations[a], *laterals[b])
+            for a in stations
+            for b in laterals
+            if (a, b) != ("beside", "same_lane")
+        }
+    if angle in (0, 180):
+        low, high = rectangle(-FAR, s0, d0, d1), rectangle(s1, FAR, d0, d1)
+        right, left = rectangle(-FAR, FAR, -FAR, d0), rectangle(-FAR, FAR, d1, FAR)
+        if angle == 0:
+            return {"b": low, "f": high, "l": left, "r": right}
+        return {"b": high, "f": low, "l": right, "r": left}
+    below, above = rectangle(s0, s1, -FAR, d0), rectangle(s0, s1, d1, FAR)
+    before, after = rectangle(-FAR, s0, -FAR, FAR), rectangle(s1, FAR, -FAR, FAR)
+    if angle == 90:
+        return {"b": below, "f": above, "l": before, "r": after}
+    return {"b": above, "f": below, "l": after, "r": before}
+
+
+def parts(geometry):
+    return [p for p in getattr(geometry, "geoms", [geometry]) if p.area > HAIR]
+
+
+def free_space(scenario: Scenario, start: float, end: float, partition: str):
+    road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
+    for obstacle in scenario.obstacles:
+        found = extent(scenario, obstacle, start, end, partition)
+        if found is not None:
+            road = road.difference(rectangle(*found[0]))
+    return road
+
+
+def cells(scenario: Scenario, start: float, end: float, partition: str) -> list[BookCell]:
+    road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
+    crossings = shapely.union_all(
+        [rectangle(*x.s, -FAR, FAR) for x in scenario.road.surfaces] or [Polygon()]
+    )
+    pieces = [("carriageway", (), p) for p in parts(road.difference(crossings))] + [
+        ("crossing", (), p) for p in parts(road.intersection(crossings))
+    ]
+    for obstacle in scenario.obstacles:
+        found = extent(scenario, obstacle, start, end, partition)
+        if found is None:
+            continue
+        pieces = [
+            (surface, (*signature, (obstacle.id, letter)), part)
+            for surface, signature, polygon in pieces
+            for letter, region in regions(*found, partition).items()
+            for part in parts(polygon.intersection(region))
+        ]
+    return [BookCell(*piece) for piece in pieces]
+
+
+def is_step(a: Polygon, b: Polygon, adjacency: str) -> bool:
+    """May one go from a to b?"""
+    if a.distance(b) > HAIR / 8:
+        return False
+    border = a.buffer(HAIR / 4, cap_style="square", join_style="mitre").intersection(b)
+    if adjacency == "touch":
+        return True
+    segments = [p.bounds for p in getattr(border, "geoms", [border])]
+    sideways = any(s1 - s0 > HAIR for s0, _, s1, _ in segments)
+    if sideways or adjacency == "forward":
+        return sideways or translate(a, xoff=HAIR / 2).intersection(b).area > HAIR * HAIR
+    return any(d1 - d0 > HAIR for _, d0, _, d1 in segments)
+
+
+def continues(a: Polygon, b: Polygon, instant: list[BookCell]) -> bool:
+    return any(
+        a.intersection(i.polygon).area > HAIR and b.intersection(i.polygon).area > HAIR
+        for i in instant
+    )
