@@ -13,7 +13,7 @@ def test_files_and_their_contents(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines() == [f"wrote {folder / name}" for name in names]
     hoa = (folder / "R1.hoa").read_text()
     assert hoa.startswith("HOA: v1\n")
-    assert 'rulec-cite: "Article 11.1, 11.6"' in hoa
+    assert "/* hard rule R1 of esterle2019, Article 11.1, 11.6 */" in hoa
     automaton = spot.automaton(str(folder / "R1.hoa"))
     assert automaton.get_name() == "R1"
     assert {ap.ap_name() for ap in automaton.ap()} == {"CONGESTED", "b(v)", "r(v)", "f(v)"}

@@ -55,7 +55,7 @@ def by_spot(formula, word):
 
 def by_hoa(formula, word):
     reads = reads_of(formula, VOCABULARY)
-    text = in_hoa(translate(formula, reads), "rule", (("rulec-cite", 'a "quoted" \\ text'),))
+    text = in_hoa(translate(formula, reads), "rule", ('a "quoted" \\ text */ 0', "and\nmore"))
     return spot_membership(spot.automaton(text), formula, letters(word))
 
 

@@ -113,14 +113,13 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
 
 
 def _job(rulebook: Rulebook, rule: Rule, cpu_limit_s: int) -> Job:
-    headers = (
-        ("tool", f"rulec {__version__}"),
-        ("rulec-rulebook", rulebook.name),
-        ("rulec-strength", rule.strength),
-        ("rulec-cite", rule.cite),
+    cite = f", {rule.cite}" if rule.cite else ""
+    remarks = (
+        f"{rule.strength} rule {rule.name} of {rulebook.name}{cite}",
+        f"compiled by rulec {__version__}",
     )
     reads = reads_of(rule.formula, rulebook.vocabulary)
-    return Job(rule.name, rule.formula, reads, headers, cpu_limit_s)
+    return Job(rule.name, rule.formula, reads, remarks, cpu_limit_s)
 
 
 def _compiled(rule: Rule, done: Done) -> CompiledRule:

@@ -55,20 +55,16 @@ def _check(automaton: Any, language: Any) -> None:
         raise CheckError
 
 
-def in_hoa(automaton: Any, name: str, headers: tuple[tuple[str, str], ...]) -> str:
+def in_hoa(automaton: Any, name: str, remarks: tuple[str, ...]) -> str:
     """The automaton in the Hanoi Omega-Automata format, version 1.
 
-    ``headers`` are further header lines, name and text; readers ignore those that they do not know.
+    ``remarks`` become comments: the format has headers of one's own too, but not every tool that
+    reads it skips those.
     """
     automaton.set_name(name)
     first, *rest = automaton.to_str("hoa").splitlines()
-    more = [f"{header}: {_quoted(text)}" for header, text in headers]
-    return "\n".join([first, *more, *rest]) + "\n"
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + " ".join(escaped.split()) + '"'
+    comments = [f"/* {' '.join(remark.replace('*/', '* /').split())} */" for remark in remarks]
+    return "\n".join([first, *comments, *rest]) + "\n"
 
 
 def explore(automaton: Any, reads: tuple[Read, ...]) -> DeterministicAutomaton:

@@ -29,7 +29,7 @@ class Job:
     name: str
     formula: Formula
     reads: tuple[Read, ...]
-    headers: tuple[tuple[str, str], ...]
+    remarks: tuple[str, ...]
     cpu_s: int
 
 
@@ -102,7 +102,7 @@ def _answer(job: Job) -> Done | Failed:
     except spot_bridge.CheckError:
         return Failed("check")
     machine = build_machine(spot_bridge.explore(automaton, job.reads), job.reads, n_letters)
-    return Done(machine, spot_bridge.in_hoa(automaton, job.name, job.headers))
+    return Done(machine, spot_bridge.in_hoa(automaton, job.name, job.remarks))
 
 
 def _limit(kind: int, amount: int) -> None:
