@@ -55,15 +55,15 @@ give_up() {
     keep=
     if is_untrusted; then
         keep=yes
-        reason="the package index shows a certificate that is not trusted here. Set SSL_CERT_FILE
- to the certificates of your network, and call again."
+        reason="the package index shows a certificate that is not trusted here. Set SSL_CERT_FILE \
+to the certificates of your network, and call again."
     elif is_unreachable; then
         keep=yes
-        reason="the package index cannot be reached. Check the network (behind a proxy or with a
- mirror: HTTPS_PROXY, PIP_INDEX_URL), and call again."
+        reason="the package index cannot be reached. Check the network (behind a proxy or with a \
+mirror: HTTPS_PROXY, PIP_INDEX_URL), and call again."
     elif log_has 'no space left|disk quota' || [ ! -s "$log" ]; then # the log had no room either
-        reason="the disk is full, it seems; the environment takes up to 500 MB. Make room, and
- call again."
+        reason="the disk is full, it seems; the environment takes up to 500 MB. Make room, and \
+call again."
     else
         tail -n 20 "$log" | sed 's/^/  | /' >&2
         reason="the installation failed with the words above. See what is amiss, and call again."
@@ -74,5 +74,5 @@ give_up() {
     else
         discard
     fi
-    stop "$(printf '%s' "$reason" | tr -d '\n')"
+    stop "$reason"
 }

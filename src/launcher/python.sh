@@ -57,16 +57,16 @@ EOF
         case $version in
         3.10 | 3.11 | 3.12 | 3.13)
             if [ "$venv" = venv ] || [ -n "$uv" ]; then return; fi
-            seen="$seen, $candidate ($version) lacks venv and ensurepip (on Debian and Ubuntu:
- apt install python$version-venv)"
+            seen="$seen, $candidate ($version) lacks venv and ensurepip (on Debian and Ubuntu: \
+apt install python$version-venv)"
             ;;
         '') seen="$seen, $candidate does not run" ;;
         *) seen="$seen, $candidate is $version" ;;
         esac
     done
-    seen=$(printf '%s' "${seen#, }" | tr -d '\n')
+    seen=${seen#, }
     stop "a Python from 3.10 to 3.13 with venv is needed; ${seen:-there is none on PATH}." \
-        "Install one, or set RULEC_PYTHON to one, and call again."
+        "Install one${uv:+ (uv python install 3.13)}, or set RULEC_PYTHON to one, and call again."
 }
 
 # Sets own_spot to the version of the Spot that python itself brings, where no wheel fits.
@@ -74,7 +74,7 @@ check_platform() {
     own_spot=
     [ "$place" != wheel ] || return 0
     own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) ||
-        stop "Spot, which is needed, comes ready-made for Linux on x86-64 with glibc 2.34 or" \
-            "newer, and this is $place. Install Spot from conda-forge (conda create -n rulec -c" \
+        stop "Spot, which rulec compiles with, comes ready-made only for Linux on x86-64 with" \
+            "glibc 2.34 or newer, and this is $place. Install Spot from conda-forge (conda create -n rulec -c" \
             "conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's python."
 }

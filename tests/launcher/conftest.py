@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 STAND_IN = Path(__file__).with_name("stand_in.py")
-TOOLS = "awk bash cat cksum dirname env grep mkdir mv readlink rm rmdir sed sh sleep tail tr"
+TOOLS = "awk bash cat cksum dirname env grep mkdir mv readlink rm rmdir sed sh sleep tail"
 LOOKS = {
     "version": [3, 11, 7],
     "implementation": "CPython",

@@ -3,7 +3,7 @@
 import pytest
 
 ALL = "python3 python3.13 python3.12 python3.11 python3.10 python"
-WAY_OUT = "Install one, or set RULEC_PYTHON to one, and call again."
+WAY_OUT = "or set RULEC_PYTHON to one, and call again."
 
 
 def chosen(checkout):
@@ -61,6 +61,12 @@ def test_every_unfit_one_is_named(checkout):
 def test_none_at_all(checkout):
     (checkout.tools / "python3").unlink()
     assert "there is none on PATH" in refused(checkout)
+
+
+def test_uv_could_bring_one(checkout):
+    checkout.add_tool("python3", version=[3, 14, 0])
+    checkout.add_tool("uv")
+    assert "Install one (uv python install 3.13), or set" in refused(checkout)
 
 
 def test_rulec_python_comes_first(checkout):
