@@ -75,6 +75,7 @@ check_platform() {
     [ "$place" != wheel ] || return 0
     own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) ||
         stop "Spot, which rulec compiles with, comes ready-made only for Linux on x86-64 with" \
-            "glibc 2.34 or newer, and this is $place. Install Spot from conda-forge (conda create -n rulec -c" \
-            "conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's python."
+            "glibc 2.34 or newer, and this is $place. Install Spot from conda-forge (conda create" \
+            "-n rulec -c conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's" \
+            "python."
 }
