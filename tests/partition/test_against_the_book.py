@@ -1,6 +1,7 @@
 """Cells, adjacency, edges and margins of random scenarios against the definitions, by polygons."""
 
 from functools import cache
+from itertools import product
 
 import by_the_book as book
 import shapely
@@ -115,7 +116,7 @@ def letter(station, lateral, angle):
 
 @given(scenarios(most=3), partitions, adjacencies)
 @example(load_scenario("s2"), "paper", "touch")
-def test_adjacency_and_edges_are_those_of_the_definition(scenario, partition, adjacency):
+def test_adjacency_edges_and_margins_are_those_of_the_definition(scenario, partition, adjacency):
     graph = graph_of(scenario, partition=partition, adjacency=adjacency)
     polygons = [[cell.polygon for cell in layer.cells] for layer in graph.layers]
 
@@ -128,26 +129,65 @@ def test_adjacency_and_edges_are_those_of_the_definition(scenario, partition, ad
         for i in everyone:
             assert layer.neighbours[i] == tuple(j for j in everyone if j != i and near(p, i, j))
 
+    goes_on = []
     for p in range(len(graph.layers) - 1):
         moment = float(graph.step * (p + 1))
         instant = book.cells(scenario, moment, moment, partition)
+        goes_on.append(
+            {
+                (i, j)
+                for i, now in enumerate(polygons[p])
+                for j, then in enumerate(polygons[p + 1])
+                if book.continues(now, then, instant)
+            }
+        )
+
+    @cache
+    def open_before(p, a, b):
+        """For how many layers up to p the step has been open; 0 if it is not at p."""
+        if a == b or not near(p, a, b):
+            return 0
+        origins = [] if p == 0 else product(goes_on[p - 1], repeat=2)
+        return 1 + max(
+            (
+                open_before(p - 1, x, y)
+                for (x, to_a), (y, to_b) in origins
+                if (to_a, to_b) == (a, b)
+            ),
+            default=0,
+        )
+
+    @cache
+    def open_after(p, a, b):
+        if a == b or not near(p, a, b):
+            return 0
+        images = [] if p == len(goes_on) else product(goes_on[p], repeat=2)
+        return 1 + max(
+            (
+                open_after(p + 1, x, y)
+                for (from_a, x), (from_b, y) in images
+                if (from_a, from_b) == (a, b)
+            ),
+            default=0,
+        )
+
+    for p, links in enumerate(goes_on):
         now, then = range(len(polygons[p])), range(len(polygons[p + 1]))
-        goes_on = {
-            (i, j)
-            for i in now
-            for j in then
-            if book.continues(polygons[p][i], polygons[p + 1][j], instant)
-        }
         for a in now:
-            expected = tuple(
-                b
-                for b in then
-                if any((a, image) in goes_on and near(p + 1, image, b) for image in then)
-                and any((origin, b) in goes_on and near(p, a, origin) for origin in now)
-            )
-            assert graph.successors[p][a] == expected
-            for b, margin in zip(expected, graph.margins[p][a], strict=True):
-                assert (margin is None) == ((a, b) in goes_on)
+            images = [j for i, j in links if i == a]
+            expected = {}
+            for b in then:
+                origins = [i for i, j in links if j == b]
+                if (a, b) in links:
+                    expected[b] = None
+                elif any(near(p + 1, image, b) for image in images) and any(
+                    near(p, a, origin) for origin in origins
+                ):
+                    expected[b] = max(open_before(p, a, origin) for origin in origins) + max(
+                        open_after(p + 1, image, b) for image in images
+                    )
+            assert graph.successors[p][a] == tuple(expected)
+            assert graph.margins[p][a] == tuple(expected.values())
 
 
 @given(scenarios(), partitions)

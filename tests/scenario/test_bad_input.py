@@ -81,6 +81,7 @@ FIELDS = [
     ("speed = 5.0", "speed = [5.0]", "R0604", "speed is a list of 1", "m/s"),
     ("speed = 5.0", f"speed = 1{'0' * 400}", "R0604", "more than 30 digits", "m/s"),
     ("speed = 5.0", "sped = 5.0", "R0603", 'a field "sped" that does not exist', '"speed"?'),
+    ("length = 4.0", "lenght = 4.0", "R0603", 'a field "lenght" that does not', '"length"?'),
     ("speed = 5.0", "colour = 5", "R0603", '"colour" that does not exist', "leave it out"),
     ("speed = 5.0", "until_d = 4.5", "R0605", "never comes to until_d = 4.5", "sign"),
     ("speed = 5.0", "trajectory = [[0, 1, 2]]", "R0605", "and also s, d", "leave out one"),

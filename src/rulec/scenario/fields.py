@@ -44,10 +44,11 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
         return None
     known = {info.name: info for info in msgspec.structs.fields(kind)}
     values: dict[str, Any] = {}
+    misspelt: set[str | None] = set()
     before = len(findings.errors)
     for key, value in raw.items():
         if key not in known:
-            _unknown_field(key, list(known), table, findings)
+            misspelt.add(_unknown_field(key, list(known), table, findings))
             continue
         try:
             values[key] = msgspec.convert(value, known[key].type)
@@ -61,7 +62,7 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
                 expected=words_of(known[key].type),
             )
     for key, info in known.items():
-        if info.required and key not in raw:
+        if info.required and key not in raw and key not in misspelt:
             findings.add(
                 "R0603",
                 f"{table.words} has no {key}",
@@ -101,7 +102,8 @@ def words_of(kind: object) -> str:
     return ""
 
 
-def _unknown_field(key: str, known: list[str], table: Table, findings: Findings) -> None:
+def _unknown_field(key: str, known: list[str], table: Table, findings: Findings) -> str | None:
+    """Report a field; the known one that is probably meant, if there is one close by."""
     near = nearest_name(key, known)
     findings.add(
         "R0603",
@@ -111,6 +113,7 @@ def _unknown_field(key: str, known: list[str], table: Table, findings: Findings)
         expected=f"one of {', '.join(known)}",
         help=f'did you mean "{near}"?' if near else "leave it out",
     )
+    return near
 
 
 def _indices(message: str) -> list[int]:
