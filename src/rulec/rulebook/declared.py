@@ -16,7 +16,7 @@ class Declared:
     """What the files declare, and where; filled by ``declare``.
 
     ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
-    be missing for a reason that has been reported. ``uncertain`` are types whose parents are not
+    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain`` are types whose parents are not
     known for that kind of reason.
     """
 
@@ -29,6 +29,7 @@ class Declared:
     suspects: set[str] = field(default_factory=set)
     uncertain: set[str] = field(default_factory=set)
     opaque: bool = False
+    opaque_types: bool = False
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def vocabulary(self, name: str) -> Vocabulary:
@@ -39,6 +40,10 @@ class Declared:
         """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
+
+    def may_know_type(self, name: str) -> bool:
+        """Could the type be declared by what could not be read?"""
+        return self.opaque_types or self.may_know(name)
 
     def ancestors(self, type_name: str) -> list[str]:
         """The type and those above it; stops where they close a circle."""
@@ -73,6 +78,8 @@ def _note_suspects(declared: Declared, file: tree.File) -> None:
     for item in file.items:
         if isinstance(item, tree.BrokenItem):
             declared.suspects |= item.names
+            declared.opaque |= item.nameless and item.word != "type"
+            declared.opaque_types |= item.nameless and item.word == "type"
 
 
 def _declare_types(declared: Declared, file: tree.File) -> None:
@@ -194,13 +201,13 @@ def _parameter_types(
             types.append(roots[0])
         else:
             types.append("")
-            if not declared.opaque and not declared.suspects:
+            if not (declared.opaque or declared.opaque_types or declared.suspects):
                 declared.mistakes.append(_which_type(one, roots))
     return tuple(types)
 
 
 def _unknown_type(declared: Declared, name: tree.Name) -> None:
-    if not declared.may_know(name.text):
+    if not declared.may_know_type(name.text):
         declared.mistakes.append(unknown_type(name, list(declared.types)))
 
 

@@ -53,7 +53,7 @@ def _variables(
         name, type_ = one.name, one.type
         assert type_ is not None, "the grammar asks for a variable's type"
         known = type_.text in declared.types
-        if not known and not declared.may_know(type_.text):
+        if not known and not declared.may_know_type(type_.text):
             mistakes.append(unknown_type(type_, list(declared.types)))
         if name.text in found:
             mistakes.append(_variable_twice(name, found[name.text].span))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
 from rulec.syntax.build import RuleHead
+from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS
 
 Clause = tuple[str, tree.Text | tree.Formula | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
@@ -88,14 +89,21 @@ def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, lis
         laws[0] if laws else None,
         tuple(part for part in parts if isinstance(part, tree.UseLine)),
         tuple(part for part in parts if not isinstance(part, _Header)),
-        not any(isinstance(part, tree.BrokenItem) and part.word in _OPAQUE for part in parts),
+        not any(isinstance(part, tree.BrokenItem) and _may_use(part) for part in parts),
         Span(source, 0, len(source.text)),
     )
     return file, mistakes
 
 
 _Header = tree.FileLine | tree.TitleLine | tree.LawLine | tree.UseLine
-_OPAQUE = ("use", "vocabulary", "rulebook", "}")
+
+
+def _may_use(item: tree.BrokenItem) -> bool:
+    """Was it meant as a ``use`` line? Then any name may be missing because of it."""
+    if item.word in ITEM_WORDS:
+        return item.word == "use"
+    near = nearest_name(item.word, ITEM_WORDS | CLAUSE_WORDS)
+    return near == "use" or (near is None and len(item.names) == 2)
 
 
 def _used_twice(parts: Sequence[Item]) -> Iterable[Diagnostic]:

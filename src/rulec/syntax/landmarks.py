@@ -12,6 +12,8 @@ _OPEN_SYMBOLS = frozenset(
     ("(", ",", ":", ";", "{", "!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>", "=", "=>")
 )
 
+_TEXTS = ("string", "quoted", "unterminated")
+
 
 @dataclass(frozen=True, slots=True)
 class Landmarks:
@@ -71,27 +73,35 @@ class Landmarks:
         if token.text in RESERVED:
             return False
         if not self.wants_more(index - 1):
-            return token.first or self._begins_enumeration(index)
-        anew = token.first and not self.is_word(index - 1, "type")
-        return anew and self._begins_enumeration(index)
+            return token.first or self._begins_enumeration(index, "one")
+        if not token.first or self.is_word(index - 1, "type"):
+            return False
+        glued = self.is_name(index + 1) and not self.tokens[index + 1].first
+        return glued or self.begins_misspelt(index) or self._begins_enumeration(index)
 
     def begins_item_inside(self, index: int) -> bool:
         """Does an item begin here although braces are still open?
 
-        That takes more evidence: a line of its own and a plausible next token, or ``hard rule``.
+        That takes more evidence: a line of its own behind something complete or before a name, or
+        ``hard rule``.
         """
         token = self.tokens[index]
         if token.kind != "word":
             return False
-        if self.is_word(index, *RULE_WORDS):
-            return self.is_word(index + 1, "rule") or (token.first and self.is_name(index + 1))
-        if not token.first:
+        if self.is_word(index + 1, "rule") and (self.is_word(index, *RULE_WORDS) or token.first):
+            return True
+        if not token.first or self.is_word(index - 1, *RULE_WORDS):
             return False
-        if self.is_word(index, "title", "law"):
-            return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "string"
         if token.text in ITEM_WORDS:
-            return self.is_name(index + 1) and not self.is_word(index - 1, *RULE_WORDS)
+            return not self.wants_more(index - 1) or self.is_name(index + 1)
         return self._begins_enumeration(index)
+
+    def begins_misspelt(self, index: int) -> bool:
+        """A name on a line of its own before a brace or a text: a misspelt word of the language."""
+        if index + 1 >= len(self.tokens) or not self.tokens[index].first:
+            return False
+        text = self.tokens[index + 1].kind in _TEXTS
+        return self.is_name(index) and (text or self.is_symbol(index + 1, "{"))
 
     def begins_clause(self, index: int) -> bool:
         """A clause's word on a line of its own, or where the text before is complete."""
@@ -108,8 +118,8 @@ class Landmarks:
             index + 1, "and"
         )
 
-    def _begins_enumeration(self, index: int) -> bool:
-        """``name is one``, ``name is a,`` or ``name(…) is``; but not ``type name is``."""
+    def _begins_enumeration(self, index: int, *behind_is: str) -> bool:
+        """``name is`` or ``name(…) is``, and what is asked for behind that."""
         if not self.is_name(index):
             return False
         behind = index + 1
@@ -120,7 +130,9 @@ class Landmarks:
             if not self.is_symbol(behind, ")"):
                 return False
             behind += 1
-        return self.is_word(behind, "is")
+        return self.is_word(behind, "is") and (
+            not behind_is or self.is_word(behind + 1, *behind_is)
+        )
 
     def _fits_parameters(self, index: int) -> bool:
         token = self.tokens[index]

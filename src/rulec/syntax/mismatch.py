@@ -155,7 +155,8 @@ def _unterminated(span: Span) -> Diagnostic:
 
 
 def _parenthesis_help(scene: Scene) -> str:
-    if scene.found is not None and scene.found.text == ")" and wants_operator(scene.accepted):
+    complete = wants_operator(scene.accepted) or "$END" in scene.accepted
+    if scene.found is not None and scene.found.text == ")" and complete:
         return "delete the `)`, or open it before"
     return ""
 

@@ -9,7 +9,6 @@ from typing import Literal
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 from lark.parsers.lalr_interactive_parser import InteractiveParser
-from lark.utils import TextSlice
 
 from rulec.resources import grammar_file
 
@@ -61,10 +60,12 @@ class TooDeep:
 def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Mismatch | TooDeep:
     """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
     try:
-        tree = _lark().parse(TextSlice(text, begin, end), start=start)
+        # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
+        # quadratic time in all.
+        tree = _lark().parse(text[begin:end], start=start)
     except UnexpectedInput as error:
-        return Mismatch(_position(error, end), _accepted(error))
-    return _neutral(tree)
+        return Mismatch(begin + _position(error, end - begin), _accepted(error))
+    return _neutral(tree, begin)
 
 
 @cache
@@ -93,22 +94,23 @@ def _accepted(error: UnexpectedInput) -> frozenset[str]:
     return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
 
 
-def _neutral(tree: Tree[Token]) -> Branch | TooDeep:
+def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:
     """Lark's tree as ours, built from the leaves up because a hostile one may be very deep."""
     done: list[Branch | Leaf] = []
     todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
     while todo:
         node, depth, ready = todo.pop()
         if isinstance(node, Token):
-            start = node.start_pos or 0
+            start = begin + (node.start_pos or 0)
             done.append(Leaf(node.type, str(node), start, start + len(node)))
         elif ready:
             first = len(done) - len(node.children)
             meta = node.meta
             inside = tuple(done[first:])
-            done[first:] = [Branch(str(node.data), inside, meta.start_pos, meta.end_pos)]
+            span = begin + meta.start_pos, begin + meta.end_pos
+            done[first:] = [Branch(str(node.data), inside, *span)]
         elif depth > MAX_DEPTH:
-            return TooDeep(node.meta.start_pos)
+            return TooDeep(begin + node.meta.start_pos)
         else:
             below = depth + (node.data in _LEVELS)
             todo.append((node, depth, True))

@@ -16,10 +16,12 @@ from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.split_file import FileSplitter
 from rulec.syntax.text import checked
-from rulec.syntax.words import RESERVED
+from rulec.syntax.words import DECLARATION_WORDS, RESERVED
 
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""
+
+_BEHIND_NAME = ("is", "in", "default", "(")
 
 _Built = TypeVar("_Built")
 
@@ -126,11 +128,13 @@ class _Reader:
     ):
         return self.read("item", piece, Builder.item) or self._broken(piece)
 
-    def _broken(self, piece: Piece | RulePieces) -> tree.BrokenItem:
+    def _broken(self, piece: Piece) -> tree.BrokenItem:
         words = self.tokens[piece.first : piece.last]
         names = {token.text for token in words if token.kind == "word"} - RESERVED
-        first = self.tokens[piece.first].text
-        return tree.BrokenItem(frozenset(names), span_of(self.source, self.tokens, piece), first)
+        first = words[0].text
+        nameless = first in DECLARATION_WORDS and (len(words) < 2 or words[1].text in _BEHIND_NAME)
+        span = span_of(self.source, self.tokens, piece)
+        return tree.BrokenItem(frozenset(names), span, first, nameless)
 
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
         head = self.read("rule_head", pieces.head, Builder.rule_head)

@@ -33,7 +33,7 @@ class RuleSplitter:
             opened = index - 1
             missing = self.say.no_open(opened, "the rule's clauses")
             head = Piece("rule_head", first, index, then=missing)
-            if not self._at_clause(index):
+            if not (self._at_clause(index) or self.marks.begins_misspelt(index)):
                 index += self.marks.is_symbol(index, "}")
                 return RulePieces(head, (), first, index)
         body: list[Piece | ExamplePieces] = []
@@ -64,6 +64,7 @@ class RuleSplitter:
             or self.marks.is_symbol(index, "}")
             or self.marks.begins_clause(index)
             or self.marks.begins_item_inside(index)
+            or self.marks.begins_misspelt(index)
         )
 
     def _end_of_clause(self, first: int) -> int:
@@ -73,7 +74,7 @@ class RuleSplitter:
                 break
             if braces == 0 and self.marks.is_symbol(index, "}"):
                 break
-            if braces == parentheses == 0 and self._begins_anew(index):
+            if braces == 0 and self._begins_anew(first, index, inside=parentheses > 0):
                 break
             braces += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
             closes = self.marks.is_symbol(index, ")")
@@ -81,10 +82,18 @@ class RuleSplitter:
             index += 1
         return index
 
-    def _begins_anew(self, index: int) -> bool:
-        """A name on a line of its own behind something complete: a clause that is misspelt."""
-        first = self.tokens[index].first and self.marks.is_name(index)
-        return first and not self.marks.wants_more(index - 1)
+    def _begins_anew(self, clause: int, index: int, *, inside: bool) -> bool:
+        """Is this a clause with a misspelt word, behind the ``clause`` that is being read?
+
+        It is a name on a line of its own where a formula cannot have one: behind something
+        complete, behind ``cite`` and ``says``, before a brace or a text.
+        """
+        if not (self.tokens[index].first and self.marks.is_name(index)):
+            return False
+        if self.marks.begins_misspelt(index):
+            return True
+        complete = not self.marks.wants_more(index - 1)
+        return not inside and (complete or self.marks.is_word(clause, "cite", "says"))
 
     def _example(self, first: int) -> tuple[ExamplePieces, bool]:
         """The example, and whether the file ends inside it."""
@@ -114,6 +123,10 @@ class RuleSplitter:
 
     def _example_without_open(self, first: int, index: int) -> ExamplePieces:
         """``accept b; l }``: the next ``}`` is the example's own unless the rule would lack one."""
+        label = self.tokens[first + 1] if first + 1 < len(self.tokens) else None
+        if label is not None and label.kind == "unterminated" and "{" in label.text:
+            # The missing quote has swallowed the braces: that is the one mistake.
+            return ExamplePieces(Piece("example_head", first, first + 2), (), first + 2)
         end = index
         while not self._ends_head(end):
             end += 1
@@ -122,8 +135,6 @@ class RuleSplitter:
             self.marks.is_symbol(behind, "}") or self._at_clause(behind)
         ):
             end = behind
-        label = self.tokens[first + 1].kind if first + 1 < end else ""
-        if label == "unterminated":
-            return ExamplePieces(Piece("example_head", first, end), (), end)
-        self.mistakes.append(self.say.no_open(first + (label == "string"), "the example's states"))
+        labelled = label is not None and label.kind == "string"
+        self.mistakes.append(self.say.no_open(first + labelled, "the example's states"))
         return ExamplePieces(Piece("example_head", first, end, reported=True), (), end)

@@ -223,12 +223,14 @@ class RuleItem:
 class BrokenItem:
     """An item that could not be read; it may have declared any of ``names``.
 
-    ``word`` is its first word, ``"rule"`` for a rule whose head could not be read.
+    ``word`` is its first word, ``"rule"`` for a rule whose head could not be read. A ``nameless``
+    one lacks the name that it declares.
     """
 
     names: frozenset[str]
     span: Span = field(default=NOWHERE, compare=False, repr=False)
     word: str = ""
+    nameless: bool = False
 
 
 @dataclass(frozen=True, slots=True)

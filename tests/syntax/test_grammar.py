@@ -1,0 +1,41 @@
+"""The grammar file as a whole: what the pieces add up to, and its list of words."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from lark import Lark
+from lark.exceptions import UnexpectedInput
+from syntax_trees import files
+
+from rulec.resources import grammar_file
+from rulec.syntax import print_file
+from rulec.syntax.words import RESERVED
+
+GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
+WHOLE = Lark(GRAMMAR, parser="lalr", lexer="contextual", start="file")
+PROGRAMS = Path(__file__).parent.parent / "programs"
+
+
+@given(files)
+def test_the_whole_grammar_takes_what_is_printed(file):
+    WHOLE.parse(print_file(file))
+
+
+@pytest.mark.parametrize("path", sorted(PROGRAMS.glob("good/*.rules")), ids=lambda path: path.stem)
+def test_the_whole_grammar_takes_good_programs(path):
+    WHOLE.parse(path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(
+    "name", ["arrows", "braces_missing", "braces_too_many", "half_formulas", "reserved", "states"]
+)
+def test_the_whole_grammar_rejects_bad_syntax(name):
+    with pytest.raises(UnexpectedInput):
+        WHOLE.parse((PROGRAMS / "bad" / f"{name}.rules").read_text(encoding="utf-8"))
+
+
+def test_names_leave_out_exactly_the_reserved_words():
+    (words,) = re.findall(r"^NAME: /\(\?!\(\?:([^)]*)\)", GRAMMAR, re.MULTILINE)
+    assert set(words.split("|")) == RESERVED

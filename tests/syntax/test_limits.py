@@ -1,0 +1,95 @@
+"""Hostile sizes and depths: a clear error, soon."""
+
+import time
+
+import pytest
+
+from rulec.diagnostics import RulecError, Source
+from rulec.rulebook.loader import parse_rulebook
+from rulec.syntax import MAX_BYTES, decode, parse, parse_formula, print_formula
+
+HEAD = "rulebook big\nsignal p, q\nhard rule r { require "
+
+
+def only(text):
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook(text)
+    (one,) = caught.value.diagnostics
+    return one
+
+
+def test_two_hundred_levels_are_read_and_printed_and_no_more():
+    deepest = parse_formula("!" * 200 + "p")
+    assert parse_formula(print_formula(deepest)) == deepest
+    with pytest.raises(RulecError) as caught:
+        parse_formula("!" * 201 + "p")
+    assert caught.value.diagnostics[0].code == "R0111"
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(" * 201 + "p" + ")" * 201,
+        "!" * 300 + "p",
+        "p" + " & p" * 300,
+        "p" + " U p" * 300,
+        "p -> (" * 250 + "p" + ")" * 250,
+        "(" * 400_000,
+        "!" * 400_000 + "p",
+        "p" + "&p" * 400_000,
+    ],
+    ids=lambda formula: formula[:12],
+)
+def test_a_formula_too_deep_or_too_long_is_one_error(formula):
+    started = time.monotonic()
+    one = only(f"{HEAD}{formula} }}")
+    assert one.code == "R0111"
+    assert one.place.line == 3
+    assert "split" in one.help
+    assert time.monotonic() - started < 20
+
+
+def test_two_hundred_levels_of_a_rule_are_resolved():
+    rulebook = parse_rulebook(f"{HEAD}{'p & (q -> ' * 66}p{')' * 66} }}")
+    assert rulebook.rules[0].name == "r"
+
+
+def test_a_file_too_large_is_one_error():
+    with pytest.raises(RulecError) as caught:
+        decode("big.rules", b"#" * (MAX_BYTES + 1))
+    (one,) = caught.value.diagnostics
+    assert (one.code, one.place.file) == ("R0102", "big.rules")
+    assert only("#" * (MAX_BYTES + 1)).code == "R0102"
+
+
+def test_a_file_of_too_many_signs_is_one_error():
+    one = only("rulebook big\n" + ";" * 1_000_001)
+    assert one.code == "R0102"
+    assert one.place.line == 2
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '"' * 300_000,
+        "'" * 300_000,
+        '"a\n' * 100_000,
+        "{" * 300_000,
+        "}" * 300_000,
+        "a(" * 50_000,
+        "a(b,\n" * 100_000,
+        "vocabulary x\n" * 10_000,
+        "rulebook x\n" * 10_000,
+        "accept {\n" * 10_000,
+        "hard rule r {\n" * 10_000,
+        "signal p\n" * 10_000,
+        "x is one of a\n" * 10_000,
+        "\n" * 1_000_000 + "}",
+    ],
+    ids=lambda text: text[:14].strip(),
+)
+def test_repetition_takes_time_in_proportion(text):
+    started = time.monotonic()
+    _, mistakes = parse(Source("hostile.rules", text))
+    assert mistakes or text.startswith(("signal", "x is"))
+    assert time.monotonic() - started < 30

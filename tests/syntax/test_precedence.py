@@ -1,0 +1,76 @@
+"""How formulas are read: the paper's statements, the language's table, both spellings."""
+
+import pytest
+
+from rulec.syntax import parse_formula, print_formula
+
+SAME = [
+    # The paper, Section IV-A.
+    ("p1 U X p2", "p1 U (X p2)"),
+    ("p1 U p2 U p3", "p1 U (p2 U p3)"),
+    ("! X p", "!(X p)"),
+    ("X ! p", "X(!p)"),
+    ("a U b & c", "(a U b) & c"),
+    ("a & b U c", "a & (b U c)"),
+    ("a U b | c U d", "(a U b) | (c U d)"),
+    ("a U b -> c U d", "(a U b) -> (c U d)"),
+    # Unary operators bind tightest.
+    ("!a U b", "(!a) U b"),
+    ("G a U b", "(G a) U b"),
+    ("weak next a and b", "(weak next a) and b"),
+    ("not always p implies q", "(not (always p)) implies q"),
+    # Until and its family are one level and associate to the right.
+    ("a U b R c W d M e", "a U (b R (c W (d M e)))"),
+    # From until outward: and, or, xor, implies, iff.
+    ("a U b & c | d ^ e -> f <-> g", "(((((a U b) & c) | d) ^ e) -> f) <-> g"),
+    ("a <-> b -> c ^ d | e & f U g", "a <-> (b -> (c ^ (d | (e & (f U g)))))"),
+    # Implies associates to the right, the other Boolean operators to the left.
+    ("a -> b -> c", "a -> (b -> c)"),
+    ("a <-> b <-> c", "(a <-> b) <-> c"),
+    ("a & b & c", "(a & b) & c"),
+    ("a | b | c", "(a | b) | c"),
+    ("a ^ b ^ c", "(a ^ b) ^ c"),
+    # One operator, several spellings.
+    ("a && b || c", "a and b or c"),
+    ("[] p", "always p"),
+    ("<> p", "eventually p"),
+    ("[]<>p", "G F p"),
+    ("a weak until b", "a W b"),
+    ("a strong release b", "a M b"),
+    ("a release b", "a R b"),
+    ("a until b", "a U b"),
+    ("next p", "X p"),
+    ("a xor b", "a ^ b"),
+    ("a iff b", "a <-> b"),
+    ("a implies b", "a -> b"),
+    ("not p", "!p"),
+    # Names that only begin like a word or an operator.
+    ("untilx U Gp", "(untilx) U (Gp)"),
+    ("a\n  U # comment\n b", "a U b"),
+]
+
+
+@pytest.mark.parametrize(("text", "meaning"), SAME)
+def test_reads_as(text, meaning):
+    assert parse_formula(text) == parse_formula(meaning)
+
+
+DIFFERENT = [
+    ("!a U b", "!(a U b)"),
+    ("a U b U c", "(a U b) U c"),
+    ("a -> b -> c", "(a -> b) -> c"),
+    ("a & (b & c)", "a & b & c"),
+    ("Gp", "G p"),
+]
+
+
+@pytest.mark.parametrize(("text", "other"), DIFFERENT)
+def test_differs_from(text, other):
+    assert parse_formula(text) != parse_formula(other)
+
+
+def test_the_paper_s_rule_prints_as_the_paper_has_it():
+    text = "!CONGESTED -> G !(b_v & X (b_v U r_v U f_v))"
+    assert print_formula(parse_formula(text), "symbols") == text
+    words = "not CONGESTED implies always not (b_v and next (b_v until r_v until f_v))"
+    assert print_formula(parse_formula(text)) == words
