@@ -3,104 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection
-from itertools import chain
+import re
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.automata.machine import Machine, Read, trap
+from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiled_check import checked
+from rulec.automata.compiled_schema import File, Header
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import make_folder, opened, written_whole
-from rulec.rulebook.model import SourceFile, Strength, Variable
-from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 1
 
 
-class _Source(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
-    sha256: str
-
-
-class _Enumeration(msgspec.Struct, tag="enumeration", tag_field="kind", forbid_unknown_fields=True):
-    name: str
-    parameters: list[str]
-    values: list[str]
-    default: str | None
-
-
-class _Signal(msgspec.Struct, tag="signal", tag_field="kind", forbid_unknown_fields=True):
-    name: str
-    parameters: list[str]
-    default: bool | None
-
-
-class _Quantity(msgspec.Struct, tag="quantity", tag_field="kind", forbid_unknown_fields=True):
-    name: str
-    parameters: list[str]
-    unit: str
-    default: float | None
-
-
-class _Vocabulary(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
-    types: dict[str, str | None]
-    declarations: list[_Enumeration | _Signal | _Quantity]
-
-
-class _Read(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
-    variables: list[str]
-    values: list[str]
-    others: bool
-
-
-class _Machine(msgspec.Struct, forbid_unknown_fields=True):
-    reads: list[_Read]
-    letters: list[int]
-    following: list[list[int]]
-    accepting: list[list[bool]]
-    dead: int | None
-    safe: int | None
-
-
-class _Rule(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
-    strength: Literal["hard", "soft"]
-    variables: list[tuple[str, str]]
-    cite: str
-    says: str
-    formula: str
-    machine: _Machine
-    hoa: str
-
-
-class _Header(msgspec.Struct):
-    format: Literal["rulec compiled rulebook"]
-    version: int
-
-
-class _File(msgspec.Struct, forbid_unknown_fields=True):
-    format: str
-    version: int
-    rulec: str
-    spot: str
-    name: str
-    title: str
-    law: str
-    as_of: str
-    sources: list[_Source]
-    semantics: Literal["stutter"]
-    vocabulary: _Vocabulary
-    rules: list[_Rule]
-
-
 def to_json(rulebook: CompiledRulebook) -> str:
-    """The file's text."""
+    """The file's text: indented, with every row of numbers on a line of its own."""
     vocabulary = rulebook.vocabulary
     data = {
         "format": FORMAT,
@@ -126,7 +45,12 @@ def to_json(rulebook: CompiledRulebook) -> str:
             for rule in rulebook.rules
         ],
     }
-    return json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False) + "\n"
+    text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
+    return _ROW.sub(lambda row: re.sub(r"\s+", " ", row[0]), text) + "\n"
+
+
+_ROW = re.compile(r"\[\s[^\[\]{}\"]*\]")
+"""A list of neither lists, objects nor strings, over several lines."""
 
 
 def from_json(data: bytes, file: str) -> CompiledRulebook:
@@ -137,7 +61,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
             read, or damaged.
     """
     try:
-        header = msgspec.json.decode(data, type=_Header)
+        header = msgspec.json.decode(data, type=Header)
     except msgspec.MsgspecError as problem:
         raise _damaged(file, f"this is not a compiled rulebook: {problem}") from None
     except (RecursionError, UnicodeDecodeError):
@@ -149,135 +73,10 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
             f"this rulec reads version {VERSION}",
         )
     try:
-        read = msgspec.json.decode(data, type=_File)
-        return _checked(read)
+        read = msgspec.json.decode(data, type=File)
+        return checked(read)
     except (msgspec.MsgspecError, ValueError) as problem:
         raise _damaged(file, f"this compiled rulebook is damaged: {problem}") from None
-
-
-def _checked(read: _File) -> CompiledRulebook:
-    vocabulary = Vocabulary(
-        read.vocabulary.name,
-        {name: ObjectType(name, parent) for name, parent in read.vocabulary.types.items()},
-        {item.name: _declaration(item) for item in read.vocabulary.declarations},
-    )
-    _check_vocabulary(vocabulary)
-    names = [rule.name for rule in read.rules]
-    for name in (read.name, *names):
-        # They become names of files.
-        plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
-        _require(bool(plain), f"{name!r} is not a name")
-    _require(len(set(names)) == len(names), "two rules have the same name")
-    return CompiledRulebook(
-        read.name,
-        vocabulary,
-        tuple(_rule(rule, vocabulary) for rule in read.rules),
-        read.title,
-        read.law,
-        read.as_of,
-        tuple(SourceFile(source.name, source.sha256) for source in read.sources),
-        read.rulec,
-        read.spot,
-    )
-
-
-def _declaration(item: _Enumeration | _Signal | _Quantity) -> Enumeration | Signal | Quantity:
-    parameters = tuple(item.parameters)
-    match item:
-        case _Enumeration():
-            return Enumeration(item.name, parameters, tuple(item.values), item.default)
-        case _Signal():
-            return Signal(item.name, parameters, item.default)
-        case _Quantity():
-            return Quantity(item.name, parameters, item.unit, item.default)
-
-
-def _check_vocabulary(vocabulary: Vocabulary) -> None:
-    types = vocabulary.types
-    for item in types.values():
-        seen, parent = {item.name}, item.parent
-        while parent is not None:
-            _require(parent in types and parent not in seen, f"type {item.name} has no root")
-            seen.add(parent)
-            parent = types[parent].parent
-    for declaration in vocabulary.declarations.values():
-        for parameter in declaration.parameters:
-            _require(parameter in types, f"{declaration.name} is about an unknown type")
-        if isinstance(declaration, Enumeration) and declaration.default is not None:
-            known = declaration.default in declaration.values
-            _require(known, f"the default of {declaration.name} is not one of its values")
-
-
-def _rule(rule: _Rule, vocabulary: Vocabulary) -> CompiledRule:
-    variables = tuple(Variable(name, type_name) for name, type_name in rule.variables)
-    types = {variable.name: variable.type for variable in variables}
-    _require(len(types) == len(variables), f"rule {rule.name} names a variable twice")
-    for type_name in types.values():
-        _require(type_name in vocabulary.types, f"rule {rule.name} is about an unknown type")
-    for read in rule.machine.reads:
-        fits = _fits(read, vocabulary.declarations.get(read.name), types.keys())
-        _require(fits, f"rule {rule.name} reads {read.name}, which its vocabulary lacks")
-    strength: Strength = rule.strength
-    return CompiledRule(
-        rule.name,
-        strength,
-        variables,
-        rule.cite,
-        rule.says,
-        rule.formula,
-        _machine(rule.machine, rule.name),
-        rule.hoa,
-    )
-
-
-def _fits(read: _Read, declaration: Declaration | None, variables: Collection[str]) -> bool:
-    if declaration is None or isinstance(declaration, Quantity):
-        return False
-    about = len(declaration.parameters) == len(read.variables)
-    values = declaration.values if isinstance(declaration, Enumeration) else ()
-    told_apart = set(read.values)
-    return (
-        about
-        and set(read.variables) <= set(variables)
-        and bool(values) == bool(told_apart)
-        and told_apart <= set(values)
-        and len(told_apart) == len(read.values)
-        and read.others == (len(told_apart) < len(values))
-    )
-
-
-def _machine(read: _Machine, rule: str) -> Machine:
-    reads = tuple(Read(r.name, tuple(r.variables), tuple(r.values), r.others) for r in read.reads)
-    n_letters = 1
-    for item in reads:
-        n_letters *= item.size
-    n_states = len(read.following)
-    n_classes = len(read.following[0]) if read.following else 0
-    fits: list[bool] = [
-        n_states > 0,
-        len(read.letters) == n_letters,
-        all(0 <= letter < n_classes for letter in read.letters),
-        all(len(row) == n_classes for row in read.following),
-        all(len(row) == n_classes for row in read.accepting),
-        len(read.accepting) == n_states,
-        all(0 <= state < n_states for state in chain.from_iterable(read.following)),
-    ]
-    _require(all(fits), f"the table of rule {rule} has a row or number that does not fit")
-    traps = [trap(read.following, read.accepting, verdict=verdict) for verdict in (False, True)]
-    _require(traps == [read.dead, read.safe], f"rule {rule} names a wrong dead or safe state")
-    return Machine(
-        reads,
-        tuple(read.letters),
-        tuple(tuple(row) for row in read.following),
-        tuple(tuple(row) for row in read.accepting),
-        read.dead,
-        read.safe,
-    )
-
-
-def _require(condition: bool, problem: str) -> None:
-    if not condition:
-        raise ValueError(problem)
 
 
 def _damaged(file: str, message: str) -> RulecError:

@@ -1,0 +1,105 @@
+"""The fields of a compiled rulebook's file, version 1, as docs/compiled.md describes them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+
+class Source(msgspec.Struct, forbid_unknown_fields=True):
+    """A file that went into it."""
+
+    name: str
+    sha256: str
+
+
+class Enumeration(msgspec.Struct, tag="enumeration", tag_field="kind", forbid_unknown_fields=True):
+    """A state with one of several values."""
+
+    name: str
+    parameters: list[str]
+    values: list[str]
+    default: str | None
+
+
+class Signal(msgspec.Struct, tag="signal", tag_field="kind", forbid_unknown_fields=True):
+    """A Boolean."""
+
+    name: str
+    parameters: list[str]
+    default: bool | None
+
+
+class Quantity(msgspec.Struct, tag="quantity", tag_field="kind", forbid_unknown_fields=True):
+    """A number with a unit."""
+
+    name: str
+    parameters: list[str]
+    unit: str
+    default: float | None
+
+
+class Vocabulary(msgspec.Struct, forbid_unknown_fields=True):
+    """What the rules speak of."""
+
+    name: str
+    types: dict[str, str | None]
+    declarations: list[Enumeration | Signal | Quantity]
+
+
+class Read(msgspec.Struct, forbid_unknown_fields=True):
+    """What a machine asks of a state."""
+
+    name: str
+    variables: list[str]
+    values: list[str]
+    others: bool
+
+
+class Machine(msgspec.Struct, forbid_unknown_fields=True):
+    """A rule as a table."""
+
+    reads: list[Read]
+    letters: list[int]
+    following: list[list[int]]
+    accepting: list[list[bool]]
+    dead: int | None
+    safe: int | None
+
+
+class Rule(msgspec.Struct, forbid_unknown_fields=True):
+    """One rule."""
+
+    name: str
+    strength: Literal["hard", "soft"]
+    variables: list[tuple[str, str]]
+    cite: str
+    says: str
+    formula: str
+    machine: Machine
+    hoa: str
+
+
+class Header(msgspec.Struct):
+    """What is looked at first: is it such a file, and of which version?"""
+
+    format: Literal["rulec compiled rulebook"]
+    version: int
+
+
+class File(msgspec.Struct, forbid_unknown_fields=True):
+    """The whole file."""
+
+    format: str
+    version: int
+    rulec: str
+    spot: str
+    name: str
+    title: str
+    law: str
+    as_of: str
+    sources: list[Source]
+    semantics: Literal["stutter"]
+    vocabulary: Vocabulary
+    rules: list[Rule]
