@@ -149,7 +149,7 @@ SEMANTIC = [
 
 @st.composite
 def broken_rulebooks(draw):
-    """A text and, for each of its mistakes, the first and the last line where it may be reported."""
+    """A text and, for each of its mistakes, the first and the last line to report it at."""
     lines: list[str] = []
     wrong: list[tuple[int, int]] = []
 

@@ -1,6 +1,7 @@
 """Whatever the bytes are: a rulebook, or one RulecError whose diagnostics have places; in time."""
 
 import time
+import unicodedata
 from pathlib import Path
 
 from hypothesis import given
@@ -23,20 +24,24 @@ FRAGMENTS = st.sampled_from(
 )
 
 
-def judge(text, name="fuzz.rules"):
-    """Read it; every error has a place and can be shown."""
+def diagnostics_of(text):
     try:
-        parse_rulebook(text, name)
+        parse_rulebook(text, "fuzz.rules")
     except RulecError as error:
-        assert error.diagnostics
-        for one in error.diagnostics:
-            assert one.place is not None
-            assert one.place.file
-        assert all(char.isprintable() or char == "\n" for char in _shown(error))
+        return error.diagnostics
+    return None
 
 
-def _shown(error):
-    return render_diagnostics(error.diagnostics).replace("\u200d", "").replace("\u00ad", "")
+def judge(text):
+    """Read it; what is wrong has places and can be shown."""
+    found = diagnostics_of(text)
+    if found is None:
+        return
+    assert found
+    assert all(one.place is not None and one.place.file for one in found)
+    shown = render_diagnostics(found)
+    assert not any(unicodedata.category(one) in ("Cc", "Cs") and one != "\n" for one in shown)
+    assert not set(shown) & set("\u202e\u2028\ufeff")
 
 
 @given(st.binary(max_size=300))
@@ -44,9 +49,11 @@ def test_random_bytes(data):
     try:
         source = decode("fuzz.rules", data)
     except RulecError as error:
-        assert error.diagnostics[0].place is not None
-        return
-    parse(source)
+        found = error.diagnostics
+    else:
+        _, found = parse(source)
+    assert found, "no random bytes are a rulebook"
+    assert all(one.place is not None for one in found)
 
 
 @given(st.lists(FRAGMENTS, max_size=40).map("".join))
@@ -56,13 +63,8 @@ def test_random_fragments(text):
 
 @given(st.text(max_size=200))
 def test_random_text(text):
-    parse_error = None
-    try:
-        parse_rulebook(text)
-    except RulecError as error:
-        parse_error = error
-    assert parse_error is not None, "no random text is a rulebook"
-    assert render_diagnostics(parse_error.diagnostics)
+    assert diagnostics_of(text), "no random text is a rulebook"
+    judge(text)
 
 
 @given(st.data())

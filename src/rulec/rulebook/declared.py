@@ -16,8 +16,8 @@ class Declared:
     """What the files declare, and where; filled by ``declare``.
 
     ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
-    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain`` are types whose parents are not
-    known for that kind of reason.
+    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain``
+    are types whose parents are not known for such a reason.
     """
 
     types: dict[str, ObjectType] = field(default_factory=dict)

@@ -107,6 +107,8 @@ def _folders(search_path: Sequence[Path]) -> list[Path]:
 
 def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[Path]:
     beside = [] if user is None else [user.parent, user.parent / "vocabulary"]
+    if user is not None and user.parent.name == user.stem:
+        beside.append(user.parent.parent / "vocabulary")
     listed = [inner for folder in search_path for inner in (folder, folder / "vocabulary")]
     return [*beside, *listed, rulebooks_folder() / "vocabulary"]
 

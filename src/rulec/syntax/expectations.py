@@ -43,7 +43,7 @@ def in_words(accepted: Iterable[str]) -> str:
     rest.discard("$END" if parts or len(rest) > 1 else "")
     ranked = sorted(rest, key=lambda kind: (_rank(kind), kind))
     parts = [*parts, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked)]
-    return f"expected {_any_of(parts)}" if parts else ""
+    return f"expected {_any_of(parts or [_WORDS['$END']])}"
 
 
 def _rank(kind: str) -> int:

@@ -6,7 +6,7 @@ from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax.advice import Scene, advise
-from rulec.syntax.expectations import in_words, wants_operand, wants_operator
+from rulec.syntax.expectations import in_words, wants_operand
 from rulec.syntax.parser import MAX_DEPTH, Mismatch
 from rulec.syntax.pieces import Piece, span_of
 from rulec.syntax.scanner import Token
@@ -155,8 +155,8 @@ def _unterminated(span: Span) -> Diagnostic:
 
 
 def _parenthesis_help(scene: Scene) -> str:
-    complete = wants_operator(scene.accepted) or "$END" in scene.accepted
-    if scene.found is not None and scene.found.text == ")" and complete:
+    unmatched = scene.found is not None and scene.found.text == ")"
+    if unmatched and scene.kind in ("clause", "formula") and not wants_operand(scene.accepted):
         return "delete the `)`, or open it before"
     return ""
 

@@ -8,7 +8,7 @@ from typing import Literal
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax.scanner import Token
 
-PieceKind = Literal["item", "rule_head", "clause", "example_head", "state", "junk"]
+PieceKind = Literal["item", "rule_head", "clause", "example_head", "state", "formula", "junk"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     source = checked(Source(name, text))
     tokens = scan(source)
     reader = _Reader(source, tokens)
-    formula = reader.read("formula", Piece("clause", 0, len(tokens)), Builder.formula)
+    formula = reader.read("formula", Piece("formula", 0, len(tokens)), Builder.formula)
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula

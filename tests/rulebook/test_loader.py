@@ -1,0 +1,179 @@
+"""Finding and reading: names, paths, vocabularies, kinds of files, what was read."""
+
+import os
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from rulec.diagnostics import RulecError
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import (
+    available_rulebooks,
+    load_rulebook,
+    load_vocabulary,
+    parse_rulebook,
+)
+
+MINE = "rulebook mine\nuse words\nhard rule r { require p }\n"
+WORDS = "vocabulary words { signal p }\n"
+
+
+def write(path: Path, text: str) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def only(reference, search_path=()):
+    with pytest.raises(RulecError) as caught:
+        load_rulebook(reference, search_path)
+    (one,) = caught.value.diagnostics
+    return one
+
+
+def test_a_name_is_found_on_the_search_path_first(tmp_path):
+    mine = "rulebook esterle2019\nsignal p\nhard rule mine { require p }\n"
+    write(tmp_path / "esterle2019.rules", mine)
+    assert load_rulebook("esterle2019").rules[0].name == "R1"
+    assert load_rulebook("esterle2019", [tmp_path]).rules[0].name == "mine"
+
+
+def test_a_name_may_be_a_folder_s(tmp_path):
+    write(tmp_path / "mine" / "mine.rules", MINE)
+    write(tmp_path / "vocabulary" / "words.rules", WORDS)
+    assert load_rulebook("mine", [tmp_path]).name == "mine"
+    assert load_rulebook(tmp_path / "mine").name == "mine"
+
+
+def test_the_folders_come_in_their_order(tmp_path):
+    for folder, rule in (("one", "first"), ("two", "second")):
+        text = f"rulebook a\nsignal p\nhard rule {rule} {{ require p }}\n"
+        write(tmp_path / folder / "a.rules", text)
+    folders = [tmp_path / "one", tmp_path / "two"]
+    assert load_rulebook("a", folders).rules[0].name == "first"
+    assert load_rulebook("a", folders[::-1]).rules[0].name == "second"
+
+
+def test_a_vocabulary_is_found_beside_its_rulebook_first(tmp_path):
+    path = write(tmp_path / "here" / "mine.rules", MINE)
+    write(tmp_path / "here" / "words.rules", WORDS)
+    write(tmp_path / "there" / "words.rules", "vocabulary words { signal q }\n")
+    assert list(load_rulebook(path, [tmp_path / "there"]).vocabulary.declarations) == ["p"]
+
+
+def test_a_rulebook_and_its_vocabulary_may_share_a_name(tmp_path):
+    path = write(
+        tmp_path / "paper.rules", "rulebook paper\nuse paper\nhard rule r {require R_pc}\n"
+    )
+    assert "surface" in load_rulebook(path).vocabulary.declarations
+
+
+def test_what_was_read_is_recorded(tmp_path):
+    path = write(tmp_path / "mine.rules", MINE)
+    write(tmp_path / "words.rules", WORDS)
+    records = [(one.name, one.sha256) for one in load_rulebook(path).sources]
+    assert records == [
+        ("mine.rules", sha256(MINE.encode()).hexdigest()),
+        ("words.rules", sha256(WORDS.encode()).hexdigest()),
+    ]
+
+
+def test_several_vocabularies_add_up(tmp_path):
+    write(tmp_path / "words.rules", WORDS)
+    text = MINE.replace("use words", "use paper\nuse words\nsignal own").replace("p }", "p & own }")
+    names = load_rulebook(write(tmp_path / "mine.rules", text)).vocabulary.declarations
+    assert list(names) == ["position", "surface", "CONGESTED", "p", "own"]
+
+
+def test_an_unknown_name_lists_the_nearest_and_all(tmp_path):
+    write(tmp_path / "mine.rules", MINE)
+    write(tmp_path / "words.rules", WORDS)
+    assert available_rulebooks([tmp_path]) == ("esterle2019", "mine")
+    one = only("esterle2018", [tmp_path])
+    assert one.code == "R0703"
+    assert one.message == "there is no rulebook `esterle2018`"
+    assert one.help == "did you mean `esterle2019`? (available: esterle2019, mine)"
+
+
+@pytest.mark.parametrize("name", ["", "..", "nothing\0here", "x" * 5000, "C:\\book", "*"])
+def test_strange_names_are_not_found(name):
+    assert only(name).code == "R0703"
+
+
+@pytest.mark.parametrize("name", ["./none.rules", "none.rules", "a/b", "/", "a\0/b", "/dev/null/x"])
+def test_paths_that_cannot_be_read(name):
+    one = only(name)
+    assert one.code == "R0701"
+    assert one.place is not None
+
+
+def test_a_folder_is_not_a_rulebook(tmp_path):
+    assert "folder" in only(f"{tmp_path}/").message
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists() or os.name != "posix", reason="needs /dev/zero")
+def test_an_endless_file_is_too_large(tmp_path):
+    (tmp_path / "endless.rules").symlink_to("/dev/zero")
+    assert only(tmp_path / "endless.rules").code == "R0102"
+
+
+def test_mistakes_of_the_rulebook_and_of_its_vocabulary_come_together(tmp_path):
+    write(tmp_path / "words.rules", "vocabulary words { signal p is x\n colour is one red }\n")
+    path = write(tmp_path / "mine.rules", MINE.replace("require p", "require p & & p"))
+    with pytest.raises(RulecError) as caught:
+        load_rulebook(path)
+    places = [(Path(one.place.file).name, one.place.line) for one in caught.value.diagnostics]
+    assert places == [("mine.rules", 3), ("words.rules", 1), ("words.rules", 2)]
+
+
+def test_an_unreadable_vocabulary_costs_one_error(tmp_path):
+    path = write(tmp_path / "mine.rules", MINE)
+    (tmp_path / "words.rules").write_bytes(b"vocabulary words { signal p\xff }")
+    one = only(path)
+    assert (one.code, Path(one.place.file).name) == ("R0101", "words.rules")
+
+
+def test_a_vocabulary_that_is_used_but_empty(tmp_path):
+    path = write(tmp_path / "mine.rules", MINE)
+    write(tmp_path / "words.rules", "")
+    one = only(path)
+    assert (one.code, Path(one.place.file).name) == ("R0103", "words.rules")
+
+
+def test_text_at_hand_is_read_as_well():
+    rulebook = parse_rulebook("rulebook a\nsignal p\nhard rule r { require p }", "at hand")
+    assert rulebook.sources[0].name == "at hand"
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook("rulebook a\nhard rule r { require q }", "at hand")
+    assert caught.value.diagnostics[0].place.file == "at hand"
+
+
+def test_the_vocabularies_that_ship():
+    paper, road = load_vocabulary("paper"), load_vocabulary("road")
+    assert paper.declarations["position"].values == ("b", "f", "l", "r")
+    assert paper.declarations["position"].default is None
+    assert paper.declarations["surface"].default == "R_cw"
+    assert paper.declarations["CONGESTED"].default is False
+    assert set(paper.types) == {"obstacle", "vehicle", "pedestrian", "cyclist", "rail_borne"}
+    assert road.declarations["station"].values == ("behind", "beside", "in_front_of")
+    assert road.declarations["lateral"].values == ("left_of", "same_lane", "right_of")
+    assert road.declarations["surface"].default == "carriageway"
+    assert road.declarations["congested"].default is False
+    for name in ("car", "truck", "bus", "motorcycle"):
+        assert road.is_subtype(name, "vehicle")
+    assert not road.is_subtype("pedestrian", "vehicle")
+
+
+def test_a_vocabulary_that_is_not_there():
+    with pytest.raises(RulecError) as caught:
+        load_vocabulary("raod")
+    assert "did you mean `road`?" in caught.value.diagnostics[0].help
+
+
+def test_every_file_that_ships_can_be_read():
+    for path in sorted(rulebooks_folder().rglob("*.rules")):
+        if path.parent.name == "vocabulary":
+            assert load_vocabulary(path.stem).name == path.stem
+        else:
+            assert load_rulebook(path.stem).name == path.stem
