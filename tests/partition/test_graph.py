@@ -11,6 +11,7 @@ from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
+from rulec.partition.occupancy import scene as scene_over_time
 from rulec.scenario import (
     Box,
     ConstantAcceleration,
@@ -21,6 +22,7 @@ from rulec.scenario import (
     Trajectory,
     load_scenario,
 )
+from rulec.scenario.timing import timing
 
 partitions = st.sampled_from(["paper", "fine"])
 
@@ -152,6 +154,24 @@ def test_an_object_that_comes_back_is_another_one():
     graph = navigation_graph(scene(walker, other), step_s=1.0)
     assert graph.present == {"p": (0, 0), "p_2": (0, 4), "p_3": (3, 4)}
     assert graph.trace_graph().objects == {"p": "pedestrian", "p_2": "vehicle", "p_3": "pedestrian"}
+
+
+def test_being_away_for_one_layer_is_enough():
+    """Below d = 0 by more than its half width from 0.36 s to 2.63 s: all of layer 1."""
+    dip = Trajectory(((0.0, 50.0, 1.5), (1.0, 50.0, -5.0), (2.0, 50.0, -5.0), (3.0, 50.0, 1.5)))
+    walker = Obstacle("p", "pedestrian", 0.5, 0.5, dip, 90.0)
+    graph = navigation_graph(scene(walker), step_s=1.0)
+    assert graph.present == {"p": (0, 0), "p_2": (2, 3)}
+
+
+def test_a_pedestrian_that_turns_looks_where_it_goes_next():
+    """Along the right lane for a second, then to the left: at 1 s it is as wide as itself."""
+    walk = Trajectory(((0.0, 50.0, 1.5), (1.0, 51.0, 1.5), (3.0, 51.0, 4.5)))
+    walker = Obstacle("p", "pedestrian", 0.5, 0.5, walk)
+    places = scene_over_time(scene(walker), timing(2.0, 1.0), "paper")
+    assert [region.extent for region in places.instants[0]] == [Box(50.75, 51.25, 1.25, 1.75)]
+    assert places.swept[0][0].extent == Box(49.75, 51.25, 0.0, 3.0)
+    assert places.swept[1][0].extent == Box(50.75, 51.25, 1.25, 3.25)
 
 
 def test_an_object_that_never_comes_is_left_out():
