@@ -54,7 +54,7 @@ def test_the_words_that_cannot_be_names_are_all_listed():
 
 
 def test_the_mistake_looks_as_shown():
-    lines = ["rulebook example", "use paper", "hard rule r (v: vehicle) {", "  says \"no\""]
+    lines = ["rulebook example", "use paper", "hard rule r (v: vehicle) {", '  says "no"']
     text = "\n".join([*lines, "  require CONGESTED => f_v", "}"])
     with pytest.raises(RulecError) as caught:
         parse_rulebook(text, "example.rules")

@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from rulec.diagnostics import Diagnostic, Label, Span, nearest_name
+from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.rulebook.declaration_messages import (
+    no_such_value,
+    twice,
+    unknown_type,
+    which_type,
+)
 from rulec.syntax import tree
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
@@ -88,7 +94,7 @@ def _declare_types(declared: Declared, file: tree.File) -> None:
     for item in own:
         name = item.name.text
         if name in declared.types:
-            declared.mistakes.append(_twice("type", item.name, declared.type_spans[name]))
+            declared.mistakes.append(twice("type", item.name, declared.type_spans[name]))
             continue
         declared.types[name] = ObjectType(name, item.parent.text if item.parent else None)
         declared.type_spans[name] = item.name.span
@@ -159,13 +165,13 @@ def _declare_item(
             if chosen is not None and chosen.text in texts:
                 default = chosen.text
             elif chosen is not None:
-                declared.mistakes.append(_no_such_value(name, chosen, texts))
+                declared.mistakes.append(no_such_value(name, chosen, texts))
             enumeration = Enumeration(name.text, types, texts, default)
             _add(declared, name, enumeration)
             for value in values:
                 if value.text in declared.spans:
                     first = declared.spans[value.text]
-                    declared.mistakes.append(_twice("name", value, first))
+                    declared.mistakes.append(twice("name", value, first))
                 else:
                     declared.spans[value.text] = value.span
                     declared.value_of[value.text] = enumeration
@@ -173,7 +179,7 @@ def _declare_item(
 
 def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
     if name.text in declared.spans:
-        declared.mistakes.append(_twice("name", name, declared.spans[name.text]))
+        declared.mistakes.append(twice("name", name, declared.spans[name.text]))
         return
     declared.spans[name.text] = name.span
     declared.items[name.text] = item
@@ -190,7 +196,7 @@ def _parameter_types(
     for position, one in enumerate(parameters):
         first = seen.setdefault(one.name.text, one.name.span)
         if first is not one.name.span:
-            declared.mistakes.append(_twice("parameter", one.name, first))
+            declared.mistakes.append(twice("parameter", one.name, first))
         if name.text not in declared.spans:
             declared.parameter_spans[name.text, position] = one.span
         if one.type is not None:
@@ -202,68 +208,10 @@ def _parameter_types(
         else:
             types.append("")
             if not (declared.opaque or declared.opaque_types or declared.suspects):
-                declared.mistakes.append(_which_type(one, roots))
+                declared.mistakes.append(which_type(one, roots))
     return tuple(types)
 
 
 def _unknown_type(declared: Declared, name: tree.Name) -> None:
     if not declared.may_know_type(name.text):
         declared.mistakes.append(unknown_type(name, list(declared.types)))
-
-
-def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
-    """No type of that name."""
-    near = nearest_name(name.text, known)
-    if near is not None:
-        way_out = f"did you mean `{near}`?"
-    elif known:
-        way_out = f"known are {_listed(known)}; declare another by `type {name.text}`"
-    else:
-        way_out = f"declare it by `type {name.text}`, or `use` a vocabulary that has types"
-    return Diagnostic(
-        "R0201",
-        f"there is no type `{name.text}`",
-        name.span.place,
-        expected="expected a type",
-        help=way_out,
-    )
-
-
-def _listed(names: Sequence[str]) -> str:
-    shown = [f"`{name}`" for name in names[:8]]
-    return ", ".join([*shown, "…"] if len(names) > len(shown) else shown)
-
-
-def _which_type(parameter: tree.Parameter, roots: list[str]) -> Diagnostic:
-    why = f"{_listed(roots)} are all possible" if roots else "no type is declared"
-    example = roots[0] if roots else "road_user"
-    return Diagnostic(
-        "R0308",
-        f"it is not clear which objects `{parameter.name.text}` stands for: {why}",
-        parameter.span.place,
-        expected="expected a type behind the name",
-        help=f"write `{parameter.name.text}: {example}`",
-    )
-
-
-def _no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -> Diagnostic:
-    near = nearest_name(chosen.text, values)
-    return Diagnostic(
-        "R0305",
-        f"`{chosen.text}` is not a value of `{name.text}`",
-        chosen.span.place,
-        expected="expected one of its values",
-        help=f"did you mean `{near}`?" if near else f"its values are {_listed(values)}",
-    )
-
-
-def _twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
-    advice = "; values are names too" if what == "name" else ""
-    return Diagnostic(
-        "R0204",
-        f"the {what} `{again.text}` is declared twice",
-        again.span.place,
-        expected="declared again here",
-        help=f"rename one of the two{advice}",
-        labels=(Label(first.place, "first declared here"),),
-    )

@@ -15,7 +15,8 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.declared import Declared, unknown_type
+from rulec.rulebook.declaration_messages import unknown_type
+from rulec.rulebook.declared import Declared
 from rulec.rulebook.model import Example, ExampleState, Rule, Variable
 from rulec.rulebook.scope import BoundVariable, Scope
 from rulec.syntax import tree

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
-import unicodedata
-from calendar import monthrange
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.parser import Branch, Leaf
+from rulec.syntax.values import misleads, why_not_a_day
 
 _OPERATORS = {
     "IFF": "iff",
@@ -29,11 +27,6 @@ _OPERATORS = {
     "NEXT": "next",
     "WEAK_NEXT": "weak next",
 }
-
-_ISO_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
-
-_DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-"""Unicode's bidirectional controls: they show a text in another order than it is read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +180,7 @@ class Builder:
                 if escaped not in '"\\':
                     self._mistake("R0106", position, 2, f"`\\{escaped}` means nothing in a text")
                 value.append(escaped)
-            elif _misleads(character):
+            elif misleads(character):
                 self._mistake("R0107", position, 1, "a text may not hold this invisible character")
             else:
                 value.append(character)
@@ -195,7 +188,7 @@ class Builder:
 
     def date(self, leaf: Leaf) -> str:
         """ISO text of a date that exists."""
-        wrong = _why_not_a_day(leaf.text)
+        wrong = why_not_a_day(leaf.text)
         if wrong:
             why = f"`{leaf.text}` is not a day of the calendar"
             self._mistake("R0110", leaf.start, len(leaf.text), why, wrong)
@@ -216,27 +209,6 @@ class Builder:
         }
         place = Span(self.source, position, position + length).place
         self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))
-
-
-def _why_not_a_day(text: str) -> str:
-    """Empty for a day of the Gregorian calendar in ISO 8601's form."""
-    if not _ISO_DATE.fullmatch(text):
-        return "write year-month-day, such as 2006-03-28"
-    year, month, day = (int(part) for part in text.split("-"))
-    if year < 1:
-        return "years begin with 0001"
-    if not 1 <= month <= 12:
-        return "months go from 01 to 12"
-    days = monthrange(year, month)[1]
-    return "" if 1 <= day <= days else f"days go from 01 to {days} in that month"
-
-
-def _misleads(character: str) -> bool:
-    """Is it a control character, or does it break or reorder the line it stands in?"""
-    category = unicodedata.category(character)
-    return character in _DIRECTION_CONTROLS or (
-        character != "\t" and category in ("Cc", "Cs", "Zl", "Zp")
-    )
 
 
 def _leaves(node: Branch, kind: str) -> list[Leaf]:

@@ -1,0 +1,33 @@
+"""Which characters a text may hold, and which dates exist."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from calendar import monthrange
+
+_ISO_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
+
+_DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""Unicode's bidirectional controls: they show a text in another order than it is read."""
+
+
+def why_not_a_day(text: str) -> str:
+    """Empty for a day of the Gregorian calendar in ISO 8601's form."""
+    if not _ISO_DATE.fullmatch(text):
+        return "write year-month-day, such as 2006-03-28"
+    year, month, day = (int(part) for part in text.split("-"))
+    if year < 1:
+        return "years begin with 0001"
+    if not 1 <= month <= 12:
+        return "months go from 01 to 12"
+    days = monthrange(year, month)[1]
+    return "" if 1 <= day <= days else f"days go from 01 to {days} in that month"
+
+
+def misleads(character: str) -> bool:
+    """Is it a control character, or does it break or reorder the line it stands in?"""
+    category = unicodedata.category(character)
+    return character in _DIRECTION_CONTROLS or (
+        character != "\t" and category in ("Cc", "Cs", "Zl", "Zp")
+    )
