@@ -96,7 +96,7 @@ def test_states_of_the_paper_partition():
     assert traces.objects == {"o1": "vehicle"}
     assert traces.present == {}
     start = traces.states[0][traces.start]
-    assert start == {"position": {"o1": "b"}, "surface": "R_cw", "CONGESTED": False}
+    assert start == {"position": {"o1": "b"}, "surface": "R_cw"}
     assert {state["surface"] for state in traces.states[0]} == {"R_cw", "R_pc"}
 
 
@@ -111,7 +111,6 @@ def test_states_of_the_fine_partition():
         "station": {"o1": "behind"},
         "lateral": {"o1": "same_lane"},
         "surface": "carriageway",
-        "CONGESTED": False,
     }
     assert len(traces.states[0]) == 9
     seen = {(s["station"]["o1"], s["lateral"]["o1"]) for s in traces.states[0]}
