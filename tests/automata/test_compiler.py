@@ -1,6 +1,5 @@
 """Compiling: Spot in a process of its own, and what becomes of rules that explode."""
 
-import time
 from functools import reduce
 
 import pytest
@@ -59,14 +58,11 @@ def test_a_rule_that_explodes_is_an_error_and_the_others_compile(position):
     vocabulary = signals(16)
     rules = [Rule(name, "hard", (), always(Atom("s0"))) for name in "AB"]
     rules.insert(position, Rule("Boom", "hard", (), exploding()))
-    begin = time.monotonic()
     with pytest.raises(RulecError) as caught:
         compile_rulebook(Rulebook("test", vocabulary, tuple(rules)), cpu_limit_s=2)
     assert [d.code for d in caught.value.diagnostics] == ["R0401"]
     assert "Boom" in caught.value.diagnostics[0].message
     assert "rule of its own" in caught.value.diagnostics[0].help
-    # Not a measurement: a formula that explodes must not hang, and this one would, for hours.
-    assert time.monotonic() - begin < 60
 
 
 def test_two_rules_that_explode_are_two_errors():

@@ -132,3 +132,12 @@ def test_the_automaton_is_the_formula_under_the_vocabularys_knowledge(formula):
     reads = reads_of(formula, VOCABULARY)
     meant = f"({in_spot(formula)}) & G({in_spot(knowledge(reads))})"
     assert spot.are_equivalent(translate(formula, reads), meant)
+
+
+@given(formulas, formulas)
+def test_machines_of_equivalent_formulas_are_identical(left, right):
+    """De Morgan: the same language by another formula, through another automaton."""
+    no = UnaryOperator.NOT
+    both = Binary(BinaryOperator.AND, left, right)
+    either = Unary(no, Binary(BinaryOperator.OR, Unary(no, left), Unary(no, right)))
+    assert machine_of(both) == machine_of(either)

@@ -84,6 +84,8 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
         stdout=subprocess.PIPE,
         # What a dying C++ library has to say is said better by the diagnostic.
         stderr=subprocess.DEVNULL,
+        # In a group of its own Ctrl-C does not reach it; it is ended below.
+        start_new_session=True,
     )
     try:
         assert process.stdout is not None

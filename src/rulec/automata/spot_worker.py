@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import pickle
 import resource
-import signal
 import sys
 import time
 import traceback
@@ -16,6 +15,7 @@ from typing import Literal
 
 from rulec.automata.letters import count_letters
 from rulec.automata.machine import Machine, Read
+from rulec.automata.tables import build_machine
 from rulec.logic.formula import Formula
 
 MEMORY_LIMIT_BYTES = 2 << 30
@@ -62,8 +62,6 @@ class Failed:
 
 def main() -> None:
     """Answer jobs until standard input ends."""
-    # The caller ends this process itself, also when the user presses Ctrl-C.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _limit(resource.RLIMIT_AS, MEMORY_LIMIT_BYTES)
     answers = sys.stdout.buffer
@@ -92,7 +90,6 @@ def main() -> None:
 
 def _answer(job: Job) -> Done | Failed:
     from rulec.automata import spot_bridge
-    from rulec.automata.tables import build_machine
 
     n_letters = count_letters(job.reads)
     if n_letters > MOST_LETTERS:

@@ -37,8 +37,12 @@ class DeterministicAutomaton:
 def build_machine(
     automaton: DeterministicAutomaton, reads: tuple[Read, ...], n_letters: int
 ) -> Machine:
-    """The minimal machine of the automaton over ``n_letters`` letters."""
-    classes = _letter_classes(automaton, n_letters)
+    """The minimal machine of the automaton over ``n_letters`` letters.
+
+    It does not depend on which of the language's automata it is given, down to its numbers: classes
+    are numbered by their smallest letter, states in breadth-first order.
+    """
+    classes = sorted(_letter_classes(automaton, n_letters), key=lambda members: members & -members)
     following, accepting = _tables(automaton, classes)
     following, accepting = _minimise(following, accepting, automaton.initial)
     columns = list(zip(*following, *accepting, strict=True))
