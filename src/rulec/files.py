@@ -1,7 +1,8 @@
-"""Files that appear whole or not at all."""
+"""Files: read as bytes or as text in UTF-8; written whole or not at all."""
 
 from __future__ import annotations
 
+import codecs
 import os
 import tempfile
 from collections.abc import Iterator
@@ -9,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, Label, Place, RulecError, Source, Span
 
 
 @contextmanager
@@ -57,18 +58,77 @@ def make_folder(path: Path) -> None:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[IO[bytes]]:
-    """A file opened for reading. Raises RulecError R0701."""
+def opened(
+    path: Path,
+    way_out: str = "check its name and its permissions",
+    labels: tuple[Label, ...] = (),
+) -> Iterator[IO[bytes]]:
+    """A file opened for reading.
+
+    Raises:
+        RulecError: R0701, with this way out and these labels.
+    """
     try:
         stream = path.open("rb")
         stream.peek(1)
-    except OSError as problem:
-        reason = problem.strerror or str(problem)
-        raise RulecError(Diagnostic("R0701", f"cannot read {path}: {reason.lower()}")) from None
+    except (OSError, ValueError) as problem:  # ValueError: a null character in the name
+        message = f"the file cannot be read: {_reason(problem)}"
+        place = Place(str(path))
+        raise RulecError(Diagnostic("R0701", message, place, help=way_out, labels=labels)) from None
     with stream:
         yield stream
 
 
 def _unwritable(path: Path, problem: OSError) -> Diagnostic:
-    reason = (problem.strerror or str(problem)).lower()
-    return Diagnostic("R0702", f"cannot write {path}: {reason}")
+    return Diagnostic("R0702", f"the file cannot be written: {_reason(problem)}", Place(str(path)))
+
+
+def _reason(problem: OSError | ValueError) -> str:
+    if isinstance(problem, IsADirectoryError):
+        return "it is a folder"
+    known = problem.strerror if isinstance(problem, OSError) else None
+    return (known or str(problem)).lower()
+
+
+def decoded(name: str, data: bytes) -> Source:
+    """The text of a file in UTF-8; a byte order mark is dropped.
+
+    Raises:
+        RulecError: R0101 if it is in another encoding, or no text at all.
+    """
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as reason:
+        raise RulecError(_not_utf8(name, data, reason.start)) from None
+    return without_null(Source(name, text.removeprefix("\ufeff")))
+
+
+def without_null(source: Source) -> Source:
+    """The same source, if it has no null character. Raises RulecError R0101."""
+    null = source.text.find("\0")
+    if null >= 0:
+        raise RulecError(
+            Diagnostic(
+                "R0101",
+                "the file holds a null character and is not a text",
+                Span(source, null, null + 1).place,
+                help="give a file of plain text in UTF-8",
+            )
+        )
+    return source
+
+
+def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
+    way_out = "save the file as UTF-8"
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        place = Place(name, 1, 1, 1, 1)
+        return Diagnostic("R0101", "the file is in UTF-16, not in UTF-8", place, help=way_out)
+    before = Source(name, data[:position].decode("utf-8"))
+    line, column = before.position(len(before.text))
+    excerpt = data.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r\0")
+    return Diagnostic(
+        "R0101",
+        f"the byte 0x{data[position]:02x} is not UTF-8",
+        Place(name, line, column, line, column + 1, excerpt),
+        help=way_out,
+    )

@@ -73,7 +73,7 @@ def test_a_missing_file_never_hides_the_others(verify, tmp_path):
     status, out, err = verify([line("t4", "bblf")], options=[str(tmp_path / "missing.jsonl")])
     assert status == 2
     assert "2 traces: 1 satisfied, 0 violated, 1 not judged" in out
-    assert "missing.jsonl: no such file" in err
+    assert "the file cannot be read: no such file" in err
 
 
 def test_an_empty_file_is_not_satisfied(verify):

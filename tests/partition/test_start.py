@@ -26,7 +26,7 @@ def test_an_obstacle_that_sweeps_the_place_is_named_and_a_step_is_found():
     scenario = Scenario("x", ROAD, Ego(20.0, 1.5), (car("fast", 3.0, 1.5, 12.0),))
     problem = complaint(scenario, step_s=2.0)
     assert problem.code == "R0607"
-    assert "'fast' sweeps ego's place (s = 20, d = 1.5) between 0 s and 2 s" in problem.message
+    assert "`fast` sweeps ego's place (s = 20, d = 1.5) between 0 s and 2 s" in problem.message
     assert problem.help == "a step of 1 s would do"
     assert navigation_graph(scenario, step_s=1.0).nodes > 0
 
@@ -34,7 +34,7 @@ def test_an_obstacle_that_sweeps_the_place_is_named_and_a_step_is_found():
 def test_two_obstacles_are_both_named():
     both = (car("a", 3.0, 1.5, 12.0), car("b", 37.0, 1.5, -12.0))
     problem = complaint(Scenario("x", ROAD, Ego(20.0, 1.5), both), step_s=2.0)
-    assert "'a' and 'b' sweep ego's place" in problem.message
+    assert "`a` and `b` sweep ego's place" in problem.message
 
 
 def test_no_step_helps_beside_a_narrow_obstacle_in_the_same_lane():
@@ -62,9 +62,13 @@ def test_on_a_border_ego_starts_in_the_free_cell_to_the_left_and_ahead():
 @pytest.mark.parametrize(
     ("options", "expected", "help_text"),
     [
-        ({"partition": "papier"}, "one of paper, fine", 'did you mean "paper"?'),
-        ({"adjacency": "corner"}, "one of touch, edge, forward", ""),
-        ({"adjacency": "Edge"}, "one of touch, edge, forward", 'did you mean "edge"?'),
+        ({"partition": "papier"}, "expected one of `paper`, `fine`", "did you mean `paper`?"),
+        ({"adjacency": "corner"}, "expected one of `touch`, `edge`, `forward`", ""),
+        (
+            {"adjacency": "Edge"},
+            "expected one of `touch`, `edge`, `forward`",
+            "did you mean `edge`?",
+        ),
     ],
 )
 def test_an_unknown_choice(options, expected, help_text):

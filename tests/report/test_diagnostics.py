@@ -77,6 +77,13 @@ def test_a_file_without_a_line():
     assert show(Place("a.rules")) == "error[R0202]: message\n --> a.rules\n\n1 error\n"
 
 
+@pytest.mark.parametrize("place", [None, Place("a.rules")])
+def test_what_was_expected_is_said_without_a_line_too(place):
+    lines = show(place, expected="expected this", help="do that").splitlines()
+    assert "  = note: expected this" in lines
+    assert lines.index("  = note: expected this") + 1 == lines.index("  = help: do that")
+
+
 def columns(text):
     wide = sum(2 if unicodedata.east_asian_width(one) in "WF" else 1 for one in text)
     return wide - sum(unicodedata.category(one) in ("Mn", "Me", "Cf") for one in text)

@@ -145,12 +145,12 @@ def test_a_file_beside_a_built_in_name(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("name", "help_text"),
-    [("s22", 'did you mean "s2"?'), ("highway", "give one of these names"), ("", "give one of")],
+    [("s22", "did you mean `s2`?"), ("highway", "give one of these names"), ("", "give one of")],
 )
 def test_an_unknown_name(name, help_text):
     with pytest.raises(RulecError) as caught:
         load_scenario(name)
     (problem,) = caught.value.diagnostics
     assert problem.code == "R0601"
-    assert "s1, s2, s3" in problem.expected
+    assert "`s1`, `s2`, `s3`" in problem.expected
     assert help_text in problem.help

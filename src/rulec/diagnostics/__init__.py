@@ -6,5 +6,17 @@ Nothing here prints. ``rulec.report`` turns diagnostics into text.
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
 from rulec.diagnostics.nearest import nearest_name
 from rulec.diagnostics.source import Place, Source, Span
+from rulec.diagnostics.wording import any_of, did_you_mean, named
 
-__all__ = ["Diagnostic", "Label", "Place", "RulecError", "Source", "Span", "nearest_name"]
+__all__ = [
+    "Diagnostic",
+    "Label",
+    "Place",
+    "RulecError",
+    "Source",
+    "Span",
+    "any_of",
+    "did_you_mean",
+    "named",
+    "nearest_name",
+]

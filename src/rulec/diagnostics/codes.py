@@ -16,7 +16,7 @@ CODES: dict[str, str] = {
     "R0106": "a text holds an unknown escape",
     "R0107": "a text holds a control character",
     "R0108": "a brace is missing or closes nothing",
-    "R0109": "something stands outside of the braces it belongs into",
+    "R0109": "something stands outside the braces that it belongs in",
     "R0110": "a date is not in the calendar",
     "R0111": "a formula is too deep or too long",
     "R0112": "a number is too large",
@@ -59,7 +59,7 @@ CODES: dict[str, str] = {
     "R0506": "a trace has no states",
     # 6: scenarios and graphs
     "R0601": "a scenario's name is unknown",
-    "R0602": "a scenario file is not text in TOML",
+    "R0602": "a scenario file is too large or not TOML",
     "R0603": "a field of a scenario is missing or unknown",
     "R0604": "a field's value in a scenario does not fit",
     "R0605": "parts of a scenario contradict each other",

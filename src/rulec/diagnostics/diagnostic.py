@@ -22,8 +22,8 @@ class Label:
 class Diagnostic:
     """One mistake (or remark).
 
-    ``message`` says what is wrong in one clause; ``expected`` stands under the underlined place and
-    says what was expected there; ``help`` is the way out. ``code`` is a key of
+    ``message`` says what is wrong in one clause; ``expected`` stands beside the underlined place
+    (``expected a name``); ``help`` is the way out. ``code`` is a key of
     ``rulec.diagnostics.codes.CODES``.
     """
 

@@ -58,7 +58,7 @@ def _stray(message: str, expected: str) -> Diagnostic:
     return Diagnostic(
         "R0609",
         message,
-        expected=expected,
+        expected=f"expected {expected}",
         help="give the index of one cell a layer, each a successor of the one before",
     )
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, get_args
 
-from rulec.diagnostics import Diagnostic, RulecError, nearest_name
+from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
 from rulec.partition.adjacency import AdjacencyName, neighbours
 from rulec.partition.cells import plane
 from rulec.partition.continuation import continuations
@@ -146,12 +146,11 @@ def navigation_graph(
 
 def _check_choice(what: str, name: str, known: tuple[str, ...]) -> None:
     if name not in known:
-        near = nearest_name(str(name), known)
         raise RulecError(
             Diagnostic(
                 "R0608",
-                f"there is no {what} {name!r}",
-                expected=f"one of {', '.join(known)}",
-                help=f'did you mean "{near}"?' if near else "",
+                f"there is no {what} `{name}`",
+                expected=f"expected one of {named(known)}",
+                help=did_you_mean(str(name), known),
             )
         )

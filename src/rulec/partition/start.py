@@ -33,11 +33,11 @@ def start_cell(
             Diagnostic(
                 "R0607",
                 f"ego starts off the road, at s = {s:g}, d = {d:g}",
-                expected="a place on one of the lanes",
+                expected="expected a place on one of the lanes",
                 help="move ego, or extend the road",
             )
         )
-    blockers = " and ".join(repr(scenario.obstacles[region.obstacle].id) for region in in_the_way)
+    blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
     finer = _step_that_leaves_room(scenario, timing, partition)
@@ -46,7 +46,7 @@ def start_cell(
             "R0607",
             f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
             "so ego has no free cell to start from",
-            expected="a free place, the whole width of each obstacle's lanes counting as taken",
+            expected="expected a free place; an obstacle takes the whole width of its lanes",
             help=f"a step of {float(finer.step):g} s would do"
             if finer
             else "a smaller step does not help here: move ego along the road, or that obstacle",

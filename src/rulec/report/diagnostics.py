@@ -63,7 +63,10 @@ def _block(one: Diagnostic, paint: _Paint) -> Iterator[str]:
         for left, text, style in _lines(shown, one.severity):
             number = paint("frame", f"{left:>{width}} |")
             yield f"{number} {paint(style, text)}".rstrip()
-    for word, text in (("help", one.help), *(("note", note) for note in one.notes)):
+    # Without a line there is no underlined place for it to stand beside.
+    unplaced = "" if one.place is not None and one.place.line is not None else one.expected
+    notes = (("note", note) for note in one.notes)
+    for word, text in (("note", unplaced), ("help", one.help), *notes):
         if text:
             yield f"{gutter} {paint('frame', '=')} {paint('bold', word + ':')} {visible(text)}"
 

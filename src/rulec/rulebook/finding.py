@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, Span, nearest_name
-from rulec.diagnostics.source import Place
+from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean
+from rulec.files import opened
 from rulec.resources import rulebooks_folder
 from rulec.syntax import MAX_BYTES
 
@@ -82,23 +82,9 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
     Raises:
         RulecError: R0701; ``use`` is the line that asked for the file.
     """
-    try:
-        with path.open("rb") as stream:
-            return stream.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as problem:
-        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
-        if path.is_dir():
-            reason = "it is a folder"
-        labels = (Label(use.place, "it is used here"),) if use else ()
-        raise RulecError(
-            Diagnostic(
-                "R0701",
-                f"the file cannot be read: {reason}",
-                Place(str(path)),
-                help="check its name and its permissions",
-                labels=labels,
-            )
-        ) from None
+    labels = (Label(use.place, "it is used here"),) if use else ()
+    with opened(path, labels=labels) as stream:
+        return stream.read(MAX_BYTES + 1)
 
 
 def _folders(search_path: Sequence[Path]) -> list[Path]:
@@ -155,8 +141,8 @@ def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
     )
 
 
-def _suggest(name: str, known: Iterable[str]) -> str:
-    names = list(known)
-    near = nearest_name(name, names)
+def _suggest(name: str, known: Sequence[str]) -> str:
+    names = [f"`{one}`" for one in known]
     available = f"available: {', '.join(names)}" if names else "none is available"
-    return f"did you mean `{near}`? ({available})" if near else available
+    question = did_you_mean(name, known)
+    return f"{question} ({available})" if question else available

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import isfinite
 
-from rulec.scenario.fields import Findings, shown
+from rulec.scenario.fields import Findings, quoted, shown
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.motion import swept
@@ -25,11 +25,11 @@ def check_interval(
         return True
     findings.add(
         "R0605",
-        f"{table.words}: {key} runs from {value[0]:g} to {value[1]:g}",
+        f"{table.words}: `{key}` runs from {value[0]:g} to {value[1]:g}",
         table,
         key,
         expected=f"a second number that is larger than the first, by {NARROWEST_M} m or more",
-        help=f"write {key} = [{value[1]:g}, {value[0]:g}]" if value[1] < value[0] else "",
+        help=f"write `{key} = [{value[1]:g}, {value[0]:g}]`" if value[1] < value[0] else "",
     )
     return False
 
@@ -40,7 +40,7 @@ def check_lanes(lanes: Sequence[float], table: Table, findings: Findings) -> boo
         if left - right < NARROWEST_M:
             findings.add(
                 "R0605",
-                f"{table.words}: in lanes, {left:g} follows {right:g}",
+                f"{table.words}: in `lanes`, {left:g} follows {right:g}",
                 table,
                 "lanes",
                 expected="bounds from right to left, each larger than the one before by "
@@ -61,15 +61,15 @@ def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
             table,
             expected=f"s from {road.s[0]:g} to {road.s[1]:g}, "
             f"d from {road.lanes[0]:g} to {road.lanes[-1]:g}",
-            help="move ego, or extend [road]",
+            help="move ego, or extend `[road]`",
         )
     elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
         findings.add(
             "R0605",
             f"ego is where the road has no lane, at s = {ego.s:g}, d = {ego.d:g}",
             table,
-            expected="a place outside every [[road.missing]]",
-            help="move ego, or shorten that [[road.missing]]",
+            expected="a place outside every `[[road.missing]]`",
+            help="move ego, or shorten that `[[road.missing]]`",
         )
 
 
@@ -96,7 +96,7 @@ def check_signals(
         if name in RESERVED:
             findings.add(
                 "R0605",
-                f'{table.words} sets "{name}", which the partition supplies',
+                f"{table.words} sets {quoted(name)}, which the partition supplies",
                 table,
                 name,
                 help="leave it out, or call the signal something else",
@@ -108,7 +108,7 @@ def check_signals(
         else:
             findings.add(
                 "R0604",
-                f"{table.words}: {shown(name)} is {shown(value)}",
+                f"{table.words}: {quoted(name)} is {shown(value)}",
                 table,
                 name,
                 expected="true, false, a finite number, or a value's name in quotes",

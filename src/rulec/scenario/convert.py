@@ -12,7 +12,7 @@ from rulec.scenario.check import (
     check_lanes,
     check_signals,
 )
-from rulec.scenario.fields import Findings, read_table, shown
+from rulec.scenario.fields import Findings, quoted, read_table
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.obstacles import Listed, read_obstacles
@@ -106,7 +106,7 @@ def _missing(raw: object, road: RawRoad | None, findings: Findings) -> tuple[Mis
         if road is not None and table.lane >= len(road.lanes):
             findings.add(
                 "R0605",
-                f"{place.words}: lane is {table.lane}",
+                f"{place.words}: `lane` is {table.lane}",
                 place,
                 "lane",
                 expected=f"a number from 1 to {len(road.lanes) - 1}, the lanes of the road",
@@ -156,7 +156,7 @@ def _signals(
             if name in signals:
                 findings.add(
                     "R0605",
-                    f"{table.words} sets {shown(name)}, and so does [signals]",
+                    f"{table.words} sets {quoted(name)}, and so does `[signals]`",
                     table,
                     "signals",
                     expected="a signal that is either global or per object",

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, get_args
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, nearest_name
+from rulec.diagnostics import Diagnostic, did_you_mean, nearest_name
 from rulec.scenario.places import Table, TomlText
 
 T = TypeVar("T", bound=msgspec.Struct)
@@ -32,8 +32,9 @@ class Findings:
         expected: str = "",
         help: str = "",  # noqa: A002 - the name that it has in a Diagnostic
     ) -> None:
-        """Note one mistake in a table, or in one of its fields."""
+        """Note one mistake in a table, or in one of its fields; ``expected`` is a thing."""
         place = self.text.place(table, key)
+        expected = expected and f"expected {expected}"
         self.errors.append(Diagnostic(code, message, place, expected=expected, help=help))
 
 
@@ -56,7 +57,7 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
             where = _inside(str(error))
             findings.add(
                 "R0604",
-                f"{table.words}: {key}{where} is {shown(_at(value, str(error)))}",
+                f"{table.words}: `{key}`{where} is {shown(_at(value, str(error)))}",
                 table,
                 key,
                 expected=words_of(known[key].type),
@@ -65,7 +66,7 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
         if info.required and key not in raw and key not in misspelt:
             findings.add(
                 "R0603",
-                f"{table.words} has no {key}",
+                f"{table.words} has no `{key}`",
                 table,
                 expected=words_of(info.type),
                 help=table.remedy(key),
@@ -74,13 +75,12 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
 
 
 def shown(value: object) -> str:
-    """A value as the file spells it, shortened."""
+    """A value as the file spells it, in backquotes, shortened; tables and lists in words."""
     match value:
         case bool():
-            return "true" if value else "false"
+            return "`true`" if value else "`false`"
         case str():
-            short = value if len(value) <= 40 else value[:37] + "..."
-            return '"' + "".join(c if c.isprintable() else "?" for c in short) + '"'
+            return f'`"{_short(value)}"`'
         case Mapping():
             return "a table"
         case list():
@@ -88,7 +88,17 @@ def shown(value: object) -> str:
         case int() if abs(value) >= 10**30:
             return "a number of more than 30 digits"
         case _:
-            return str(value)[:40]
+            return quoted(str(value))
+
+
+def quoted(name: str) -> str:
+    """A name in backquotes, shortened."""
+    return f"`{_short(name)}`"
+
+
+def _short(text: str) -> str:
+    short = text if len(text) <= 40 else text[:37] + "..."
+    return "".join(character if character.isprintable() else "?" for character in short)
 
 
 def words_of(kind: object) -> str:
@@ -104,16 +114,15 @@ def words_of(kind: object) -> str:
 
 def _unknown_field(key: str, known: list[str], table: Table, findings: Findings) -> str | None:
     """Report a field; the known one that is probably meant, if there is one close by."""
-    near = nearest_name(key, known)
     findings.add(
         "R0603",
-        f"{table.words} has a field {shown(key)} that does not exist",
+        f"{table.words} has a field {quoted(key)} that does not exist",
         table,
         key,
-        expected=f"one of {', '.join(known)}",
-        help=f'did you mean "{near}"?' if near else "leave it out",
+        expected=f"one of {', '.join(map(quoted, known))}",
+        help=did_you_mean(key, known) or "leave it out",
     )
-    return near
+    return nearest_name(key, known)
 
 
 def _indices(message: str) -> list[int]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 
 from rulec.scenario.check import check_signals
-from rulec.scenario.fields import Findings, read_table, shown
+from rulec.scenario.fields import Findings, quoted, read_table
 from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
 from rulec.scenario.places import Table
@@ -51,7 +51,7 @@ def read_obstacles(raw: object, findings: Findings) -> tuple[Listed, ...]:
 
 def _words(item: object, number: int) -> str:
     name = item.get("id") if isinstance(item, Mapping) else None
-    return f"obstacle {number} ({shown(name)})" if isinstance(name, str) else f"obstacle {number}"
+    return f"obstacle {number} ({quoted(name)})" if isinstance(name, str) else f"obstacle {number}"
 
 
 def _check_unique(
@@ -61,7 +61,7 @@ def _check_unique(
     if first != number:
         findings.add(
             "R0605",
-            f"obstacles {first} and {number} are both called {shown(name)}",
+            f"obstacles {first} and {number} are both called {quoted(name)}",
             place,
             "id",
             expected="an id that no other obstacle has",
@@ -73,10 +73,10 @@ def _check_direction(obstacle: Obstacle, place: Table, findings: Findings) -> No
     if obstacle.type == PEDESTRIAN and standing:
         findings.add(
             "R0603",
-            f"{place.words} stands still and has no walking_direction",
+            f"{place.words} stands still and has no `walking_direction`",
             place,
             expected="a pedestrian's direction, because its regions depend on it",
-            help="add a line walking_direction = 90 for one who faces left, -90 for right",
+            help="add a line `walking_direction = 90` for one who faces left, -90 for right",
         )
 
 
@@ -90,21 +90,21 @@ def _motion(
             if getattr(table, key) is None:
                 findings.add(
                     "R0603",
-                    f"{place.words} has no {key}",
+                    f"{place.words} has no `{key}`",
                     place,
                     expected="its centre at time 0 in metres: s along the road, d across it",
-                    help=f"add a line {key} = ..., or give a trajectory instead",
+                    help=f"add a line `{key} = …`, or give a `trajectory` instead",
                 )
         return None
     sideways, until = table.lateral_speed, table.until_d
     if until is not None and (until - table.d) * sideways <= 0:
         findings.add(
             "R0605",
-            f"{place.words} never comes to until_d = {until:g}",
+            f"{place.words} never comes to `until_d = {until:g}`",
             place,
             "until_d",
-            expected=f"an offset to which lateral_speed = {sideways:g} leads from d = {table.d:g}",
-            help="change the sign of lateral_speed, or leave until_d out",
+            expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {table.d:g}",
+            help="change the sign of `lateral_speed`, or leave `until_d` out",
         )
         return None
     return ConstantAcceleration(table.s, table.d, table.speed, table.acceleration, sideways, until)
@@ -120,7 +120,7 @@ def _trajectory(
     if both:
         findings.add(
             "R0605",
-            f"{place.words} has a trajectory and also {', '.join(both)}",
+            f"{place.words} has a `trajectory` and also {', '.join(map(quoted, both))}",
             place,
             both[0],
             expected="either a trajectory, or a start and a prediction",
@@ -131,7 +131,7 @@ def _trajectory(
         if after[0] <= before[0]:
             findings.add(
                 "R0605",
-                f"{place.words}: in trajectory, time {after[0]:g} follows {before[0]:g}",
+                f"{place.words}: in `trajectory`, time {after[0]:g} follows {before[0]:g}",
                 place,
                 "trajectory",
                 expected="times in ascending order, each once",

@@ -28,8 +28,8 @@ class Table:
     def remedy(self, key: str) -> str:
         """How to supply a missing field."""
         if not self.heading and key in ("road", "ego"):
-            return f"add a table [{key}]"
-        return f"add a line {key} = ..."
+            return f"add a table `[{key}]`"
+        return f"add a line `{key} = …`"
 
 
 @dataclass(frozen=True)

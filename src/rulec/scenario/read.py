@@ -8,7 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, Source, nearest_name
+from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
+from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
 from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
@@ -29,8 +30,8 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     A built-in name comes first; ``./s1`` is a file in any case.
 
     Raises:
-        RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0602 to R0606
-            for what is wrong in it, all mistakes of one file together.
+        RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and
+            R0602 to R0606 for what is wrong in it, all mistakes of one file together.
     """
     name = os.fspath(name_or_path)
     known = available_scenarios()
@@ -39,20 +40,19 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     looks_like_a_path = not isinstance(name_or_path, str) or os.sep in name or "." in name
     if looks_like_a_path or _exists(name):
         return read_scenario(Path(name))
-    near = nearest_name(name, known)
     raise RulecError(
         Diagnostic(
             "R0601",
-            f"there is no scenario {name!r}",
-            expected=f"a built-in scenario ({', '.join(known)}) or the path of a file",
-            help=f'did you mean "{near}"?' if near else "give one of these names, or a file's path",
+            f"there is no scenario `{name}`",
+            expected=f"expected a built-in scenario ({named(known)}) or the path of a file",
+            help=did_you_mean(name, known) or "give one of these names, or a file's path",
         )
     )
 
 
 def read_scenario(path: Path) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
-    source = Source(str(path), _text(path))
+    source = _text(path)
     return to_scenario(_parse(source), path.stem, Findings(TomlText(source)))
 
 
@@ -63,46 +63,20 @@ def _exists(name: str) -> bool:
         return False
 
 
-def _text(path: Path) -> str:
-    place = Place(str(path))
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise RulecError(
-            Diagnostic(
-                "R0701",
-                f"the file cannot be read: {reason}",
-                place,
-                help="check the path; built-in scenarios are " + ", ".join(available_scenarios()),
-            )
-        ) from None
+def _text(path: Path) -> Source:
+    way_out = f"check the path; built-in scenarios are {named(available_scenarios())}"
+    with opened(path, way_out) as stream:
+        content = stream.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:
         raise RulecError(
             Diagnostic(
                 "R0602",
-                "the file is too large for a scenario",
-                place,
-                expected=f"at most {LARGEST_BYTES // 1_000_000} MB",
+                f"the file is too large: at most {LARGEST_BYTES:,} bytes are read",
+                Place(str(path)),
                 help="keep the obstacles near ego, and the part of their motion that matters",
             )
         )
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
-        binary = b"\x00" in content[:4096]
-        raise RulecError(
-            Diagnostic(
-                "R0602",
-                "the file is not text" if binary else "the file is not in UTF-8",
-                Place(str(path), line, column),
-                expected="a scenario in TOML, as text in UTF-8",
-                help="save it as UTF-8" + (", or give another file" if binary else ""),
-            )
-        ) from None
+    return decoded(str(path), content)
 
 
 def _parse(source: Source) -> dict[str, Any]:
@@ -123,8 +97,8 @@ def _parse(source: Source) -> dict[str, Any]:
             "R0602",
             f"the file is not TOML: {message}",
             place,
-            help="numbers are written 1.5, texts in quotes, tables [road], lists of tables "
-            "[[obstacle]]",
+            help="numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables "
+            "`[[obstacle]]`",
         )
     ) from None
 

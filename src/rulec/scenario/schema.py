@@ -28,7 +28,7 @@ Kind = Annotated[
     Meta(
         max_length=200,
         pattern=_IDENTIFIER,
-        description='a type of traffic participant in quotes, such as "vehicle"',
+        description='a type of traffic participant in quotes, such as `"vehicle"`',
     ),
 ]
 Seconds = Annotated[
@@ -38,7 +38,7 @@ Along = Annotated[_Metres, Meta(description="a place along the road, in metres")
 Across = Annotated[_Metres, Meta(description="an offset in metres, positive to the left")]
 FromTo = Annotated[
     tuple[_Metres, _Metres],
-    Meta(description="two numbers in metres, from and to, such as [30.0, 34.0]"),
+    Meta(description="two numbers in metres, from and to, such as `[30.0, 34.0]`"),
 ]
 Size = Annotated[float, Meta(ge=0.01, le=1000, description="metres, from 0.01 to 1000")]
 AlongSpeed = Annotated[
@@ -58,23 +58,23 @@ LaneBounds = Annotated[
         min_length=2,
         max_length=101,
         description="the lanes' bounds in d (metres) from right to left, one number more than "
-        "there are lanes, such as [-1.75, 1.75, 5.25]",
+        "there are lanes, such as `[-1.75, 1.75, 5.25]`",
     ),
 ]
 SurfaceName = Annotated[Surface, Meta(description=f"one of {', '.join(SURFACES)}, in quotes")]
 TimedPositions = Annotated[
     list[tuple[Annotated[float, Meta(ge=-100_000, le=100_000)], _Metres, _Metres]],
-    Meta(min_length=1, description="a list of [t, s, d] in seconds and metres"),
+    Meta(min_length=1, description="a list of `[t, s, d]` in seconds and metres"),
 ]
 Table = Annotated[dict[str, Any], Meta(description="a table")]
-Tables = Annotated[list[Any], Meta(description="tables, each under its own [[heading]]")]
+Tables = Annotated[list[Any], Meta(description="tables, each under its own `[[heading]]`")]
 Obstacles = Annotated[
     list[Any],
-    Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} [[obstacle]]"),
+    Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} `[[obstacle]]`"),
 ]
 
 
-class RawScenario(Struct, forbid_unknown_fields=True):
+class RawScenario(Struct):
     """The top of the file; its tables are read one by one."""
 
     road: Table
@@ -88,7 +88,7 @@ class RawScenario(Struct, forbid_unknown_fields=True):
     goal: Table | None = None
 
 
-class RawRoad(Struct, forbid_unknown_fields=True):
+class RawRoad(Struct):
     """``[road]``."""
 
     s: FromTo
@@ -97,21 +97,21 @@ class RawRoad(Struct, forbid_unknown_fields=True):
     missing: Tables = []
 
 
-class RawSurface(Struct, forbid_unknown_fields=True):
+class RawSurface(Struct):
     """``[[road.surface]]``."""
 
     type: SurfaceName
     s: FromTo
 
 
-class RawMissing(Struct, forbid_unknown_fields=True):
+class RawMissing(Struct):
     """``[[road.missing]]``."""
 
     lane: LaneNumber
     s: FromTo
 
 
-class RawEgo(Struct, forbid_unknown_fields=True):
+class RawEgo(Struct):
     """``[ego]``."""
 
     s: Along
@@ -120,14 +120,14 @@ class RawEgo(Struct, forbid_unknown_fields=True):
     width: Size | None = None
 
 
-class RawGoal(Struct, forbid_unknown_fields=True):
+class RawGoal(Struct):
     """``[goal]``."""
 
     s: FromTo | None = None
     d: FromTo | None = None
 
 
-class RawObstacle(Struct, forbid_unknown_fields=True):
+class RawObstacle(Struct):
     """``[[obstacle]]``."""
 
     id: Name

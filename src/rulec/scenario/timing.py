@@ -40,8 +40,8 @@ def timing(horizon_s: float, step_s: float) -> Timing:
             raise RulecError(
                 Diagnostic(
                     "R0606",
-                    f"the {name} is {value!r}",
-                    expected="a time in seconds, above 0",
+                    f"the {name} is `{value}`",
+                    expected="expected a time in seconds, above 0",
                     help=f"give the {name} as a number of seconds, such as 0.5",
                 )
             )
@@ -52,7 +52,7 @@ def timing(horizon_s: float, step_s: float) -> Timing:
             Diagnostic(
                 "R0606",
                 f"a horizon of {horizon_s:g} s in steps of {step_s:g} s has too many layers",
-                expected=f"fewer than {MAX_LAYERS} steps",
+                expected=f"expected fewer than {MAX_LAYERS} steps",
                 help="take a longer step or a shorter horizon",
             )
         )
@@ -65,7 +65,7 @@ def _no_multiple(horizon_s: float, step_s: float, steps: int) -> Diagnostic:
     return Diagnostic(
         "R0606",
         f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
-        expected="a horizon that is a multiple of the step",
+        expected="expected a horizon that is a multiple of the step",
         help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "
         f"{float(Fraction(str(step_s)) * steps):g} s",
     )

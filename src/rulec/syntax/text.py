@@ -1,17 +1,14 @@
-"""From bytes to a source: encoding and size."""
+"""From bytes to a source that can be a rulebook's text."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.diagnostics.source import Place
+from rulec.diagnostics import Diagnostic, Place, RulecError, Source
+from rulec.files import decoded, without_null
 
 MAX_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
-
-_BOM = "\ufeff"
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def decode(name: str, data: bytes) -> Source:
@@ -20,13 +17,8 @@ def decode(name: str, data: bytes) -> Source:
     Raises:
         RulecError: more than ``MAX_BYTES``, not UTF-8, or not a text at all.
     """
-    if len(data) > MAX_BYTES:
-        raise RulecError(_too_large(name, len(data)))
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as reason:
-        raise RulecError(_not_utf8(name, data, reason.start)) from None
-    return checked(Source(name, text.removeprefix(_BOM)))
+    _check_size(name, len(data))
+    return decoded(name, data)
 
 
 def checked(source: Source) -> Source:
@@ -35,45 +27,17 @@ def checked(source: Source) -> Source:
     Raises:
         RulecError: too large, or it holds a null character.
     """
-    if len(source.text) > MAX_BYTES:
-        raise RulecError(_too_large(source.name, len(source.text)))
-    null = source.text.find("\0")
-    if null >= 0:
-        place = Span(source, null, null + 1).place
+    _check_size(source.name, len(source.text))
+    return without_null(source)
+
+
+def _check_size(name: str, size: int) -> None:
+    if size > MAX_BYTES:
         raise RulecError(
             Diagnostic(
-                "R0101",
-                "the file holds a null character and is not a text",
-                place,
-                help="rulebooks are plain text in UTF-8, with names that end in `.rules`",
+                "R0102",
+                f"the file is too large: at most {MAX_BYTES:,} bytes are read",
+                Place(name),
+                help="split it into several rulebooks",
             )
         )
-    return source
-
-
-def _too_large(name: str, size: int) -> Diagnostic:
-    return Diagnostic(
-        "R0102",
-        f"the file has {size:,} characters, and at most {MAX_BYTES:,} are read",
-        Place(name),
-        help="split it into several rulebooks",
-    )
-
-
-def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
-    if data.startswith(_UTF_16):
-        return Diagnostic(
-            "R0101",
-            "the file is in UTF-16, and rulebooks are in UTF-8",
-            Place(name, 1, 1, 1, 1),
-            help="save it as UTF-8",
-        )
-    before = Source(name, data[:position].decode("utf-8"))
-    line, column = before.position(len(before.text))
-    excerpt = data.splitlines()[line - 1].decode("utf-8", "replace").rstrip("\r\n\0")
-    return Diagnostic(
-        "R0101",
-        f"the byte 0x{data[position]:02x} is not UTF-8",
-        Place(name, line, column, line, column + 1, excerpt),
-        help="save the file as UTF-8",
-    )
