@@ -42,6 +42,11 @@ class Declared:
         """The declarations as data; only of use when there were no mistakes."""
         return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
 
+    def behind_atom(self, name: str) -> Signal | Enumeration | None:
+        """The signal of that name, or the enumeration that has such a value."""
+        found = self.items.get(name)
+        return found if isinstance(found, Signal) else self.value_of.get(name)
+
     def may_know(self, name: str) -> bool:
         """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from rulec.diagnostics import Diagnostic, Label, Span, nearest_name
+from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.logic.formula import Atom
 from rulec.rulebook import unknown
 from rulec.rulebook.declared import Declared
@@ -32,7 +32,7 @@ class Scope:
     def atom(self, use: tree.AtomUse) -> Atom | None:
         """The atom meant; None when that is not known, which is then reported."""
         name = use.name.text
-        if self._item(name) is not None:
+        if self.declared.behind_atom(name) is not None:
             return self._checked(use, name, use.arguments)
         if not use.arguments and "_" in name:
             readings = self._readings(name)
@@ -46,16 +46,12 @@ class Scope:
             self.mistakes.append(unknown.explain(use, self.declared, list(self.variables)))
         return None
 
-    def _item(self, name: str) -> Signal | Enumeration | None:
-        found = self.declared.items.get(name)
-        return found if isinstance(found, Signal) else self.declared.value_of.get(name)
-
     def _readings(self, name: str) -> list[tuple[str, str]]:
         """The ways to read ``b_v`` as ``b(v)``."""
         found: list[tuple[str, str]] = []
         for position in (at for at, letter in enumerate(name) if letter == "_"):
             head, variable = name[:position], name[position + 1 :]
-            item = self._item(head)
+            item = self.declared.behind_atom(head)
             if item is not None and len(item.parameters) == 1 and variable in self.variables:
                 found.append((head, variable))
         return found
@@ -63,7 +59,7 @@ class Scope:
     def _checked(
         self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
     ) -> Atom | None:
-        item = self._item(name)
+        item = self.declared.behind_atom(name)
         assert item is not None, "only called for known names"
         self.used |= {one.text for one in arguments}
         if len(arguments) != len(item.parameters):
@@ -95,12 +91,8 @@ class Scope:
 
 
 def _unknown_variable(name: tree.Name, known: list[str]) -> Diagnostic:
-    near = nearest_name(name.text, known)
-    if near is not None:
-        way_out = f"did you mean `{near}`?"
-    elif known:
-        listed = ", ".join(f"`{one}`" for one in known)
-        way_out = f"the rule's variables are {listed}"
+    if known:
+        way_out = f"the rule's variables are {named(known)}"
     else:
         way_out = f"declare it behind the rule's name, such as `({name.text}: vehicle)`"
     return Diagnostic(
@@ -108,7 +100,7 @@ def _unknown_variable(name: tree.Name, known: list[str]) -> Diagnostic:
         f"the rule has no variable `{name.text}`",
         name.span.place,
         expected="expected a variable of the rule",
-        help=way_out,
+        help=did_you_mean(name.text, known) or way_out,
     )
 
 
@@ -117,12 +109,12 @@ def _wrong_type(
 ) -> Diagnostic:
     return Diagnostic(
         "R0302",
-        f"`{item}` is about a `{wanted}`, and `{argument.text}` is a `{variable.type}`",
+        f"`{argument.text}` is of type `{variable.type}`, which is no `{wanted}`",
         argument.span.place,
-        expected=f"expected a `{wanted}`",
-        help=f"give `{argument.text}` a type that is a `{wanted}`, or use another variable",
+        expected=f"expected a variable of type `{wanted}`",
+        help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
         labels=(
-            Label(variable.span.place, f"`{argument.text}` is a `{variable.type}`"),
-            Label(parameter.place, f"`{item}` is about a `{wanted}`"),
+            Label(variable.span.place, f"`{argument.text}` is declared here"),
+            Label(parameter.place, f"`{item}` is about objects of type `{wanted}`"),
         ),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -15,7 +15,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.declaration_messages import unknown_type
+from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.declared import Declared
 from rulec.rulebook.model import Example, ExampleState, Rule, Variable
 from rulec.rulebook.scope import BoundVariable, Scope
@@ -57,7 +57,7 @@ def _variables(
         if not known and not declared.may_know_type(type_.text):
             mistakes.append(unknown_type(type_, list(declared.types)))
         if name.text in found:
-            mistakes.append(_variable_twice(name, found[name.text].span))
+            mistakes.append(twice("variable", name, found[name.text].span))
         else:
             found[name.text] = BoundVariable(type_.text if known else None, one.span)
     return found
@@ -137,17 +137,6 @@ def _state(
     return said
 
 
-def _variable_twice(name: tree.Name, first: Span) -> Diagnostic:
-    return Diagnostic(
-        "R0204",
-        f"the variable `{name.text}` is declared twice",
-        name.span.place,
-        expected="declared again here",
-        help="give each variable a name of its own",
-        labels=(Label(first.place, "first declared here"),),
-    )
-
-
 def _denied(literal: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagnostic:
     item = declared.items[atom.name]
     assert isinstance(item, Enumeration), "only enumerations have values"
@@ -161,7 +150,7 @@ def _denied(literal: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagn
         f"a state says which value `{_subject(atom)}` has, not which it lacks",
         literal.span.place,
         expected="expected a value",
-        help=f"write {' or '.join(others)}" if others else f"`{atom}` always holds",
+        help=f"write {any_of(others)}" if others else f"`{atom}` always holds",
         labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
     )
 
@@ -192,9 +181,7 @@ def _left_open(state: tree.ExampleState, atom: Atom, declared: Declared) -> Diag
         "R0307",
         f"this state leaves open `{_subject(atom)}`, which the formula needs",
         state.span.place,
-        expected=f"expected {', '.join(ways[:-1])} or {ways[-1]}"
-        if ways[1:]
-        else f"expected {ways[0]}",
+        expected=f"expected {any_of(ways)}",
         help="say it in this state, or give its declaration a default",
         labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` has no default"),),
     )

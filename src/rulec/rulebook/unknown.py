@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, Label, nearest_name
+from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
 from rulec.rulebook.declared import Declared
 from rulec.syntax import tree
 from rulec.vocabulary import Enumeration, Quantity, Signal
 
+_ATOM = "expected a signal or a value"
 _GLUED = re.compile(r"([GFX]+)(\w+)")
 _GLUED_BINARY = re.compile(r"(\w+?)([URWM])(\w+)")
 
@@ -19,25 +20,26 @@ def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> 
     name = use.name.text
     item = declared.items.get(name)
     if isinstance(item, Enumeration):
-        values = ", ".join(f"`{_call(value, item)}`" for value in item.values)
-        return _not_an_atom(use, declared, "has several values", f"write one of them: {values}")
+        values = any_of([f"`{_call(value, item)}`" for value in item.values])
+        return _not_an_atom(use, declared, "has several values", f"write {values}")
     if isinstance(item, Quantity):
         why = f"is a number (in {item.unit})"
         return _not_an_atom(use, declared, why, "formulas are about signals and values only")
     if name in variables:
+        example = next(iter(_about_one(declared)), "p")
         return Diagnostic(
             "R0303",
             f"`{name}` is an object and cannot be true or false",
             use.name.span.place,
-            expected="expected an atom",
-            help=f"say something about it, such as `behind({name})`",
+            expected=_ATOM,
+            help=f"say something about it, such as `{example}({name})`",
         )
     if name in declared.types:
         return Diagnostic(
             "R0303",
             f"`{name}` is a type of objects and cannot be true or false",
             use.name.span.place,
-            expected="expected an atom",
+            expected=_ATOM,
             help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
             labels=(Label(declared.type_spans[name].place, f"`{name}` is declared here"),),
         )
@@ -50,7 +52,7 @@ def _not_an_atom(use: tree.AtomUse, declared: Declared, why: str, help_: str) ->
         "R0303",
         f"`{name}` {why} and cannot be true or false",
         use.name.span.place,
-        expected="expected an atom",
+        expected=_ATOM,
         help=help_,
         labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
     )
@@ -58,44 +60,48 @@ def _not_an_atom(use: tree.AtomUse, declared: Declared, why: str, help_: str) ->
 
 def _unknown(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> Diagnostic:
     name = use.name.text
-    atoms = [
-        *(one for one, item in declared.items.items() if isinstance(item, Signal)),
-        *declared.value_of,
-    ]
+    atoms = _atoms(declared)
     glued = _glued(name, set(atoms))
-    head, _, tail = name.rpartition("_")
-    near = nearest_name(name, atoms)
-    short = [
-        f"{one}_{variable}" for one in atoms if _arity(declared, one) == 1 for variable in variables
-    ]
-    near_short = nearest_name(name, short)
     if glued:
         way_out = f"write `{glued}`"
-    elif _arity(declared, head) == 1 and not use.arguments:
-        known = ", ".join(f"`{one}`" for one in variables) or "none"
-        way_out = f"`{head}_{tail}` means `{head}({tail})`; the rule's variables: {known}"
-    elif _arity(declared, head) is not None and tail in variables and not use.arguments:
-        number = _arity(declared, head)
-        way_out = f"`{head}` is about {number or 'no'} objects, so `_{tail}` cannot stand behind it"
-    elif near_short is not None and near is None and not use.arguments:
-        way_out = f"did you mean `{near_short}`?"
-    elif near is not None:
-        way_out = f"did you mean `{near}`?"
     else:
-        way_out = f"declare it, such as `signal {name}`, or `use` a vocabulary that has it"
+        way_out = (
+            ("" if use.arguments else _short_form(name, declared, variables))
+            or did_you_mean(name, atoms)
+            or f"declare it, such as `signal {name}`, or `use` a vocabulary that has it"
+        )
     return Diagnostic(
         "R0202",
         f"nothing is called `{name}`",
         use.name.span.place,
-        expected="expected a signal or a value",
+        expected=_ATOM,
         help=way_out,
     )
 
 
-def _arity(declared: Declared, name: str) -> int | None:
-    item = declared.items.get(name)
-    found = item if isinstance(item, Signal) else declared.value_of.get(name)
-    return None if found is None else len(found.parameters)
+def _short_form(name: str, declared: Declared, variables: Sequence[str]) -> str:
+    """What may be wrong with ``b_v`` where it stands for ``b(v)``."""
+    head, _, tail = name.rpartition("_")
+    item = declared.behind_atom(head)
+    if item is not None and len(item.parameters) == 1:
+        known = f"its variables are {named(variables)}" if variables else "it has none"
+        return f"`{name}` means `{head}({tail})`, but the rule has no variable `{tail}`; {known}"
+    if item is not None and tail in variables:
+        number = len(item.parameters) or "no"
+        return f"`{head}` is about {number} objects, so `_{tail}` cannot stand behind it"
+    near = nearest_name(head, _about_one(declared)) if tail in variables else None
+    return f"did you mean `{near}_{tail}`?" if near else ""
+
+
+def _atoms(declared: Declared) -> list[str]:
+    signals = (one for one, item in declared.items.items() if isinstance(item, Signal))
+    return [*signals, *declared.value_of]
+
+
+def _about_one(declared: Declared) -> list[str]:
+    """The atoms about one object."""
+    found = ((name, declared.behind_atom(name)) for name in _atoms(declared))
+    return [name for name, item in found if item is not None and len(item.parameters) == 1]
 
 
 def _glued(name: str, atoms: set[str]) -> str:
@@ -137,7 +143,7 @@ def wrong_number(
 
 def two_readings(use: tree.AtomUse, readings: Sequence[tuple[str, str]]) -> Diagnostic:
     """``a_b_c`` where both ``a(b_c)`` and ``a_b(c)`` make sense."""
-    ways = " or ".join(f"`{head}({variable})`" for head, variable in readings)
+    ways = any_of([f"`{head}({variable})`" for head, variable in readings])
     return Diagnostic(
         "R0309",
         f"`{use.name.text}` can mean {ways}",
