@@ -91,7 +91,7 @@ LINES = [
     (
         "hard rule a { require p accept { p; } }",
         "",
-        "a `;` stands between two states; write in each what holds there",
+        "say what holds in this state; a `;` stands only between two states",
     ),
     ('hard rule a { require p says "a "b" c" }', "b", 'a quote inside a text is written \\"'),
     ("hard rule a { require p; }", ";", "delete the `;`"),

@@ -24,6 +24,7 @@ CODES: dict[str, str] = {
     "R0114": "something that must be there is missing",
     "R0115": "a line stands in the wrong part of a file",
     "R0116": "something is given twice",
+    "R0117": "a file is no rulebook",
     # 2: names
     "R0201": "a type is unknown",
     "R0202": "a name in a formula or a state is unknown",

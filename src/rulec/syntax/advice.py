@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rulec.diagnostics import nearest_name
+from rulec.diagnostics import did_you_mean
 from rulec.syntax.expectations import wants_operand, wants_operator
 from rulec.syntax.scanner import Token
 from rulec.syntax.words import OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
@@ -39,6 +39,11 @@ _SYMBOL_OF = {"implies": "->", "iff": "<->", "and": "&", "or": "|", "not": "!", 
     "next": "X",
     "until": "U",
 }
+_FORMS = {
+    "type": "a type is declared by `type NAME` or `type NAME is PARENT`",
+    "signal": "a signal is declared by `signal NAME`",
+    "quantity": "a quantity is declared by `quantity NAME in UNIT default NUMBER`",
+}
 _PAST_WORDS = frozenset(("once", "historically", "since", "previously", "O", "H", "S", "Y"))
 
 
@@ -64,15 +69,22 @@ def _quotes(scene: Scene) -> str:
     return ""
 
 
+def _misspelt(scene: Scene) -> str:
+    """A word that looks much like one that could stand there."""
+    found = scene.found
+    if found is None or found.kind != "word" or found.text.casefold() in RESERVED:
+        return ""
+    return did_you_mean(found.text, {kind.lower() for kind in scene.accepted} & RESERVED)
+
+
 def _rule_head(scene: Scene) -> str:
     if scene.kind != "rule_head":
         return ""
     word = scene.found.text if scene.found and scene.found.kind == "word" else ""
-    near = nearest_name(word, ("hard", "soft") if "HARD" in scene.accepted else ("rule",))
-    if near is not None and near != word and not scene.accepted.isdisjoint(("HARD", "RULE")):
-        return f"did you mean `{near}`?"
     if "HARD" in scene.accepted:
         return "a rule begins with `hard rule` or `soft rule`"
+    if scene.accepted == {"NAME"} and scene.before and scene.before.text == "rule":
+        return "a rule has a name, which stands behind `rule`"
     if scene.accepted == {"RULE"}:
         return f"write `{scene.first} rule {'NAME' if word in RESERVED or not word else word}`"
     if scene.before is not None and (scene.before.text, scene.found and scene.found.text) == (
@@ -97,7 +109,7 @@ def _declaration(scene: Scene) -> str:
         return "separate the names by `,`"
     if {"TRUE", "FALSE"} == scene.accepted:
         return "a signal is true or false: write `default true` or `default false`"
-    return ""
+    return _FORMS.get(scene.first, "")
 
 
 def _state(scene: Scene) -> str:
@@ -111,7 +123,7 @@ def _state(scene: Scene) -> str:
     if text in OPERATOR_WORDS or text in ("G", "F", "X"):
         return "a state holds atoms and `not` before a signal; no other operator"
     if scene.found is None and "NAME" in scene.accepted:
-        return "a `;` stands between two states; write in each what holds there"
+        return "say what holds in this state; a `;` stands only between two states"
     return ""
 
 
@@ -154,6 +166,7 @@ def _punctuation(scene: Scene) -> str:
 
 _RULES: tuple[Callable[[Scene], str], ...] = (
     _quotes,
+    _misspelt,
     _rule_head,
     _declaration,
     _state,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
@@ -11,6 +12,12 @@ from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS
 
 Clause = tuple[str, tree.Text | tree.Formula | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
+
+HOW_TO_BEGIN: Final = (
+    "expected `rulebook NAME`",
+    "a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`",
+)
+"""What a diagnostic about a file's beginning expects, and its help."""
 
 Item = (
     tree.FileLine
@@ -159,7 +166,7 @@ def _not_for_a_vocabulary(parts: Sequence[Item]) -> Iterable[Diagnostic]:
                 "a vocabulary holds declarations only",
                 _start(part.span).place,
                 expected="expected a declaration",
-                help="rules and header lines belong into a rulebook",
+                help="rules and header lines belong in a rulebook",
             )
 
 
@@ -189,8 +196,7 @@ def _no_file_line(first: Item) -> Diagnostic:
         "R0114",
         "the file does not say what it is",
         _start(first.span).place,
-        expected="expected `rulebook NAME` before this",
-        help="a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`",
+        *HOW_TO_BEGIN,
     )
 
 

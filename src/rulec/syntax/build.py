@@ -190,7 +190,7 @@ class Builder:
         """ISO text of a date that exists."""
         wrong = why_not_a_day(leaf.text)
         if wrong:
-            why = f"`{leaf.text}` is not a day of the calendar"
+            why = f"`{leaf.text}` is no date"
             self._mistake("R0110", leaf.start, len(leaf.text), why, wrong)
         return "" if wrong else leaf.text
 
@@ -206,6 +206,7 @@ class Builder:
         helps = {
             "R0106": '`\\"` is a quote and `\\\\` a backslash',
             "R0107": "delete it, or type it as words",
+            "R0112": "write a number below 1e308",
         }
         place = Span(self.source, position, position + length).place
         self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))

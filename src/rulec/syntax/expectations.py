@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from rulec.diagnostics import any_of
+
 _OPERANDS = frozenset(
     ("NOT", "ALWAYS", "EVENTUALLY", "NEXT", "WEAK_NEXT", "LPAR", "TRUE", "FALSE", "NAME")
 )
@@ -33,27 +35,22 @@ _ORDER = ("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT", "RPAR", "LPAR", "CO
 def in_words(accepted: Iterable[str]) -> str:
     """``expected an atom, `not`, or `(``` for the grammar's names of tokens."""
     rest = set(accepted)
-    parts: list[str] = []
+    before: list[str] = []
+    behind: list[str] = []
     if rest >= _OPERANDS:
-        parts += ["an atom", "`not`", "`(`"]
+        before = ["an atom", "`not`", "`(`"]
         rest -= _OPERANDS
     if rest >= _OPERATORS:
-        parts.append("an operator such as `and`")
+        behind = ["an operator such as `and`"]
         rest -= _OPERATORS | {"LPAR"}
-    rest.discard("$END" if parts or len(rest) > 1 else "")
+    rest.discard("$END" if before or behind or len(rest) > 1 else "")
     ranked = sorted(rest, key=lambda kind: (_rank(kind), kind))
-    parts = [*parts, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked)]
-    return f"expected {_any_of(parts or [_WORDS['$END']])}"
+    parts = [*before, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked), *behind]
+    return f"expected {any_of(parts or [_WORDS['$END']])}"
 
 
 def _rank(kind: str) -> int:
     return _ORDER.index(kind) if kind in _ORDER else len(_ORDER)
-
-
-def _any_of(parts: list[str]) -> str:
-    if len(parts) < 3:
-        return " or ".join(parts)
-    return f"{', '.join(parts[:-1])}, or {parts[-1]}"
 
 
 def wants_operand(accepted: frozenset[str]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
+from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.syntax.advice import Scene, advise
 from rulec.syntax.expectations import in_words, wants_operand
 from rulec.syntax.parser import MAX_DEPTH, Mismatch
@@ -13,8 +13,8 @@ from rulec.syntax.scanner import Token
 from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
 
 _WHAT = {
-    "title": "the title",
-    "law": "the law's line",
+    "title": "the `title` line",
+    "law": "the `law` line",
     "use": "the `use` line",
     "type": "the declaration of a type",
     "signal": "the declaration of a signal",
@@ -47,9 +47,10 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     if piece.kind == "item" and at < 2 and first not in ITEM_WORDS:
         return _unknown_item(source, inside[0])
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
+    begins = at == (first == "require")
     if found is None:
-        message = f"{what} ends too early" if inside else f"{what} is empty"
-    elif at == 0:
+        message = f"{what} is empty" if begins else f"{what} ends too early"
+    elif begins:
         message = f"{what} cannot begin with `{_short(found.text)}`"
     else:
         message = f"{what} cannot go on with `{_short(found.text)}`"
@@ -66,27 +67,24 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
     """A piece that begins with nothing that the language has, inside a rule."""
     found = tokens[piece.first]
-    word = nearest_name(found.text, CLAUSE_WORDS)
     return Diagnostic(
         "R0104",
-        f"`{_short(found.text)}` begins no clause",
+        f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected `cite`, `says`, `require`, `accept`, or `reject`",
-        help=f"did you mean `{word}`?" if word else "",
+        help=did_you_mean(found.text, CLAUSE_WORDS),
     )
 
 
 def _unknown_item(source: Source, found: Token) -> Diagnostic:
-    word = nearest_name(found.text, ITEM_WORDS | CLAUSE_WORDS) if found.kind == "word" else None
-    if word is not None:
-        way_out = f"did you mean `{word}`?"
-    elif found.kind == "word" and found.text not in RESERVED:
-        way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
-    else:
-        way_out = ""
+    way_out = ""
+    if found.kind == "word":
+        way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS)
+        if not way_out and found.text not in RESERVED:
+            way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
     return Diagnostic(
         "R0104",
-        f"`{_short(found.text)}` begins nothing that a file may hold",
+        f"nothing in the language begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected a declaration or a rule",
         help=way_out,
@@ -109,7 +107,7 @@ def too_long(span: Span, limit: int) -> Diagnostic:
         "R0111",
         f"this goes on for more than {limit:,} words and signs",
         span.place,
-        help="split it into several rules",
+        help="split it into several parts",
     )
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar, cast
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.assemble import assemble_file, assemble_rule
+from rulec.syntax.assemble import HOW_TO_BEGIN, Item, assemble_file, assemble_rule
 from rulec.syntax.build import Builder
 from rulec.syntax.mismatch import explain, too_deep, too_long, unknown_clause
 from rulec.syntax.parser import Branch, Mismatch, Start, TooDeep, parse_piece
@@ -16,7 +16,7 @@ from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.split_file import FileSplitter
 from rulec.syntax.text import checked
-from rulec.syntax.words import DECLARATION_WORDS, RESERVED
+from rulec.syntax.words import DECLARATION_WORDS, FILE_WORDS, RESERVED
 
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""
@@ -37,7 +37,8 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     except RulecError as error:
         return tree.File("rulebook", None, complete=False), error.diagnostics
     if not tokens:
-        return tree.File("rulebook", None, complete=False), (_empty(source),)
+        empty = Diagnostic("R0103", "the file is empty", Span(source, 0, 0).place, *HOW_TO_BEGIN)
+        return tree.File("rulebook", None, complete=False), (empty,)
     reader = _Reader(source, tokens)
     splitter = FileSplitter(source, tokens)
     parts = [
@@ -45,6 +46,8 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         for part in splitter.split()
     ]
     file, order_mistakes = assemble_file(source, parts)
+    if _is_something_else(parts):
+        return tree.File("rulebook", None, complete=False), (_something_else(source, tokens[0]),)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
 
@@ -64,14 +67,18 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     return formula
 
 
-def _empty(source: Source) -> Diagnostic:
-    return Diagnostic(
-        "R0103",
-        "the file is empty",
-        Span(source, 0, 0).place,
-        expected="expected `rulebook NAME`",
-        help="a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`",
-    )
+def _is_something_else(parts: Sequence[Item]) -> bool:
+    """Does the file neither begin like a rulebook, nor hold more to be read than not?"""
+    first = parts[0]
+    if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
+        return False
+    broken = sum(isinstance(part, tree.BrokenItem) for part in parts)
+    return broken > len(parts) - broken
+
+
+def _something_else(source: Source, first: Token) -> Diagnostic:
+    place = Span(source, first.start, first.end).place
+    return Diagnostic("R0117", "the file is no rulebook", place, *HOW_TO_BEGIN)
 
 
 def _position(diagnostic: Diagnostic) -> tuple[int, int]:
@@ -116,16 +123,7 @@ class _Reader:
         token = self.tokens[piece.first]
         return Span(self.source, token.start, token.end)
 
-    def item(
-        self, piece: Piece
-    ) -> (
-        tree.FileLine
-        | tree.TitleLine
-        | tree.LawLine
-        | tree.UseLine
-        | tree.Declaration
-        | tree.BrokenItem
-    ):
+    def item(self, piece: Piece) -> Item:
         return self.read("item", piece, Builder.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:

@@ -66,7 +66,7 @@ class FileSplitter:
                 yield Piece("item", index, end)
                 index = end
         if opened is not None:
-            self.mistakes.append(self.say.no_close(opened, count))
+            self.mistakes.append(self.say.no_close("the vocabulary", opened, count))
 
     def _vocabulary_line(self) -> Piece:
         end = self._end_of_item(0)

@@ -51,7 +51,7 @@ class RuleSplitter:
                 end = self._end_of_clause(index)
                 body.append(Piece("clause" if known else "junk", index, end))
                 index = end
-        self.mistakes.append(self.say.no_close(opened, index))
+        self.mistakes.append(self.say.no_close("the rule", opened, index))
         return RulePieces(head, tuple(body), first, index)
 
     def _at_clause(self, index: int) -> bool:
@@ -117,7 +117,7 @@ class RuleSplitter:
                     return ExamplePieces(head, tuple(states), begin), False
             depth += self.marks.is_symbol(index, "{") - closes
             index += 1
-        self.mistakes.append(self.say.no_close(opened, index))
+        self.mistakes.append(self.say.no_close("the example", opened, index))
         states.append(Piece("state", begin, index, reported=begin == index))
         return ExamplePieces(head, tuple(states), index), index == len(self.tokens)
 

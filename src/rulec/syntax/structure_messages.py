@@ -27,26 +27,26 @@ class StructureMessages:
         end = self.tokens[index].end
         return Span(self.source, end, end).place
 
-    def no_close(self, opened: int, index: int) -> Diagnostic:
-        """The brace at ``opened`` should have been closed before ``index``."""
+    def no_close(self, what: str, opened: int, index: int) -> Diagnostic:
+        """The brace of ``what``, at ``opened``, should have been closed before ``index``."""
         at_end = index >= len(self.tokens)
         return Diagnostic(
             "R0108",
-            "the file ends inside of braces" if at_end else "a `}` is missing before this",
+            f"the file ends before {what} does" if at_end else f"{what} does not end before this",
             self.place(index),
             expected="expected `}`" if at_end else "expected `}` before this",
-            help="close what was opened",
-            labels=(Label(self.place(opened), "this is still open"),),
+            help=f"end {what} with `}}`",
+            labels=(Label(self.place(opened), f"{what} begins here"),),
         )
 
     def no_open(self, before: int, what: str) -> Diagnostic:
         """A ``{`` is missing behind token ``before``."""
         return Diagnostic(
             "R0108",
-            f"{what} stand in braces, and their `{{` is missing",
+            f"{what} stand between `{{` and `}}`, and the `{{` is missing",
             self._behind(before),
             expected="expected `{`",
-            help=f"put {what} between `{{` and `}}`",
+            help="write `{` before them",
         )
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:
@@ -64,7 +64,7 @@ class StructureMessages:
             )
         return Diagnostic(
             "R0109",
-            f"`{self.tokens[index].text}` stands outside of a rule",
+            f"`{self.tokens[index].text}` stands outside of any rule",
             self.place(index),
             expected="expected a declaration or a rule",
             help="clauses stand between the `{` and the `}` of their rule",

@@ -15,14 +15,14 @@ _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u206
 def why_not_a_day(text: str) -> str:
     """Empty for a day of the Gregorian calendar in ISO 8601's form."""
     if not _ISO_DATE.fullmatch(text):
-        return "write year-month-day, such as 2006-03-28"
+        return "a date is written year-month-day, such as `2006-03-28`"
     year, month, day = (int(part) for part in text.split("-"))
     if year < 1:
         return "years begin with 0001"
     if not 1 <= month <= 12:
         return "months go from 01 to 12"
     days = monthrange(year, month)[1]
-    return "" if 1 <= day <= days else f"days go from 01 to {days} in that month"
+    return "" if 1 <= day <= days else f"that month has {days} days"
 
 
 def misleads(character: str) -> bool:

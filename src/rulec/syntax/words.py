@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-HEADER_WORDS: Final = ("rulebook", "vocabulary", "title", "law", "use")
+FILE_WORDS: Final = ("rulebook", "vocabulary")
+HEADER_WORDS: Final = (*FILE_WORDS, "title", "law", "use")
 DECLARATION_WORDS: Final = ("type", "signal", "quantity")
 RULE_WORDS: Final = ("hard", "soft")
 ITEM_WORDS: Final = frozenset((*HEADER_WORDS, *DECLARATION_WORDS, *RULE_WORDS, "rule"))
