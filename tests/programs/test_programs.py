@@ -1,7 +1,8 @@
 """Rulebooks in the language itself: good ones load, bad ones say what NAME.expected says.
 
 ``RULEC_REFRESH=1 pytest tests/programs`` rewrites the expected files; read the difference before it
-is committed. A bad file's first line says how many mistakes it has: one error for each.
+is committed. A bad file's first line says how many mistakes it has: one error for each. The
+vocabularies that bad files use are in ``bad/vocabulary``.
 """
 
 import os
