@@ -10,7 +10,7 @@ from rulec.report.diagnostics import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.resolve import resolve_vocabulary
 from rulec.syntax import parse
-from rulec.syntax.words import RESERVED
+from rulec.syntax.keywords import RESERVED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "language.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+(?: \w+)?)\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from rulec.syntax import tree
-from rulec.syntax.words import PRECEDENCE, RESERVED, UNARY_OPERATORS
+from rulec.syntax.keywords import PRECEDENCE, RESERVED, UNARY_OPERATORS
 
 letters = st.sampled_from("abpqrvxyzGFXURWM_éß車Ω09")
 names = (

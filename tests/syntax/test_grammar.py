@@ -11,7 +11,7 @@ from syntax_trees import files
 
 from rulec.resources import grammar_file
 from rulec.syntax import print_file
-from rulec.syntax.words import RESERVED
+from rulec.syntax.keywords import RESERVED
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 WHOLE = Lark(GRAMMAR, parser="lalr", lexer="contextual", start="file")

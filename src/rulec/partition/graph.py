@@ -76,8 +76,8 @@ class NavigationGraph:
         return trace_graph(self)
 
     def to_networkx(self) -> networkx.DiGraph:
-        """The graph for networkx; see ``rulec.partition.handover.to_networkx``."""
-        from rulec.partition.handover import to_networkx
+        """The graph for networkx; see ``rulec.partition.networkx_graph.to_networkx``."""
+        from rulec.partition.networkx_graph import to_networkx
 
         return to_networkx(self)
 

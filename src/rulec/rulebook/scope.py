@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.logic.formula import Atom
-from rulec.rulebook import unknown
+from rulec.rulebook import atom_messages
 from rulec.rulebook.declared import Declared
 from rulec.syntax import tree
 from rulec.vocabulary import Enumeration, Signal
@@ -37,13 +37,13 @@ class Scope:
         if not use.arguments and "_" in name:
             readings = self._readings(name)
             if len(readings) > 1:
-                self.mistakes.append(unknown.two_readings(use, readings))
+                self.mistakes.append(atom_messages.two_readings(use, readings))
                 return None
             if readings:
                 head, variable = readings[0]
                 return self._checked(use, head, (tree.Name(variable, use.span),))
         if not self.declared.may_know(name):
-            self.mistakes.append(unknown.explain(use, self.declared, list(self.variables)))
+            self.mistakes.append(atom_messages.explain(use, self.declared, list(self.variables)))
         return None
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
@@ -64,7 +64,7 @@ class Scope:
         self.used |= {one.text for one in arguments}
         if len(arguments) != len(item.parameters):
             self.mistakes.append(
-                unknown.wrong_number(use, name, item, self.declared, list(self.variables))
+                atom_messages.wrong_number(use, name, item, self.declared, list(self.variables))
             )
             return None
         fine = [

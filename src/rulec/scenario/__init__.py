@@ -1,4 +1,9 @@
-"""Scenarios: the road, ego, obstacles and their prediction; reading them from files."""
+"""Scenarios: the road, ego, obstacles and their prediction; reading them from files.
+
+The way through: ``read`` a TOML file -> ``schema``, ``fields``: its tables, field by field ->
+``convert``, ``obstacles``, ``check``: the ``model``. What is wrong is collected in ``Findings``,
+each in its place, which ``toml_places`` finds. ``motion`` says where an obstacle is at what time.
+"""
 
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (

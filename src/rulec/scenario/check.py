@@ -10,7 +10,7 @@ from rulec.scenario.fields import Findings, quoted, shown
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.motion import swept
-from rulec.scenario.places import Table
+from rulec.scenario.toml_places import Table
 
 NARROWEST_M = 0.01
 # what a state calls by these names comes from the partition

@@ -16,9 +16,9 @@ from rulec.scenario.fields import Findings, quoted, read_table
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.obstacles import Listed, read_obstacles
-from rulec.scenario.places import Table
 from rulec.scenario.schema import RawEgo, RawGoal, RawMissing, RawRoad, RawScenario, RawSurface
 from rulec.scenario.timing import timing
+from rulec.scenario.toml_places import Table
 
 _TOP = Table("", None, "the scenario")
 _ROAD = Table("road", None, "road")

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 
 from rulec.diagnostics import Diagnostic, did_you_mean, nearest_name
-from rulec.scenario.places import Table, TomlText
+from rulec.scenario.toml_places import Table, TomlText
 
 T = TypeVar("T", bound=msgspec.Struct)
 

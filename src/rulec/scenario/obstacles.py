@@ -9,8 +9,8 @@ from rulec.scenario.check import check_signals
 from rulec.scenario.fields import Findings, quoted, read_table
 from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
-from rulec.scenario.places import Table
 from rulec.scenario.schema import MOST_OBSTACLES, RawObstacle
+from rulec.scenario.toml_places import Table
 
 Listed = tuple[Obstacle, Table]
 

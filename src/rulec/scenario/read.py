@@ -14,7 +14,7 @@ from rulec.resources import scenarios_folder
 from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
 from rulec.scenario.model import Scenario
-from rulec.scenario.places import TomlText
+from rulec.scenario.toml_places import TomlText
 
 LARGEST_BYTES = 4_000_000
 

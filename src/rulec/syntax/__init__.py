@@ -1,7 +1,18 @@
-"""The language as written: text in, a tree with every place, and back."""
+"""The language as written: text in, a tree with every place, and back.
 
+The way through, which ``parser`` walks:
+
+    bytes -> text -> scanner: coarse tokens
+          -> split_file, split_rule: pieces, each parsed by itself, so that one mistake costs one
+             error; landmarks tell where one begins, even in a file that is wrong
+          -> grammar: each piece by Lark, or where it cannot go on, which messages explain
+          -> build, literals: the pieces' nodes -> assemble: rules and the file
+
+``tree`` is what comes out, ``printer`` the way back, ``keywords`` the words that all of them know.
+"""
+
+from rulec.syntax.parser import parse, parse_formula
 from rulec.syntax.printer import print_file, print_formula
-from rulec.syntax.read import parse, parse_formula
 from rulec.syntax.text import MAX_BYTES, decode
 
 __all__ = ["MAX_BYTES", "decode", "parse", "parse_formula", "print_file", "print_formula"]

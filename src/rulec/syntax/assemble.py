@@ -8,7 +8,7 @@ from typing import Final
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
 from rulec.syntax.build import RuleHead
-from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS
+from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 
 Clause = tuple[str, tree.Text | tree.Formula | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""

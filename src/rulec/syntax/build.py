@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
-from rulec.syntax.parser import Branch, Leaf
-from rulec.syntax.values import misleads, why_not_a_day
+from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.literals import misleads, why_not_a_day
 
 _OPERATORS = {
     "IFF": "iff",

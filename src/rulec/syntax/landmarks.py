@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, RESERVED, RULE_WORDS
 from rulec.syntax.scanner import Token
-from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS, RESERVED, RULE_WORDS
 
 _COMPLETE_WORDS = frozenset(("true", "false"))
 _OPEN_SYMBOLS = frozenset(

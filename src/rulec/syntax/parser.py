@@ -1,120 +1,176 @@
-"""The grammar at work; the only file that knows Lark."""
+"""A source in, its tree and all its mistakes out."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
-from typing import Literal
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar, cast
 
-from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
-from lark.parsers.lalr_interactive_parser import InteractiveParser
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
+from rulec.syntax import tree
+from rulec.syntax.assemble import HOW_TO_BEGIN, Item, assemble_file, assemble_rule
+from rulec.syntax.build import Builder
+from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
+from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
+from rulec.syntax.messages.mismatch import explain, too_deep, too_long, unknown_clause
+from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
+from rulec.syntax.scanner import Token, scan
+from rulec.syntax.split_file import FileSplitter
+from rulec.syntax.text import checked
 
-from rulec.resources import grammar_file
+MAX_PIECE = 10_000
+"""Tokens in one piece; keeps what one formula can cost in time and memory small."""
 
-Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
+_BEHIND_NAME = ("is", "in", "default", "(")
 
-STARTS: tuple[Start, ...] = ("item", "rule_head", "clause", "example_head", "state", "formula")
-
-MAX_DEPTH = 200
-"""Operators and parentheses inside one another: far above any law, far below Python's stack."""
-
-_LEVELS = ("infix", "prefix", "group")
-
-
-@dataclass(frozen=True, slots=True)
-class Leaf:
-    """A token of the grammar."""
-
-    kind: str
-    text: str
-    start: int
-    end: int
+_Built = TypeVar("_Built")
 
 
-@dataclass(frozen=True, slots=True)
-class Branch:
-    """What a rule of the grammar matched, from character ``start`` to ``end``."""
+def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+    """The syntax tree of a rulebook or a vocabulary, and every mistake in it, in order.
 
-    kind: str
-    children: tuple[Branch | Leaf, ...]
-    start: int
-    end: int
-
-
-@dataclass(frozen=True, slots=True)
-class Mismatch:
-    """The text cannot go on at ``position``; ``accepted`` are the grammar's names of what could."""
-
-    position: int
-    accepted: frozenset[str]
-
-
-@dataclass(frozen=True, slots=True)
-class TooDeep:
-    """The part of the formula at ``position`` stands inside more than ``MAX_DEPTH`` others."""
-
-    position: int
-
-
-def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Mismatch | TooDeep:
-    """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
+    What cannot be read is left out of the tree and leaves a mark there (``BrokenItem``,
+    ``complete``), so that later stages need not complain about it a second time.
+    """
     try:
-        # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
-        # quadratic time in all.
-        tree = _lark().parse(text[begin:end], start=start)
-    except UnexpectedInput as error:
-        return Mismatch(begin + _position(error, end - begin), _accepted(error))
-    return _neutral(tree, begin)
+        tokens = scan(checked(source))
+    except RulecError as error:
+        return tree.File("rulebook", None, complete=False), error.diagnostics
+    if not tokens:
+        empty = Diagnostic("R0103", "the file is empty", Span(source, 0, 0).place, *HOW_TO_BEGIN)
+        return tree.File("rulebook", None, complete=False), (empty,)
+    reader = _Reader(source, tokens)
+    splitter = FileSplitter(source, tokens)
+    parts = [
+        reader.rule(part) if isinstance(part, RulePieces) else reader.item(part)
+        for part in splitter.split()
+    ]
+    file, order_mistakes = assemble_file(source, parts)
+    if _is_something_else(parts):
+        return tree.File("rulebook", None, complete=False), (_something_else(source, tokens[0]),)
+    mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
+    return file, tuple(sorted(mistakes, key=_position))
 
 
-@cache
-def _lark() -> Lark:
-    return Lark(
-        grammar_file("rulec.lark").read_text(encoding="utf-8"),
-        parser="lalr",
-        lexer="contextual",
-        start=list(STARTS),
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
+def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
+    """The tree of one formula.
+
+    Raises:
+        RulecError: it is not a formula.
+    """
+    source = checked(Source(name, text))
+    tokens = scan(source)
+    reader = _Reader(source, tokens)
+    formula = reader.read("formula", Piece("formula", 0, len(tokens)), Builder.formula)
+    if formula is None:
+        raise RulecError(reader.mistakes)
+    return formula
 
 
-def _position(error: UnexpectedInput, end: int) -> int:
-    if isinstance(error, UnexpectedToken) and error.token.type == "$END":
-        return end
-    return end if error.pos_in_stream is None else error.pos_in_stream
+def _is_something_else(parts: Sequence[Item]) -> bool:
+    """Does the file neither begin like a rulebook, nor hold more to be read than not?"""
+    first = parts[0]
+    if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
+        return False
+    broken = sum(isinstance(part, tree.BrokenItem) for part in parts)
+    return broken > len(parts) - broken
 
 
-def _accepted(error: UnexpectedInput) -> frozenset[str]:
-    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
-    state = getattr(error, "interactive_parser", None)
-    if isinstance(state, InteractiveParser):
-        return frozenset(state.accepts())  # type: ignore[no-untyped-call]
-    return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
+def _something_else(source: Source, first: Token) -> Diagnostic:
+    place = Span(source, first.start, first.end).place
+    return Diagnostic("R0117", "the file is no rulebook", place, *HOW_TO_BEGIN)
 
 
-def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:
-    """Lark's tree as ours, built from the leaves up because a hostile one may be very deep."""
-    done: list[Branch | Leaf] = []
-    todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
-    while todo:
-        node, depth, ready = todo.pop()
-        if isinstance(node, Token):
-            start = begin + (node.start_pos or 0)
-            done.append(Leaf(node.type, str(node), start, start + len(node)))
-        elif ready:
-            first = len(done) - len(node.children)
-            meta = node.meta
-            inside = tuple(done[first:])
-            span = begin + meta.start_pos, begin + meta.end_pos
-            done[first:] = [Branch(str(node.data), inside, *span)]
-        elif depth > MAX_DEPTH:
-            return TooDeep(begin + node.meta.start_pos)
-        else:
-            below = depth + (node.data in _LEVELS)
-            todo.append((node, depth, True))
-            todo.extend((child, below, False) for child in reversed(node.children))
-    root = done[0]
-    assert isinstance(root, Branch)
-    return root
+def _position(diagnostic: Diagnostic) -> tuple[int, int]:
+    place = diagnostic.place
+    return (0, 0) if place is None else (place.line or 0, place.column or 0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Parses piece by piece; None stands for a piece whose mistake is in ``mistakes``."""
+
+    source: Source
+    tokens: list[Token]
+    mistakes: list[Diagnostic] = field(default_factory=list)
+
+    def read(
+        self, start: Start, piece: Piece, build: Callable[[Builder, Branch], _Built]
+    ) -> _Built | None:
+        """What ``build`` makes of a piece that matches ``start``."""
+        if piece.reported:
+            return None
+        span = span_of(self.source, self.tokens, piece)
+        if piece.last - piece.first > MAX_PIECE:
+            self.mistakes.append(too_long(self._first_token(piece), MAX_PIECE))
+            return None
+        match parse_piece(start, self.source.text, span.start, span.end):
+            case Mismatch() as mismatch:
+                self.mistakes.append(explain(self.source, self.tokens, piece, mismatch))
+                return None
+            case TooDeep():
+                self.mistakes.append(too_deep(self._first_token(piece)))
+                return None
+            case branch:
+                builder = Builder(self.source)
+                built = build(builder, branch)
+        if piece.then is not None:
+            self.mistakes.append(piece.then)
+        self.mistakes.extend(builder.mistakes)
+        return built
+
+    def _first_token(self, piece: Piece) -> Span:
+        token = self.tokens[piece.first]
+        return Span(self.source, token.start, token.end)
+
+    def item(self, piece: Piece) -> Item:
+        return self.read("item", piece, Builder.item) or self._broken(piece)
+
+    def _broken(self, piece: Piece) -> tree.BrokenItem:
+        words = self.tokens[piece.first : piece.last]
+        names = {token.text for token in words if token.kind == "word"} - RESERVED
+        first = words[0].text
+        nameless = first in DECLARATION_WORDS and (len(words) < 2 or words[1].text in _BEHIND_NAME)
+        span = span_of(self.source, self.tokens, piece)
+        return tree.BrokenItem(frozenset(names), span, first, nameless)
+
+    def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
+        head = self.read("rule_head", pieces.head, Builder.rule_head)
+        parts = [
+            self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
+            for part in pieces.body
+        ]
+        if head is None:
+            return tree.BrokenItem(
+                frozenset(), span_of(self.source, self.tokens, pieces.head), "rule"
+            )
+        span = span_of(self.source, self.tokens, pieces)
+        head_span = span_of(self.source, self.tokens, pieces.head)
+        readable = pieces.head.then is None
+        rule, mistakes = assemble_rule(head, parts, span, head_span, complete=readable)
+        self.mistakes.extend(mistakes)
+        return rule
+
+    def _clause(self, piece: Piece) -> tuple[str, tree.Text | tree.Formula | None, Span]:
+        keyword = self.tokens[piece.first].text
+        span = self._first_token(piece)
+        if piece.kind == "junk":
+            self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
+            return keyword, None, span
+        return keyword, self.read("clause", piece, _build_clause), span
+
+    def _example(self, pieces: ExamplePieces) -> tree.Example | None:
+        head = self.read("example_head", pieces.head, Builder.example_head)
+        states = [self.read("state", piece, Builder.state) for piece in pieces.states]
+        if head is None or not states or None in states:
+            return None
+        span = span_of(self.source, self.tokens, pieces)
+        good = cast("list[tree.ExampleState]", states)
+        return tree.Example(head.accepts, tuple(good), head.label, span)
+
+
+def _build_clause(builder: Builder, branch: Branch) -> tree.Text | tree.Formula:
+    if branch.kind == "require_clause":
+        (formula,) = (child for child in branch.children if isinstance(child, Branch))
+        return builder.formula(formula)
+    return builder.text(branch)

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from rulec.syntax import tree
-from rulec.syntax.words import (
+from rulec.syntax.keywords import (
     PRECEDENCE,
     RIGHT_ASSOCIATIVE,
     SYMBOLS,

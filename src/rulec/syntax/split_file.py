@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source
 from rulec.syntax.landmarks import Landmarks
+from rulec.syntax.messages.structure import StructureMessages
 from rulec.syntax.pieces import Piece, RulePieces
 from rulec.syntax.scanner import Token
 from rulec.syntax.split_rule import RuleSplitter
-from rulec.syntax.structure_messages import StructureMessages
 
 
 @dataclass(slots=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic
+from rulec.syntax.keywords import CLAUSE_WORDS
 from rulec.syntax.landmarks import Landmarks
+from rulec.syntax.messages.structure import StructureMessages
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.scanner import Token
-from rulec.syntax.structure_messages import StructureMessages
-from rulec.syntax.words import CLAUSE_WORDS
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
-from rulec.syntax.advice import Scene, advise
-from rulec.syntax.expectations import in_words, wants_operand
-from rulec.syntax.parser import MAX_DEPTH, Mismatch
+from rulec.syntax.grammar import MAX_DEPTH, Mismatch
+from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
+from rulec.syntax.messages.advice import Scene, advise
+from rulec.syntax.messages.expectations import in_words, wants_operand
 from rulec.syntax.pieces import Piece, span_of
 from rulec.syntax.scanner import Token
-from rulec.syntax.words import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
 
 _WHAT = {
     "title": "the `title` line",

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rulec.diagnostics import did_you_mean
-from rulec.syntax.expectations import wants_operand, wants_operator
+from rulec.syntax.keywords import OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
+from rulec.syntax.messages.expectations import wants_operand, wants_operator
 from rulec.syntax.scanner import Token
-from rulec.syntax.words import OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
 
 
 @dataclass(frozen=True, slots=True)

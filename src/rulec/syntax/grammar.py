@@ -1,0 +1,120 @@
+"""The grammar at work; the only file that knows Lark."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark.parsers.lalr_interactive_parser import InteractiveParser
+
+from rulec.resources import grammar_file
+
+Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
+
+STARTS: tuple[Start, ...] = ("item", "rule_head", "clause", "example_head", "state", "formula")
+
+MAX_DEPTH = 200
+"""Operators and parentheses inside one another: far above any law, far below Python's stack."""
+
+_LEVELS = ("infix", "prefix", "group")
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """A token of the grammar."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """What a rule of the grammar matched, from character ``start`` to ``end``."""
+
+    kind: str
+    children: tuple[Branch | Leaf, ...]
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """The text cannot go on at ``position``; ``accepted`` are the grammar's names of what could."""
+
+    position: int
+    accepted: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class TooDeep:
+    """The part of the formula at ``position`` stands inside more than ``MAX_DEPTH`` others."""
+
+    position: int
+
+
+def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Mismatch | TooDeep:
+    """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
+    try:
+        # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
+        # quadratic time in all.
+        tree = _lark().parse(text[begin:end], start=start)
+    except UnexpectedInput as error:
+        return Mismatch(begin + _position(error, end - begin), _accepted(error))
+    return _neutral(tree, begin)
+
+
+@cache
+def _lark() -> Lark:
+    return Lark(
+        grammar_file("rulec.lark").read_text(encoding="utf-8"),
+        parser="lalr",
+        lexer="contextual",
+        start=list(STARTS),
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
+def _position(error: UnexpectedInput, end: int) -> int:
+    if isinstance(error, UnexpectedToken) and error.token.type == "$END":
+        return end
+    return end if error.pos_in_stream is None else error.pos_in_stream
+
+
+def _accepted(error: UnexpectedInput) -> frozenset[str]:
+    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
+    state = getattr(error, "interactive_parser", None)
+    if isinstance(state, InteractiveParser):
+        return frozenset(state.accepts())  # type: ignore[no-untyped-call]
+    return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
+
+
+def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:
+    """Lark's tree as ours, built from the leaves up because a hostile one may be very deep."""
+    done: list[Branch | Leaf] = []
+    todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
+    while todo:
+        node, depth, ready = todo.pop()
+        if isinstance(node, Token):
+            start = begin + (node.start_pos or 0)
+            done.append(Leaf(node.type, str(node), start, start + len(node)))
+        elif ready:
+            first = len(done) - len(node.children)
+            meta = node.meta
+            inside = tuple(done[first:])
+            span = begin + meta.start_pos, begin + meta.end_pos
+            done[first:] = [Branch(str(node.data), inside, *span)]
+        elif depth > MAX_DEPTH:
+            return TooDeep(begin + node.meta.start_pos)
+        else:
+            below = depth + (node.data in _LEVELS)
+            todo.append((node, depth, True))
+            todo.extend((child, below, False) for child in reversed(node.children))
+    root = done[0]
+    assert isinstance(root, Branch)
+    return root
