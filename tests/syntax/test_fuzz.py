@@ -1,11 +1,12 @@
-"""Whatever the bytes are: a rulebook, or one RulecError whose diagnostics have places; in time."""
+"""Whatever the bytes are: a rulebook, or one RulecError whose diagnostics have places, in time."""
 
-import time
 import unicodedata
 from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from steps import grows_in_proportion
 
 from rulec.diagnostics import RulecError
 from rulec.report.diagnostics import render_diagnostics
@@ -82,8 +83,6 @@ def test_truncated_rulebooks(text, data):
     judge(text[: data.draw(st.integers(0, len(text)))])
 
 
-def test_all_of_it_takes_no_longer_than_the_file_is_long():
-    started = time.monotonic()
-    for text in TEXTS:
-        judge(text * 20)
-    assert time.monotonic() - started < 60
+@pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
+def test_all_of_it_takes_steps_in_proportion(text):
+    assert grows_in_proportion(lambda size: judge(text * size), 6)

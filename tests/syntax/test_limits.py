@@ -1,8 +1,10 @@
 """Hostile sizes and depths: a clear error, soon."""
 
-import time
+import subprocess
+import sys
 
 import pytest
+from steps import grows_in_proportion
 
 from rulec.diagnostics import RulecError, Source
 from rulec.rulebook.loader import parse_rulebook
@@ -34,19 +36,17 @@ def test_two_hundred_levels_are_read_and_printed_and_no_more():
         "p" + " & p" * 300,
         "p" + " U p" * 300,
         "p -> (" * 250 + "p" + ")" * 250,
-        "(" * 400_000,
-        "!" * 400_000 + "p",
-        "p" + "&p" * 400_000,
+        "(" * 20_000,
+        "!" * 20_000 + "p",
+        "p" + "&p" * 20_000,
     ],
     ids=lambda formula: formula[:12],
 )
 def test_a_formula_too_deep_or_too_long_is_one_error(formula):
-    started = time.monotonic()
     one = only(f"{HEAD}{formula} }}")
     assert one.code == "R0111"
     assert one.place.line == 3
     assert "split" in one.help
-    assert time.monotonic() - started < 20
 
 
 def test_two_hundred_levels_of_a_rule_are_resolved():
@@ -68,28 +68,39 @@ def test_a_file_of_too_many_signs_is_one_error():
     assert one.place.line == 2
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        '"' * 300_000,
-        "'" * 300_000,
-        '"a\n' * 100_000,
-        "{" * 300_000,
-        "}" * 300_000,
-        "a(" * 50_000,
-        "a(b,\n" * 100_000,
-        "vocabulary x\n" * 10_000,
-        "rulebook x\n" * 10_000,
-        "accept {\n" * 10_000,
-        "hard rule r {\n" * 10_000,
-        "signal p\n" * 10_000,
-        "x is one of a\n" * 10_000,
-        "\n" * 1_000_000 + "}",
-    ],
-    ids=lambda text: text[:14].strip(),
-)
-def test_repetition_takes_time_in_proportion(text):
-    started = time.monotonic()
-    _, mistakes = parse(Source("hostile.rules", text))
-    assert mistakes or text.startswith(("signal", "x is"))
-    assert time.monotonic() - started < 30
+REPEATED = [
+    ("", '"', ""),
+    ("", "'", ""),
+    ("", '"a\n', ""),
+    ("", "{", ""),
+    ("", "}", ""),
+    ("", "a(", ""),
+    ("", "a(b,\n", ""),
+    ("", "vocabulary x\n", ""),
+    ("", "rulebook x\n", ""),
+    ("", "accept {\n", ""),
+    ("", "hard rule r {\n", ""),
+    ("", "hard rule r { require p }\n", ""),
+    ("", "signal p\n", ""),
+    ("", "x is one of a\n", ""),
+    ("", "\n", "}"),
+    ("rulebook x\nhard rule r { require (", "p & ", ")"),
+]
+
+
+@pytest.mark.parametrize(("before", "part", "behind"), REPEATED)
+def test_repetition_takes_steps_in_proportion(before, part, behind):
+    def read(size):
+        parse(Source("hostile.rules", before + part * size + behind))
+
+    assert grows_in_proportion(read, 400)
+
+
+def test_repetition_does_not_hang():
+    program = f"""
+from rulec.diagnostics import Source
+from rulec.syntax import parse
+for before, part, behind in {REPEATED!r}:
+    parse(Source("hostile.rules", before + part * (100_000 // len(part)) + behind))
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=600)
