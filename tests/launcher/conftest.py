@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -84,14 +85,17 @@ class Checkout:
         entries = [json.loads(line) for line in lines]
         return [entry for entry in entries if not tools or entry["tool"] in tools]
 
-    def wait_for(self, file: Path) -> None:
-        deadline = time.monotonic() + 20
-        while not file.exists():
-            assert time.monotonic() < deadline, f"{file.name} never came"
+    @staticmethod
+    def comes_true(condition: Callable[[], bool]) -> bool:
+        """Looks again and again, but not for ever."""
+        for _ in range(3000):
+            if condition():
+                return True
             time.sleep(0.01)
+        return False
 
     def wait_until_waiting(self, tool: str) -> None:
-        self.wait_for(self.tools / f"{tool} is waiting")
+        assert self.comes_true((self.tools / f"{tool} is waiting").exists), f"{tool} was not called"
 
     def let_go_on(self) -> None:
         (self.tools / "go on").touch()

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 from pathlib import Path
 
 import pytest
@@ -17,11 +16,9 @@ def is_running(pid):
         return False
 
 
-def wait_for_end(pids):
-    deadline = time.monotonic() + 10
-    while any(is_running(pid) for pid in pids) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return not any(is_running(pid) for pid in pids)
+def installers_end(checkout):
+    pids = checkout.installers()
+    return checkout.comes_true(lambda: not any(is_running(pid) for pid in pids))
 
 
 def stop_waiting(checkout, tool):
@@ -30,8 +27,11 @@ def stop_waiting(checkout, tool):
     (checkout.tools / f"{tool} is waiting").unlink()
 
 
-@pytest.mark.parametrize("sent", STATUS)
-@pytest.mark.parametrize("tool", ["venv", "pip", "uv venv", "uv pip"])
+@pytest.mark.parametrize(
+    ("tool", "sent"),
+    [("pip", sent) for sent in STATUS]
+    + [(tool, signal.SIGINT) for tool in ("venv", "uv venv", "uv pip")],
+)
 def test_interruption_leaves_nothing_behind(checkout, tool, sent):
     if tool.startswith("uv"):
         checkout.add_tool("uv")
@@ -44,7 +44,7 @@ def test_interruption_leaves_nothing_behind(checkout, tool, sent):
     assert out == ""
     assert err.splitlines()[-1] == "rulec: interrupted; the unfinished environment is removed."
     assert not checkout.environment.exists()
-    assert wait_for_end(checkout.installers())
+    assert installers_end(checkout)
     stop_waiting(checkout, tool)
     assert checkout.call().returncode == 0
 
@@ -85,7 +85,7 @@ def test_killed_with_its_installer_it_is_started_over_at_once(checkout):
     first.communicate(timeout=20)
     for pid in checkout.installers():
         os.kill(pid, signal.SIGKILL)
-    assert wait_for_end(checkout.installers())
+    assert installers_end(checkout)
     stop_waiting(checkout, "venv")
     again = checkout.call()
     assert again.returncode == 0

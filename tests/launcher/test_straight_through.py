@@ -61,7 +61,7 @@ def test_command_inherits_no_descriptor_of_the_set_up(checkout, first):
     assert seen(checkout.call())["descriptors"] == []
 
 
-@pytest.mark.parametrize("name", ["with space", "größe", "a'b", "$x", "-dash"])
+@pytest.mark.parametrize("name", ["it's größe $x", "-dash"])
 def test_any_folder_name_will_do(checkout, tmp_path, name):
     home = tmp_path / name
     checkout.folder.rename(home)
