@@ -72,7 +72,3 @@ class Span:
         end_line, end_column = self.source.position(max(self.start, self.end))
         excerpt = self.source.line(line)
         return Place(self.source.name, line, column, end_line, end_column, excerpt)
-
-    def to(self, other: Span) -> Span:
-        """From the start of this span to the end of another one in the same source."""
-        return Span(self.source, self.start, other.end)

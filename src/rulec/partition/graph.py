@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     from rulec.trace.model import TraceGraph
 
-__all__ = ["AdjacencyName", "NavigationGraph", "PartitionName", "navigation_graph"]
-
 
 @dataclass(frozen=True)
 class NavigationGraph:

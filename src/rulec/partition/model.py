@@ -110,9 +110,3 @@ class Layer:
     objects: tuple[str, ...]
     cells: tuple[Cell, ...]
     neighbours: tuple[tuple[int, ...], ...]
-
-    @property
-    def adjacent_pairs(self) -> tuple[tuple[int, int], ...]:
-        """The pairs of cells, lower index first, between which there is a step."""
-        pairs = {(min(i, j), max(i, j)) for i, row in enumerate(self.neighbours) for j in row}
-        return tuple(sorted(pairs))

@@ -42,11 +42,6 @@ def trace_graph(graph: NavigationGraph) -> TraceGraph:
     )
 
 
-def state_of(graph: NavigationGraph, layer: int, cell: int) -> State:
-    """The valuation of one cell."""
-    return _states(graph, layer)[cell]
-
-
 def _states(graph: NavigationGraph, layer: int) -> tuple[State, ...]:
     here = graph.layers[layer]
     signals: dict[str, Value | dict[str, Value]] = dict(graph.scenario.signals)

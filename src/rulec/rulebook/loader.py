@@ -106,7 +106,10 @@ def _load(source: Source, data: bytes, path: Path | None, search_path: Sequence[
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
-    return list({use.name.text: use for use in reversed(uses)}.values())[::-1]
+    first: dict[str, tree.UseLine] = {}
+    for use in uses:
+        first.setdefault(use.name.text, use)
+    return list(first.values())
 
 
 def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -17,11 +17,6 @@ class Box:
     d_min: float
     d_max: float
 
-    @property
-    def area(self) -> float:
-        """In square metres."""
-        return (self.s_max - self.s_min) * (self.d_max - self.d_min)
-
     def overlaps(self, other: Box) -> bool:
         """Do the interiors meet, not only the borders?"""
         return (

@@ -9,24 +9,10 @@ from dataclasses import dataclass, field
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.keywords import SYMBOLS, token_kind
 from rulec.syntax.literals import misleads, why_not_a_day
 
-_OPERATORS = {
-    "IFF": "iff",
-    "IMPLIES": "implies",
-    "XOR": "xor",
-    "OR": "or",
-    "AND": "and",
-    "UNTIL": "until",
-    "RELEASE": "release",
-    "WEAK_UNTIL": "weak until",
-    "STRONG_RELEASE": "strong release",
-    "NOT": "not",
-    "ALWAYS": "always",
-    "EVENTUALLY": "eventually",
-    "NEXT": "next",
-    "WEAK_NEXT": "weak next",
-}
+_OPERATORS = {token_kind(words): words for words in SYMBOLS}
 
 
 @dataclass(frozen=True, slots=True)

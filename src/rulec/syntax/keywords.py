@@ -67,3 +67,8 @@ RIGHT_ASSOCIATIVE: Final = frozenset(
     ("implies", "until", "release", "weak until", "strong release")
 )
 """The others associate to the left, which for them makes no difference to the meaning."""
+
+
+def token_kind(words: str) -> str:
+    """What the grammar calls an operator or another word: ``weak until`` is ``WEAK_UNTIL``."""
+    return words.upper().replace(" ", "_")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rulec.diagnostics import did_you_mean
-from rulec.syntax.keywords import OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
+from rulec.syntax.keywords import OPERATOR_WORDS, RESERVED, SYMBOLS, UNARY_OPERATORS
 from rulec.syntax.messages.expectations import wants_operand, wants_operator
 from rulec.syntax.scanner import Token
 
@@ -34,11 +34,6 @@ _OTHER_SPELLINGS = {
     "until": ("𝒰",),
 }
 _MEANT = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
-_SYMBOL_OF = {"implies": "->", "iff": "<->", "and": "&", "or": "|", "not": "!", "always": "G"} | {
-    "eventually": "F",
-    "next": "X",
-    "until": "U",
-}
 _FORMS = {
     "type": "a type is declared by `type NAME` or `type NAME is PARENT`",
     "signal": "a signal is declared by `signal NAME`",
@@ -144,7 +139,7 @@ def _operators(scene: Scene) -> str:
     word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
     fits = operand if word in UNARY_OPERATORS else "AND" in scene.accepted
     if word is not None and text != word and fits:
-        symbol = _SYMBOL_OF.get(word)
+        symbol = SYMBOLS.get(word)
         return f"write `{word}` or `{symbol}`" if symbol else f"write `{word}`"
     if before == "weak" or text == "weak":
         return "`weak` stands before `until` or before `next`"

@@ -5,16 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rulec.diagnostics import any_of
+from rulec.syntax.keywords import PRECEDENCE, UNARY_OPERATORS, token_kind
 
-_OPERANDS = frozenset(
-    ("NOT", "ALWAYS", "EVENTUALLY", "NEXT", "WEAK_NEXT", "LPAR", "TRUE", "FALSE", "NAME")
-)
-_OPERATORS = frozenset(
-    (
-        *("IFF", "IMPLIES", "XOR", "OR", "AND"),
-        *("UNTIL", "RELEASE", "WEAK_UNTIL", "STRONG_RELEASE"),
-    )
-)
+_OPERANDS = frozenset(map(token_kind, UNARY_OPERATORS)) | {"LPAR", "TRUE", "FALSE", "NAME"}
+_OPERATORS = frozenset(map(token_kind, PRECEDENCE))
 _WORDS = {
     "NAME": "a name",
     "STRING": "a text in double quotes",
