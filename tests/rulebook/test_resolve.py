@@ -48,30 +48,6 @@ PAPER = {
     "R3": always(no(both(CROSSING, position("f", "p")))),
 }
 
-# Tables II to IV: the positions, the road types where given, and the verdict.
-TABLES = {
-    "R1": [
-        ("bblf", "", True),
-        ("bllb", "", True),
-        ("bbrb", "", True),
-        ("rrff", "", True),
-        ("brrf", "", False),
-        ("brff", "", False),
-        ("brfr", "", False),
-        ("brrbrf", "", False),
-    ],
-    "R2": [
-        ("bblf", "cw cw cw cw", True),
-        ("bblf", "cw pc cw cw", True),
-        ("bblf", "cw cw cw pc", False),
-    ],
-    "R3": [
-        ("rffl", "cw cw cw pc", True),
-        ("lffr", "cw cw cw pc", True),
-        ("lffr", "cw pc pc cw", False),
-    ],
-}
-
 
 @pytest.fixture(scope="module")
 def paper():
@@ -86,23 +62,6 @@ def test_the_paper_s_rules_mean_what_is_printed(paper, name):
     kind = Variable("p", "pedestrian") if name == "R3" else Variable("v", "vehicle")
     assert rule.variables == (kind,)
     assert rule.cite.startswith("Article")
-
-
-@pytest.mark.parametrize("name", TABLES)
-def test_the_paper_s_tables_are_the_examples(paper, name):
-    (rule,) = (rule for rule in paper.rules if rule.name == name)
-    variable = rule.variables[0].name
-    expected = []
-    for letters, surfaces, accepts in TABLES[name]:
-        roads = surfaces.split() or [None] * len(letters)
-        states = []
-        for letter, road in zip(letters, roads, strict=True):
-            state = {("position", (variable,)): letter}
-            if road:
-                state["surface", ()] = f"R_{road}"
-            states.append(state)
-        expected.append((accepts, tuple(states)))
-    assert [(example.accepts, example.states) for example in rule.examples] == expected
     labels = [example.label for example in rule.examples]
     assert labels == [f"tau {number}" for number in range(1, len(labels) + 1)]
 
