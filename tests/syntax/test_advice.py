@@ -5,11 +5,19 @@ import pytest
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, parse_formula
 
+COMPARED = "formulas are compared by `iff`; a value is an atom itself, such as `crossing`"
+NAMES = "names are made of letters, digits and `_`, and begin with a letter"
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
     ("p → q", "→", "write `implies` or `->`"),
-    ("p == q", "==", "write `iff` or `<->`"),
-    ("p = q", "=", "write `iff` or `<->`"),
+    ("p == q", "==", COMPARED),
+    ("p = q", "=", COMPARED),
+    ("if p then q", "p", "write `p implies q` for `if p then q`"),
+    ("eventualy p", "p", "did you mean `eventually`?"),
+    ("p untl q", "untl", "did you mean `until`?"),
+    ("b-v", "-", NAMES),
+    ("1p", "1p", NAMES),
+    ("p // why", "//", "a comment begins with `#`"),
     ("p <=> q", "<=>", "write `iff` or `<->`"),
     ("p ∧ q", "∧", "write `and` or `&`"),
     ("p ∨ q", "∨", "write `or` or `|`"),
@@ -50,6 +58,8 @@ def test_in_a_formula(text, underlined, way_out):
 
 LINES = [
     ("title 'A'", "'A'", 'texts stand in straight double quotes: "…"'),
+    ('title = "A"', "=", "delete the `=`"),
+    ('title: "A"', ":", "delete the `:`"),
     ("title A", "A", 'put the text in double quotes: "…"'),
     ("law «A»", "«", 'texts stand in straight double quotes: "…"'),
     ("signal p q", "q", "separate the names by `,`"),
@@ -62,6 +72,13 @@ LINES = [
     ("x is a, b", "a", "the values stand behind `is one of`, such as `is one of a, b`"),
     ("x is one of a or b", "or", "separate the names by `,`"),
     ("sgnal p", "sgnal", "did you mean `signal`?"),
+    ("import p", "import", ""),
+    ("use paper, road", ",", "write a `use` line for each vocabulary"),
+    ("use my words", "words", "a name is one word, such as `my_words`"),
+    ('law "A" 2020', "2020", 'the line is written `law "…"` or `law "…" as of 2006-03-28`'),
+    ("hard rule no-u { require p }", "-", NAMES),
+    ('hard rule "A" { require p }', '"A"', NAMES),
+    ("hard rule a { p -> q }", "p", "a formula stands behind `require`"),
     ("colour", "colour", "an enumeration is declared by `colour is one of a, b`"),
     ("hard a { require p }", "a", "write `hard rule a`"),
     ("soft a { require p }", "a", "write `soft rule a`"),

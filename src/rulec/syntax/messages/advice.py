@@ -24,7 +24,7 @@ class Scene:
 
 _OTHER_SPELLINGS = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
-    "iff": ("<=>", "==", "===", "=", "↔", "⇔", "⟺", "≡"),
+    "iff": ("<=>", "===", "↔", "⇔", "⟺", "≡"),
     "and": ("∧", "*", "/"),
     "or": ("∨", "+"),
     "not": ("¬", "~", "-"),
@@ -35,6 +35,7 @@ _OTHER_SPELLINGS = {
 }
 _MEANT = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
 _FORMS = {
+    "law": 'the line is written `law "…"` or `law "…" as of 2006-03-28`',
     "type": "a type is declared by `type NAME` or `type NAME is PARENT`",
     "signal": "a signal is declared by `signal NAME`",
     "quantity": "a quantity is declared by `quantity NAME in UNIT default NUMBER`",
@@ -57,19 +58,38 @@ def _quotes(scene: Scene) -> str:
         return ""
     if found.kind == "quoted" or found.text in ("'", "“", "”", "„", "‘", "’", "«", "»"):
         return 'texts stand in straight double quotes: "…"'
-    if scene.accepted == {"STRING"}:
+    if scene.accepted == {"STRING"} and found.kind != "symbol":
         return 'put the text in double quotes: "…"'
     if scene.before is not None and scene.before.kind == "string" and found.kind == "word":
         return 'a quote inside a text is written \\"'
     return ""
 
 
+def _comment(scene: Scene) -> str:
+    return "a comment begins with `#`" if scene.found and scene.found.text in ("//", "/*") else ""
+
+
 def _misspelt(scene: Scene) -> str:
-    """A word that looks much like one that could stand there."""
-    found = scene.found
+    """A word that looks much like one that could stand there, or in place of the one before."""
+    found, before = scene.found, scene.before
     if found is None or found.kind != "word" or found.text.casefold() in RESERVED:
         return ""
-    return did_you_mean(found.text, {kind.lower() for kind in scene.accepted} & RESERVED)
+    near = did_you_mean(found.text, {kind.lower() for kind in scene.accepted} & RESERVED)
+    if near or before is None or before.text in RESERVED or not wants_operator(scene.accepted):
+        return near
+    return did_you_mean(before.text, UNARY_OPERATORS)
+
+
+def _name(scene: Scene) -> str:
+    found, before = scene.found, scene.before
+    if found is None:
+        return ""
+    hyphen = found.text == "-" and before is not None and before.end == found.start
+    if hyphen or ("NAME" in scene.accepted and found.kind in ("number", "string")):
+        return "names are made of letters, digits and `_`, and begin with a letter"
+    if scene.accepted == {"$END"} and found.kind == "word" and before and before.kind == "word":
+        return f"a name is one word, such as `{before.text}_{found.text}`"
+    return ""
 
 
 def _rule_head(scene: Scene) -> str:
@@ -95,6 +115,8 @@ def _rule_head(scene: Scene) -> str:
 def _declaration(scene: Scene) -> str:
     if scene.kind != "item":
         return ""
+    if scene.first == "use" and scene.found is not None and scene.found.text == ",":
+        return "write a `use` line for each vocabulary"
     if "ONE" in scene.accepted:
         return "the values stand behind `is one of`, such as `is one of a, b`"
     listed = scene.found is not None and (
@@ -132,6 +154,10 @@ def _operators(scene: Scene) -> str:
         return ""
     if before == "never":
         return "write `always not …`"
+    if before == "if" or text in ("if", "then"):
+        return "write `p implies q` for `if p then q`"
+    if text in ("=", "=="):
+        return "formulas are compared by `iff`; a value is an atom itself, such as `crossing`"
     if text in _PAST_WORDS or (before in _PAST_WORDS and operator):
         return "this language speaks of the present and the future, not of the past"
     if text == "[" and before in ("always", "eventually", "next", "G", "F", "X"):
@@ -152,16 +178,18 @@ def _operators(scene: Scene) -> str:
 
 def _punctuation(scene: Scene) -> str:
     text = scene.found.text if scene.found else ""
-    if text in (";", ".", ",", ":") and ("$END" in scene.accepted or scene.accepted == {"STRING"}):
+    if text in (";", ".", ",", ":", "=") and (
+        "$END" in scene.accepted or scene.accepted == {"STRING"}
+    ):
         return f"delete the `{text}`"
-    if text == "=" and scene.accepted:
-        return "the language has no `=`"
     return ""
 
 
 _RULES: tuple[Callable[[Scene], str], ...] = (
     _quotes,
+    _comment,
     _misspelt,
+    _name,
     _rule_head,
     _declaration,
     _state,

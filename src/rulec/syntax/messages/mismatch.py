@@ -45,7 +45,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     if found is not None and _is_word_for_name(scene):
         return _reserved(span, found.text)
     if piece.kind == "item" and at < 2 and first not in ITEM_WORDS:
-        return _unknown_item(source, inside[0])
+        return _unknown_item(source, inside)
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
     begins = at == (first == "require")
     if found is None:
@@ -67,20 +67,24 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
     """A piece that begins with nothing that the language has, inside a rule."""
     found = tokens[piece.first]
+    symbols = any(token.kind == "symbol" for token in tokens[piece.first : piece.last])
+    formula = "a formula stands behind `require`" if symbols else ""
     return Diagnostic(
         "R0104",
         f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected `cite`, `says`, `require`, `accept`, or `reject`",
-        help=did_you_mean(found.text, CLAUSE_WORDS),
+        help=did_you_mean(found.text, CLAUSE_WORDS) or formula,
     )
 
 
-def _unknown_item(source: Source, found: Token) -> Diagnostic:
+def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
+    found, *others = inside
     way_out = ""
     if found.kind == "word":
         way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS)
-        if not way_out and found.text not in RESERVED:
+        named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
+        if not (way_out or named or found.text in RESERVED):
             way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
     return Diagnostic(
         "R0104",
