@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rulec.partition.snap import Snap
+from rulec.partition.snap import Snap, snapped
 from rulec.scenario import Box, Road
 
 
@@ -55,14 +55,10 @@ def coordinates(road: Road) -> tuple[Iterator[float], Iterator[float]]:
 
 def roadway(road: Road, s: Snap, d: Snap) -> Roadway:
     """The road with every coordinate replaced by the one that stands for it."""
-    lanes = tuple(d[bound] for bound in road.lanes)
     return Roadway(
-        Box(s[road.s[0]], s[road.s[1]], lanes[0], lanes[-1]),
-        lanes,
-        tuple(
-            Box(s[gap.s[0]], s[gap.s[1]], lanes[gap.lane - 1], lanes[gap.lane])
-            for gap in road.missing
-        ),
+        snapped(road.outline, s, d),
+        tuple(d[bound] for bound in road.lanes),
+        tuple(snapped(hole, s, d) for hole in road.holes()),
         tuple(
             (s[stretch.s[0]], s[stretch.s[1]])
             for stretch in road.surfaces

@@ -53,14 +53,12 @@ def check_lanes(lanes: Sequence[float], table: Table, findings: Findings) -> boo
 
 def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
     """Is ego on the road?"""
-    outline = Box(*road.s, road.lanes[0], road.lanes[-1])
-    if not outline.covers(ego.s, ego.d):
+    if not road.outline.covers(ego.s, ego.d):
         findings.add(
             "R0605",
             f"ego is off the road, at s = {ego.s:g}, d = {ego.d:g}",
             table,
-            expected=f"s from {road.s[0]:g} to {road.s[1]:g}, "
-            f"d from {road.lanes[0]:g} to {road.lanes[-1]:g}",
+            expected=f"a place within {road.outline}",
             help="move ego, or extend `[road]`",
         )
     elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
@@ -81,8 +79,7 @@ def check_collision(ego: Ego, obstacle: Obstacle, table: Table, findings: Findin
             "R0605",
             f"ego stands inside {table.words}",
             Table("ego", None, "ego"),
-            expected=f"a place outside s {body.s_min:g} to {body.s_max:g}, "
-            f"d {body.d_min:g} to {body.d_max:g} at time 0",
+            expected=f"a place outside {body} at time 0",
             help="move one of the two",
         )
 

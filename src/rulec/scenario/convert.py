@@ -134,15 +134,14 @@ def _goal(raw: object, road: Road | None, findings: Findings) -> Box | None:
     ordered = [check_interval(getattr(table, key), _GOAL, key, findings) for key in ("s", "d")]
     if not all(ordered):
         return None
-    outline = Box(*road.s, road.lanes[0], road.lanes[-1])
-    goal = Box(*(table.s or road.s), *(table.d or (road.lanes[0], road.lanes[-1])))
+    outline = road.outline
+    goal = Box(*(table.s or road.s), *(table.d or (outline.d_min, outline.d_max)))
     if not goal.overlaps(outline):
         findings.add(
             "R0605",
             "the goal is off the road",
             _GOAL,
-            expected=f"s from {road.s[0]:g} to {road.s[1]:g}, "
-            f"d from {road.lanes[0]:g} to {road.lanes[-1]:g}",
+            expected=f"a region that has some area within {outline}",
         )
     return goal
 

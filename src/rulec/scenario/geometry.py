@@ -17,6 +17,9 @@ class Box:
     d_min: float
     d_max: float
 
+    def __str__(self) -> str:
+        return f"s {self.s_min:g} to {self.s_max:g}, d {self.d_min:g} to {self.d_max:g}"
+
     def overlaps(self, other: Box) -> bool:
         """Do the interiors meet, not only the borders?"""
         return (

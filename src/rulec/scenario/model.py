@@ -50,6 +50,11 @@ class Road:
     surfaces: tuple[Stretch, ...] = ()
     missing: tuple[MissingLane, ...] = ()
 
+    @property
+    def outline(self) -> Box:
+        """From end to end, between the outer bounds."""
+        return Box(*self.s, self.lanes[0], self.lanes[-1])
+
     def holes(self) -> tuple[Box, ...]:
         """The pieces between the outer bounds that are not road."""
         return tuple(
