@@ -20,7 +20,7 @@ def names(layer):
     }
 
 
-def follows_by_run_count(graph):
+def margins_by_run_count(graph):
     """The margin of every change, counted over whole rows of layers. None if signatures change."""
     tables = [names(layer) for layer in graph.layers]
     if any(table.keys() != tables[0].keys() for table in tables):
@@ -59,7 +59,7 @@ def changes(graph):
 def test_with_fixed_signatures_a_margin_is_the_longest_run(name, adjacency):
     for step in (1.0, 0.5, 0.25):
         graph = navigation_graph(load_scenario(name), step_s=step, adjacency=adjacency)
-        expected = follows_by_run_count(graph)
+        expected = margins_by_run_count(graph)
         assert expected
         assert changes(graph) == expected
 
@@ -85,7 +85,7 @@ def test_margins_of_random_scenarios_without_a_lane_change(scenario):
     except RulecError as error:
         assume([d.code for d in error.diagnostics] != ["R0607"])
         raise
-    expected = follows_by_run_count(graph)
+    expected = margins_by_run_count(graph)
     assume(expected is not None)
     assert changes(graph) == expected
 

@@ -21,6 +21,11 @@ class Place:
     end_column: int | None = None
     excerpt: str = ""
 
+    @property
+    def start(self) -> tuple[int, int]:
+        """Line and column, for putting the places of a file in order; what is not known is 0."""
+        return self.line or 0, self.column or 0
+
 
 @dataclass(frozen=True, slots=True)
 class Source:

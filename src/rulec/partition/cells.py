@@ -19,7 +19,7 @@ from rulec.scenario import Box
 
 _CARRIAGEWAY, _CROSSING = b"w", b"c"
 
-# a run before it knows its cell: first and last cut, label
+# A run before it knows its cell: first and last cut, label
 _Piece = tuple[int, int, bytes]
 
 

@@ -60,7 +60,7 @@ def scene(scenario: Scenario, timing: Timing, partition: PartitionName) -> Scene
         return tuple(region for region in found if region is not None)
 
     layer_regions = tuple(regions(interval, interval) for interval in layers)
-    # at an instant a pedestrian faces where it goes next
+    # At an instant a pedestrian faces where it goes next
     instants = tuple(
         regions(moment, upcoming) for moment, upcoming in zip(moments, layers[1:], strict=True)
     )

@@ -98,7 +98,7 @@ def _number_width(one: Diagnostic) -> int:
 def _lines(marks: Sequence[Mark], severity: str) -> Iterator[tuple[str, str, str]]:
     """What stands left of the frame, the text right of it, and its style."""
     before: int | None = None
-    in_order = sorted(marks, key=_line_and_column)
+    in_order = sorted(marks, key=lambda mark: mark.place.start)
     for number, group in groupby(in_order, key=lambda mark: mark.place.line):
         assert number is not None, "places without a line are not shown"
         if before is not None and number > before + 1:
@@ -108,7 +108,3 @@ def _lines(marks: Sequence[Mark], severity: str) -> Iterator[tuple[str, str, str
         yield str(number), texts[0][0], "plain" if severity else ""
         for text, sign in texts[1:]:
             yield "", text, severity if sign == "^" else "frame"
-
-
-def _line_and_column(mark: Mark) -> tuple[int, int]:
-    return mark.place.line or 0, mark.place.column or 0

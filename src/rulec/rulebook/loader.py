@@ -115,11 +115,11 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
 def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
     """The rulebook's own first, each file's from top to bottom."""
 
-    def rank(one: Diagnostic) -> tuple[bool, str, int, int]:
+    def rank(one: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
         place = one.place
         if place is None:
-            return True, "", 0, 0
-        return place.file != main, place.file, place.line or 0, place.column or 0
+            return True, "", (0, 0)
+        return place.file != main, place.file, place.start
 
     return tuple(sorted(mistakes, key=rank))
 

@@ -13,7 +13,7 @@ from rulec.scenario.motion import swept
 from rulec.scenario.toml_places import Table
 
 NARROWEST_M = 0.01
-# what a state calls by these names comes from the partition
+# What a state calls by these names comes from the partition
 RESERVED = ("position", "surface", "station", "lateral")
 
 

@@ -97,7 +97,7 @@ def _step_within(motion: Trajectory, start: float, end: float) -> tuple[float, f
 
 
 def _right_angle(ahead: float, left: float) -> Facing:
-    # cos(90°) is not quite 0, and 45° should not fall to either side by rounding
+    # The cosine of 90° is not quite 0, and 45° should not fall to either side by rounding
     angle = round(degrees(atan2(left, ahead)), 6)
     if 45 <= angle <= 135:
         return "left"

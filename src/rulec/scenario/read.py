@@ -113,4 +113,4 @@ def _syntax_error(message: str, source: Source) -> tuple[str, Place]:
         line, column = source.position(len(source.text))
     else:
         return words, Place(source.name)
-    return words, Place(source.name, line, column, line, column + 1, source.line(line)[:400])
+    return words, Place(source.name, line, column, line, column + 1, source.line(line))

@@ -9,7 +9,7 @@ from math import isfinite
 from rulec.diagnostics import Diagnostic, RulecError
 
 MAX_LAYERS = 10_000
-# a step typed as 0.3333333333 is meant as a third; one typed as 0.3333 is not
+# A step typed as 0.3333333333 is meant as a third; one typed as 0.3333 is not
 _ROUNDING = Fraction(1, 10**9)
 
 

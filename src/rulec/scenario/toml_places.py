@@ -14,7 +14,6 @@ from rulec.diagnostics import Place, Source
 
 _HEADING = re.compile(r"\s*(\[{1,2})\s*([A-Za-z_][\w.-]*)\s*\]{1,2}\s*(?:#.*)?$")
 _KEY = re.compile(r"""\s*(["']?)([^"'=\s]+)\1\s*=""")
-_LONGEST_LINE = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +48,6 @@ class TomlText:
         excerpt = self.source.line(line)
         start = len(excerpt) - len(excerpt.lstrip())
         end = len(excerpt.rstrip())
-        if len(excerpt) > _LONGEST_LINE:
-            return Place(self.source.name, line)
         return Place(self.source.name, line, start + 1, line, end + 1, excerpt)
 
     @cached_property

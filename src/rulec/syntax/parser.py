@@ -23,6 +23,9 @@ MAX_PIECE = 10_000
 
 _BEHIND_NAME = ("is", "in", "default", "(")
 
+_NOTHING = tree.File("rulebook", None, complete=False)
+"""The tree of a file that cannot be read at all."""
+
 _Built = TypeVar("_Built")
 
 
@@ -35,19 +38,19 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     try:
         tokens = scan(checked(source))
     except RulecError as error:
-        return tree.File("rulebook", None, complete=False), error.diagnostics
+        return _NOTHING, error.diagnostics
     if not tokens:
         empty = Diagnostic("R0103", "the file is empty", Span(source, 0, 0).place, *HOW_TO_BEGIN)
-        return tree.File("rulebook", None, complete=False), (empty,)
+        return _NOTHING, (empty,)
     reader = _Reader(source, tokens)
     splitter = FileSplitter(source, tokens)
     parts = [
         reader.rule(part) if isinstance(part, RulePieces) else reader.item(part)
         for part in splitter.split()
     ]
-    file, order_mistakes = assemble_file(source, parts)
     if _is_something_else(parts):
-        return tree.File("rulebook", None, complete=False), (_something_else(source, tokens[0]),)
+        return _NOTHING, (_something_else(source, tokens[0]),)
+    file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
 
@@ -82,8 +85,7 @@ def _something_else(source: Source, first: Token) -> Diagnostic:
 
 
 def _position(diagnostic: Diagnostic) -> tuple[int, int]:
-    place = diagnostic.place
-    return (0, 0) if place is None else (place.line or 0, place.column or 0)
+    return (0, 0) if diagnostic.place is None else diagnostic.place.start
 
 
 @dataclass(frozen=True, slots=True)
