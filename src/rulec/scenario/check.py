@@ -29,7 +29,7 @@ def check_interval(
         table,
         key,
         expected=f"a second number that is larger than the first, by {NARROWEST_M} m or more",
-        help=f"write `{key} = [{value[1]:g}, {value[0]:g}]`" if value[1] < value[0] else "",
+        way_out=f"write `{key} = [{value[1]:g}, {value[0]:g}]`" if value[1] < value[0] else "",
     )
     return False
 
@@ -45,7 +45,7 @@ def check_lanes(lanes: Sequence[float], table: Table, findings: Findings) -> boo
                 "lanes",
                 expected="bounds from right to left, each larger than the one before by "
                 f"{NARROWEST_M} m or more",
-                help="d is positive to the left, so sort the numbers in ascending order",
+                way_out="d is positive to the left, so sort the numbers in ascending order",
             )
             return False
     return True
@@ -59,7 +59,7 @@ def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
             f"ego is off the road, at s = {ego.s:g}, d = {ego.d:g}",
             table,
             expected=f"a place within {road.outline}",
-            help="move ego, or extend `[road]`",
+            way_out="move ego, or extend `[road]`",
         )
     elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
         findings.add(
@@ -67,7 +67,7 @@ def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
             f"ego is where the road has no lane, at s = {ego.s:g}, d = {ego.d:g}",
             table,
             expected="a place outside every `[[road.missing]]`",
-            help="move ego, or shorten that `[[road.missing]]`",
+            way_out="move ego, or shorten that `[[road.missing]]`",
         )
 
 
@@ -80,7 +80,7 @@ def check_collision(ego: Ego, obstacle: Obstacle, table: Table, findings: Findin
             f"ego stands inside {table.words}",
             Table("ego", None, "ego"),
             expected=f"a place outside {body} at time 0",
-            help="move one of the two",
+            way_out="move one of the two",
         )
 
 
@@ -96,7 +96,7 @@ def check_signals(
                 f"{table.words} sets {quoted(name)}, which the partition supplies",
                 table,
                 name,
-                help="leave it out, or call the signal something else",
+                way_out="leave it out, or call the signal something else",
             )
         elif isinstance(value, (bool, str)):
             signals[name] = value

@@ -30,12 +30,12 @@ class Findings:
         key: str | None = None,
         *,
         expected: str = "",
-        help: str = "",  # noqa: A002 - the name that it has in a Diagnostic
+        way_out: str = "",
     ) -> None:
         """Note one mistake in a table, or in one of its fields; ``expected`` is a thing."""
         place = self.text.place(table, key)
         expected = expected and f"expected {expected}"
-        self.errors.append(Diagnostic(code, message, place, expected=expected, help=help))
+        self.errors.append(Diagnostic(code, message, place, expected=expected, help=way_out))
 
 
 def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> T | None:
@@ -69,7 +69,7 @@ def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> 
                 f"{table.words} has no `{key}`",
                 table,
                 expected=words_of(info.type),
-                help=table.remedy(key),
+                way_out=table.remedy(key),
             )
     return kind(**values) if len(findings.errors) == before else None
 
@@ -120,7 +120,7 @@ def _unknown_field(key: str, known: list[str], table: Table, findings: Findings)
         table,
         key,
         expected=f"one of {', '.join(map(quoted, known))}",
-        help=did_you_mean(key, known) or "leave it out",
+        way_out=did_you_mean(key, known) or "leave it out",
     )
     return nearest_name(key, known)
 

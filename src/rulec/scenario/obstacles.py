@@ -76,7 +76,7 @@ def _check_direction(obstacle: Obstacle, place: Table, findings: Findings) -> No
             f"{place.words} stands still and has no `walking_direction`",
             place,
             expected="a pedestrian's direction, because its regions depend on it",
-            help="add a line `walking_direction = 90` for one who faces left, -90 for right",
+            way_out="add a line `walking_direction = 90` for one who faces left, -90 for right",
         )
 
 
@@ -93,7 +93,7 @@ def _motion(
                     f"{place.words} has no `{key}`",
                     place,
                     expected="its centre at time 0 in metres: s along the road, d across it",
-                    help=f"add a line `{key} = …`, or give a `trajectory` instead",
+                    way_out=f"add a line `{key} = …`, or give a `trajectory` instead",
                 )
         return None
     sideways, until = table.lateral_speed, table.until_d
@@ -104,7 +104,7 @@ def _motion(
             place,
             "until_d",
             expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {table.d:g}",
-            help="change the sign of `lateral_speed`, or leave `until_d` out",
+            way_out="change the sign of `lateral_speed`, or leave `until_d` out",
         )
         return None
     return ConstantAcceleration(table.s, table.d, table.speed, table.acceleration, sideways, until)
@@ -124,7 +124,7 @@ def _trajectory(
             place,
             both[0],
             expected="either a trajectory, or a start and a prediction",
-            help="leave out one of the two",
+            way_out="leave out one of the two",
         )
         return None
     for before, after in pairwise(points):

@@ -45,11 +45,7 @@ _PAST_WORDS = frozenset(("once", "historically", "since", "previously", "O", "H"
 
 def advise(scene: Scene) -> str:
     """The way out, empty when there is none to suggest."""
-    for rule in _RULES:
-        found = rule(scene)
-        if found:
-            return found
-    return ""
+    return next(filter(None, (advice(scene) for advice in _IN_ORDER)), "")
 
 
 def _quotes(scene: Scene) -> str:
@@ -185,7 +181,7 @@ def _punctuation(scene: Scene) -> str:
     return ""
 
 
-_RULES: tuple[Callable[[Scene], str], ...] = (
+_IN_ORDER: tuple[Callable[[Scene], str], ...] = (
     _quotes,
     _comment,
     _misspelt,
