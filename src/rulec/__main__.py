@@ -2,7 +2,7 @@
 
 import sys
 
-from rulec.cli.main import main
+from rulec.cli.program import run
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

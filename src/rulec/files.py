@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import EISDIR
 from pathlib import Path
 from typing import IO
 
@@ -21,6 +22,8 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
         RulecError: R0702 if the file cannot be written.
     """
     try:
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, "it is a folder")
         if path.exists() and not path.is_file():
             # A pipe or a device such as /dev/null: there is nothing to replace.
             with path.open("wb") as stream:
@@ -34,7 +37,7 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
 
 @contextmanager
 def _beside(path: Path) -> Iterator[IO[bytes]]:
-    path = path.resolve()
+    path = Path(os.path.realpath(path))  # the file behind a link, not the link, is replaced
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:

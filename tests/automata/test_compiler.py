@@ -10,7 +10,7 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.model import Rule, Rulebook
-from rulec.vocabulary import Signal, Vocabulary
+from rulec.vocabulary import Enumeration, Signal, Vocabulary
 
 
 def signals(n):
@@ -87,6 +87,19 @@ def test_sixteen_signals_still_compile():
     ).rules
     assert compiled.machine.letters.count(compiled.machine.letters[0]) == 1
     assert len(compiled.machine.letters) == 2**16
+
+
+@pytest.mark.parametrize("n", [46, 150])
+def test_an_enumeration_of_many_values(n):
+    values = tuple(f"v{i}" for i in range(n))
+    vocabulary = Vocabulary("wide", {}, {"x": Enumeration("x", (), values)})
+    never_last = always(chain(BinaryOperator.OR, [Atom("x", (), v) for v in values[:-1]]))
+    (compiled,) = compile_rulebook(
+        Rulebook("test", vocabulary, (Rule("Wide", "hard", (), never_last),))
+    ).rules
+    machine = compiled.machine
+    assert len(machine.letters) == n
+    assert [machine.following[0][c] == machine.dead for c in machine.letters].index(True) == n - 1
 
 
 def test_a_rulebook_without_rules_compiles():

@@ -2,10 +2,8 @@
 
 import os
 import pty
-import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -58,37 +56,6 @@ def test_a_bug_is_status_70_with_a_line_to_report(monkeypatch, capsys):
     assert "bug in rulec" in err
     assert "RULEC_TRACEBACK=1" in err
     assert "Traceback" not in err
-
-
-def test_a_reader_that_has_seen_enough_is_no_error():
-    writer = subprocess.Popen(
-        [*RULEC, "traces", "s2", "--step", "0.5", "-o", "-"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    assert writer.stdout.readline().startswith(b'{"id":"s2-1"')
-    writer.stdout.close()
-    assert writer.stderr.read() == b""
-    writer.stderr.close()
-    writer.wait()
-
-
-def test_ctrl_c_leaves_nothing_half_written(tmp_path):
-    file = tmp_path / "traces.jsonl"
-    writer = subprocess.Popen(
-        [*RULEC, "traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", str(file)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    while not any(part.stat().st_size for part in tmp_path.iterdir()):
-        assert writer.poll() is None
-        time.sleep(0.01)
-    writer.send_signal(signal.SIGINT)
-    out, err = writer.communicate()
-    assert writer.returncode == 130
-    assert (out, err.strip()) == ("", "rulec: interrupted")
-    assert list(tmp_path.iterdir()) == []
 
 
 def on_terminal(arguments, environment):

@@ -85,7 +85,19 @@ def test_the_rulebook_chooses_the_partition(tmp_path, capsys):
 def test_a_partition_that_does_not_supply_what_rules_read(capsys):
     status, _, err = answer(capsys, "s2", "-r", "esterle2019", "--partition", "fine")
     assert status == 2
-    assert "position" in err
+    assert "reads `position`, which the partition `fine` does not supply" in err
+    assert "use the partition `paper`" in err
+
+
+def test_a_scenario_that_does_not_fit_the_vocabulary(tmp_path, capsys):
+    source = tmp_path / "cats.rules"
+    source.write_text(
+        "rulebook cats\ntype cat\nsignal purrs(c: cat)\nhard rule A { require true }\n"
+    )
+    status, _, err = answer(capsys, "s2", "--rulebook", str(source))
+    assert status == 2
+    assert "object `o1` is of type `vehicle`" in err
+    assert "--> s2" in err
 
 
 def test_relations_of_two_partitions(tmp_path, capsys):

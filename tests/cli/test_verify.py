@@ -69,6 +69,30 @@ def test_a_bad_trace_never_hides_the_good_ones(verify):
     assert "0.jsonl:3" in err
 
 
+def test_one_mistake_in_every_trace_is_not_said_every_time(verify):
+    status, out, err = verify([line(f"t{n}", "x") for n in range(25)])
+    assert status == 2
+    assert err.count("error[R0503]") == 10
+    assert "… and 15 more of this kind [R0503]" in err
+    assert "25 traces: 0 satisfied, 0 violated, 25 not judged" in out
+
+
+def test_names_cannot_drive_the_terminal(verify):
+    _, out, _ = verify([line("t\x1b[31m\x00", "brrf")])
+    assert "t\\x1b[31m\\x00: violated" in out
+
+
+def test_many_violations_of_one_trace(verify):
+    objects = {f"v{n}": "vehicle" for n in range(30)}
+    states = [{"position": dict.fromkeys(objects, p)} for p in "brf"]
+    trace = json.dumps({"id": "t", "objects": objects, "states": states})
+    _, out, _ = verify([trace])
+    assert out.count("hard rule R1") == 20
+    assert "and 10 more" in out
+    _, out, _ = verify([trace], options=["--json"])
+    assert len(json.loads(out)["violations"]) == 30
+
+
 def test_a_missing_file_never_hides_the_others(verify, tmp_path):
     status, out, err = verify([line("t4", "bblf")], options=[str(tmp_path / "missing.jsonl")])
     assert status == 2

@@ -5,6 +5,7 @@ import spot
 from hypothesis import example, given
 from words import VOCABULARY, formulas, letters, words
 
+from rulec.automata.compiled import CompiledRule
 from rulec.automata.letters import count_letters, knowledge, reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
@@ -19,7 +20,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.printing import in_spot
 from rulec.logic.semantics import holds
-from rulec.runtime.reading import letter
+from rulec.runtime.letters import Columns
 from rulec.runtime.verify import run
 
 
@@ -29,8 +30,9 @@ def machine_of(formula):
 
 
 def classes(machine, word):
-    binding = {"x": "car1"}
-    return [letter(machine, binding, state, VOCABULARY, "", "") for state in word]
+    rule = CompiledRule("rule", "hard", (), "", "", "", machine, "")
+    columns = Columns(word, VOCABULARY, "state {}".format)
+    return columns.word(rule, {"x": "car1"}, 0, len(word) - 1)
 
 
 def spot_membership(automaton, formula, word):

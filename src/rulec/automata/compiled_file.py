@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import re
+from contextlib import ExitStack
 from pathlib import Path
 
 import msgspec
@@ -60,6 +62,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
         RulecError: R0404 if it is not a compiled rulebook, of a version that this rulec does not
             read, or damaged.
     """
+    data = data.removeprefix(codecs.BOM_UTF8)
     try:
         header = msgspec.json.decode(data, type=Header)
     except msgspec.MsgspecError as problem:
@@ -99,10 +102,10 @@ def read_compiled(path: Path) -> CompiledRulebook:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` into a folder, made if need be.
 
-    Each file appears whole or not at all; the compiled rulebook comes last.
+    All of them are written before the first appears, so that they fit together.
 
     Returns:
-        The files, in the order in which they were written.
+        The files, the compiled rulebook last.
 
     Raises:
         RulecError: R0702.
@@ -110,7 +113,8 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     make_folder(folder)
     texts = {folder / f"{rule.name}.hoa": rule.hoa for rule in rulebook.rules}
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
-    for path, text in texts.items():
-        with written_whole(path) as stream:
+    with ExitStack() as files:
+        for path, text in texts.items():
+            stream = files.enter_context(written_whole(path))
             stream.write(text.encode())
     return list(texts)

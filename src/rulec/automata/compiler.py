@@ -11,7 +11,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.letters import reads_of
@@ -24,11 +23,13 @@ from rulec.version import __version__
 
 CPU_LIMIT_S = 5
 
-_PACKAGE_ROOT = Path(__file__).resolve().parents[2]
-# The working directory's files must not be importable, so no `-m`.
-_WORKER = (
-    "import sys; sys.path[0] = sys.argv[1]; from rulec.automata.spot_worker import main; main()"
-)
+# It finds what this process finds, and nothing in the working directory.
+_WORKER = """
+import sys
+sys.path[:] = sys.argv[1:]
+from rulec.automata.spot_worker import main
+main()
+"""
 
 
 def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> CompiledRulebook:
@@ -79,7 +80,7 @@ def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> C
 @contextmanager
 def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     process = subprocess.Popen(
-        [sys.executable, "-c", _WORKER, str(_PACKAGE_ROOT)],
+        [sys.executable, "-I", "-c", _WORKER, *filter(None, sys.path)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         # What a dying C++ library has to say is said better by the diagnostic.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 from math import prod
 
@@ -68,18 +69,19 @@ def _repeat(pattern: int, period: int, total: int) -> int:
 
 def knowledge(reads: tuple[Read, ...]) -> Formula:
     """What the vocabulary knows of these reads: at any instant one value, no more and no less."""
-    facts: Formula = Constant(True)
+    facts: list[Formula] = []
     for read in reads:
-        atoms = [Atom(read.name, read.variables, value) for value in read.values]
-        for one, other in combinations(atoms, 2):
-            facts = _and(facts, Unary(NOT, Binary(AND, one, other)))
+        atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
+        facts += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
         if atoms and not read.others:
-            some: Formula = atoms[0]
-            for atom in atoms[1:]:
-                some = Binary(OR, some, atom)
-            facts = _and(facts, some)
-    return facts
+            facts.append(_joined(OR, atoms))
+    return _joined(AND, facts) if facts else Constant(True)
 
 
-def _and(left: Formula, right: Formula) -> Formula:
-    return right if left == Constant(True) else Binary(AND, left, right)
+def _joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
+    """The formulas under one operator, as a tree no deeper than it has to be."""
+    if len(formulas) == 1:
+        return formulas[0]
+    half = len(formulas) // 2
+    left, right = _joined(operator, formulas[:half]), _joined(operator, formulas[half:])
+    return Binary(operator, left, right)

@@ -51,15 +51,6 @@ class Machine:
     dead: int | None
     safe: int | None
 
-    @property
-    def strides(self) -> tuple[int, ...]:
-        """The weight of each read's digit in a letter."""
-        weights, weight = [], 1
-        for read in self.reads:
-            weights.append(weight)
-            weight *= read.size
-        return tuple(weights)
-
 
 def trap(
     following: Sequence[Sequence[int]], accepting: Sequence[Sequence[bool]], *, verdict: bool

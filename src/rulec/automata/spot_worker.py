@@ -80,7 +80,7 @@ def main() -> None:
         _limit(resource.RLIMIT_CPU, int(time.process_time()) + 1 + job.cpu_s)
         try:
             answer = _answer(job)
-        except MemoryError:
+        except (MemoryError, RecursionError):
             answer = Failed("memory")
         except Exception:
             answer = Failed("bug", traceback.format_exc())

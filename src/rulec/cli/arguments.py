@@ -37,7 +37,8 @@ def graph_options(function: Decorated) -> Decorated:
         click.option(
             "--partition",
             type=click.Choice(["paper", "fine"]),
-            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads]",
+            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+            "paper without one]",
         ),
         click.option(
             "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."

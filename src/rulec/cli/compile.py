@@ -16,10 +16,9 @@ from rulec.report.console import print_diagnostics, print_result
     "--output",
     required=True,
     metavar="DIR",
-    type=click.Path(file_okay=False, path_type=Path),
     help="The folder for the files, made if need be.",
 )
-def command(rulebook: str, output: Path) -> None:
+def command(rulebook: str, output: str) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
@@ -29,5 +28,7 @@ def command(rulebook: str, output: Path) -> None:
     from rulec.automata.compiled_file import write_compiled
     from rulec.workflow import compile_rulebook
 
-    for path in write_compiled(compile_rulebook(rulebook, warn=print_diagnostics), output):
+    if not output:
+        raise click.UsageError("--output names no folder. For this one, write `-o .`")
+    for path in write_compiled(compile_rulebook(rulebook, warn=print_diagnostics), Path(output)):
         print_result(f"wrote {path}")

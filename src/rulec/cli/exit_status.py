@@ -13,8 +13,10 @@ class ExitStatus(IntEnum):
     VIOLATED = 1
     """A hard rule is violated, or no maneuver satisfies all of them."""
     NOT_ANSWERED = 2
-    """The question could not be answered: wrong usage or bad input."""
+    """The question could not be answered: wrong usage, bad input, output that cannot be written."""
     BUG = 70
     """A mistake in rulec itself."""
     INTERRUPTED = 130
     """Ctrl-C."""
+    READER_GONE = 141
+    """Who read the output, such as ``head``, has left: no verdict either way."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 
 import click
@@ -69,7 +70,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
         sys.stdout.flush()
     except click.ClickException as problem:
-        problem.show()
+        _say(
+            problem.format_message(), problem.ctx if isinstance(problem, click.UsageError) else None
+        )
         return ExitStatus.NOT_ANSWERED
     except RulecError as error:
         from rulec.report.console import print_diagnostics
@@ -77,20 +80,38 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print_diagnostics(error.diagnostics)
         return ExitStatus.NOT_ANSWERED
     except (click.Abort, KeyboardInterrupt):
-        click.echo("\nrulec: interrupted", err=True)
+        _say("interrupted")
         return ExitStatus.INTERRUPTED
-    except BrokenPipeError:
-        # The reader, such as `head`, has seen enough. Python must not fail on the rest at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ExitStatus.OK
+    except SystemExit as leaving:
+        # 1 is click's word for a reader that has left; signals bring their own status.
+        return ExitStatus.READER_GONE if leaving.code == 1 else int(leaving.code or 0)
+    except OSError as problem:
+        return _unwritable(problem)
     except Exception as problem:
         if os.environ.get("RULEC_TRACEBACK"):
             raise
-        click.echo(
-            f"rulec: this is a bug in rulec {__version__}: {type(problem).__name__}: {problem}\n"
+        _say(
+            f"this is a bug in rulec {__version__}: {type(problem).__name__}: {problem}\n"
             "Please report it, with the input and what this prints: "
-            f"RULEC_TRACEBACK=1 {' '.join(sys.argv)}",
-            err=True,
+            f"RULEC_TRACEBACK=1 {' '.join(sys.argv)}"
         )
         return ExitStatus.BUG
     return outcome if isinstance(outcome, int) else ExitStatus.OK
+
+
+def _unwritable(problem: OSError) -> int:
+    """Files have their own diagnostics; so it is standard output that could not be written."""
+    # What is still buffered must not fail again when Python exits.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if isinstance(problem, BrokenPipeError):
+        return ExitStatus.READER_GONE
+    _say(f"cannot write to standard output: {(problem.strerror or str(problem)).lower()}")
+    return ExitStatus.NOT_ANSWERED
+
+
+def _say(text: str, usage: click.Context | None = None) -> None:
+    """A message on standard error. If that cannot be written, the status has to do."""
+    with suppress(OSError):
+        if usage is not None:
+            click.echo(f"{usage.get_usage()}\nTry '{usage.command_path} --help'.\n", err=True)
+        click.echo(f"rulec: {text}", err=True)

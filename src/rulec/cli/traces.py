@@ -40,6 +40,7 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     """
     from rulec.files import written_whole
     from rulec.report.console import print_result, progress
+    from rulec.report.maneuvers import shown_count
     from rulec.runtime.product import count_paths
     from rulec.trace.json_lines import write_traces
     from rulec.trace.paths import all_traces
@@ -50,7 +51,7 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(
-            f"There are {total:,} traces; that would fill a disk. "
+            f"There are {shown_count(total)} traces; that would fill a disk. "
             "Name how many to write with --limit N, or count them with `rulec maneuvers`."
         )
     wanted = total if limit is None else min(limit, total)
@@ -61,7 +62,7 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
             return
         with written_whole(output) as stream:
             write_traces(found, stream)
-    print_result(f"wrote {wanted:,} of {total:,} traces to {output}")
+    print_result(f"wrote {wanted:,} of {shown_count(total)} traces to {output}")
 
 
 def _told(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,12 +32,13 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
     from rulec.report import verdicts
-    from rulec.report.console import print_diagnostics, print_result
+    from rulec.report.console import Complaints, print_diagnostics, print_result
     from rulec.runtime.verdict import Verdict
     from rulec.workflow import compile_rulebook
 
     rules = compile_rulebook(rulebook, warn=print_diagnostics)
     satisfied = violated = not_judged = 0
+    complaints = Complaints()
     for answer in _answers(files, rules):
         if isinstance(answer, Verdict):
             satisfied += answer.satisfied
@@ -47,9 +49,10 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
                 print_result(verdicts.as_text(answer, rules))
         else:
             not_judged += 1
-            print_diagnostics(answer.error.diagnostics)
+            complaints.add(answer.error)
             if json_output:
                 print_result(verdicts.not_judged_as_json(answer))
+    complaints.close()
     if not json_output:
         print_result(verdicts.summary(satisfied, violated, not_judged))
     if not_judged:
@@ -68,7 +71,9 @@ def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Verdic
             continue
         try:
             with opened(Path(file)) as stream:
-                yield from _judged(stream, file, os.fstat(stream.fileno()).st_size, rules)
+                about = os.fstat(stream.fileno())
+                size = about.st_size if stat.S_ISREG(about.st_mode) else None
+                yield from _judged(stream, file, size, rules)
         except RulecError as error:
             yield NotJudged(None, error)
 

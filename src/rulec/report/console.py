@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
 import click
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.diagnostics import render_diagnostics
 
 if TYPE_CHECKING:
@@ -30,15 +31,42 @@ def print_result(text: str) -> None:
         click.echo(text, color=wants_color(sys.stdout))
 
 
-def print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
-    """Errors and warnings, on standard error; nothing if there are none."""
+def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
+    """Errors and warnings, on standard error, with their number; nothing if there are none."""
     if not diagnostics:
         return
-    text = render_diagnostics(diagnostics, color=wants_color(sys.stderr)).rstrip("\n")
-    if _bar is not None:
-        _print_above(text)
-    else:
-        click.echo(text, err=True, color=True)
+    text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
+    _print_aside(text.rstrip("\n"))
+
+
+class Complaints:
+    """Errors about one input after the other: of each kind the first are shown, then counted."""
+
+    def __init__(self, most: int = 10) -> None:
+        self._most = most
+        self._seen: Counter[str] = Counter()
+
+    def add(self, error: RulecError) -> None:
+        """Show an error, or count it if there have been many of its kind."""
+        for one in error.diagnostics:
+            self._seen[one.code] += 1
+            if self._seen[one.code] <= self._most:
+                print_diagnostics([one], summary=False)
+
+    def close(self) -> None:
+        """Say how many have not been shown."""
+        for code, count in self._seen.items():
+            if count > self._most:
+                _print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
+
+
+def _print_aside(text: str) -> None:
+    # Where standard error cannot be written, the exit status has to do.
+    with suppress(OSError):
+        if _bar is not None:
+            _print_above(text)
+        else:
+            click.echo(text, err=True, color=True)
 
 
 _bar: Progress | None = None

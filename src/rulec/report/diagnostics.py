@@ -13,7 +13,9 @@ _BOLD, _RESET = "\x1b[1m", "\x1b[0m"
 _COLORS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "frame": "\x1b[1;34m"}
 
 
-def render_diagnostics(diagnostics: Iterable[Diagnostic], color: bool = False) -> str:
+def render_diagnostics(
+    diagnostics: Iterable[Diagnostic], color: bool = False, summary: bool = True
+) -> str:
     """All diagnostics and a line that counts them; empty text for none.
 
     Control characters in messages and in the shown lines are escaped, so that a hostile file cannot
@@ -24,7 +26,7 @@ def render_diagnostics(diagnostics: Iterable[Diagnostic], color: bool = False) -
         return ""
     paint = _Paint(color)
     blocks = ["\n".join(_block(one, paint)) for one in every]
-    return "\n\n".join([*blocks, _summary(every)]) + "\n"
+    return "\n\n".join([*blocks, _summary(every)] if summary else blocks) + "\n"
 
 
 class _Paint:

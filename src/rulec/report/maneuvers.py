@@ -16,6 +16,8 @@ from rulec.workflow import Maneuvers
 MOST_NAMED = 6
 """So many objects' relations fit on a line of text; JSON has them all."""
 
+MOST_DIGITS = 30
+
 
 def as_json(
     found: Maneuvers, listed: Sequence[Maneuver] | None, rules: CompiledRulebook, seconds: float
@@ -72,26 +74,34 @@ def as_text(
     """The counts in four lines, and a block for every maneuver that was asked for."""
     graph = found.graph
     names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
-    by = f"{rules.name} ({names})" if len(names) <= 60 else rules.name
+    by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
     horizon = f"{_horizon_s(graph):g} s in steps of {graph.step_s:g} s"
     how = f"partition {graph.partition}, adjacency {graph.adjacency}"
     lines = [
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
-        f"maneuvers   {found.traces:,}",
-        f"satisfying  {click.style(f'{found.satisfying:,}', bold=True)} by {by}",
+        f"maneuvers   {shown_count(found.traces)}",
+        f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
         f"computed in {seconds:.3f} s",
     ]
     if listed:
-        for number, maneuver in enumerate(listed, 1):
-            lines += ["", *_block(graph, number, maneuver)]
+        for rank, maneuver in enumerate(listed, 1):
+            lines += ["", *_block(graph, rank, maneuver)]
     return "\n".join(lines)
 
 
-def _block(graph: NavigationGraph, number: int, maneuver: Maneuver) -> list[str]:
+def shown_count(count: int) -> str:
+    """A count for people: exact as long as it can be read, then its size; JSON has every digit."""
+    digits = str(count)
+    if len(digits) <= MOST_DIGITS:
+        return f"{count:,}"
+    return f"about {digits[0]}.{digits[1:3]}e{len(digits) - 1}"
+
+
+def _block(graph: NavigationGraph, rank: int, maneuver: Maneuver) -> list[str]:
     margin_s = maneuver.margin_s
     margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
-    lines = [f"{number}. cost {maneuver.cost:.4g} 1/s, {margin}"]
+    lines = [f"{rank}. cost {maneuver.cost:.4g} 1/s, {margin}"]
     rows = [
         (
             f"{layer.start_s:g} s",

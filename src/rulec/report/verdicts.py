@@ -9,7 +9,11 @@ from typing import Any
 import click
 
 from rulec.automata.compiled import CompiledRulebook
+from rulec.report.excerpt import visible
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
+
+MOST_VIOLATIONS = 20
+"""So many are shown for a trace; JSON has them all."""
 
 
 def as_json(verdict: Verdict) -> str:
@@ -55,8 +59,11 @@ def as_text(verdict: Verdict, rulebook: CompiledRulebook) -> str:
         else click.style("violated", fg="red")
     )
     cites = {rule.name: rule.cite for rule in rulebook.rules}
-    lines = [f"{verdict.trace}: {word}"]
-    lines += [f"  {_violation(violation, cites)}" for violation in verdict.violations]
+    lines = [f"{visible(verdict.trace)}: {word}"]
+    shown = verdict.violations[:MOST_VIOLATIONS]
+    lines += [f"  {visible(_violation(violation, cites))}" for violation in shown]
+    if len(verdict.violations) > len(shown):
+        lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join(lines)
 
 

@@ -125,7 +125,9 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
 
 
 def _record(name: str, data: bytes) -> SourceFile:
-    return SourceFile(Path(name).name, sha256(data).hexdigest())
+    # A file's name may be no text at all; what goes into a compiled rulebook has to be.
+    text = Path(name).name.encode("utf-8", "backslashreplace").decode()
+    return SourceFile(text, sha256(data).hexdigest())
 
 
 class _Vocabularies:

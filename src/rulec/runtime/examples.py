@@ -9,7 +9,7 @@ from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Example, Rule, Rulebook
-from rulec.runtime.reading import letter
+from rulec.runtime.letters import Columns
 from rulec.runtime.verify import run
 from rulec.trace import Trace
 
@@ -47,12 +47,8 @@ def failing_examples(rulebook: Rulebook, compiled: CompiledRulebook) -> Iterator
 def _accepts(rule: CompiledRule, rulebook: CompiledRulebook, trace: Trace) -> bool:
     """The rule's verdict for the binding that gives every variable its own name."""
     own = {variable.name: variable.name for variable in rule.variables}
-    vocabulary = rulebook.vocabulary
-    symbols = [
-        letter(rule.machine, own, state, vocabulary, f"state {number}", rule.name)
-        for number, state in enumerate(trace.states)
-    ]
-    return run(rule.machine, symbols)[0]
+    columns = Columns(trace.states, rulebook.vocabulary, "state {}".format)
+    return run(rule.machine, columns.word(rule, own, 0, len(trace.states) - 1))[0]
 
 
 def _surprise(rule: Rule, example: Example, number: int) -> Diagnostic:

@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.machine import Machine
-from rulec.runtime.binding import Binding, bindings
-from rulec.runtime.reading import check_objects, check_state, letter
+from rulec.runtime.binding import bindings
+from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.letters import Columns
 from rulec.trace import TraceGraph
 
 JointState = tuple[int, ...]
@@ -77,33 +78,24 @@ def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
     for layer, states in enumerate(graph.states):
         for state in states:
             check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
+    columns = [
+        Columns(states, vocabulary, f"a cell of layer {layer}".format)
+        for layer, states in enumerate(graph.states)
+    ]
     return [
         Instance(
-            rule.machine, binding.first, binding.last, _letters(graph, rulebook, rule, binding)
+            rule.machine,
+            binding.first,
+            binding.last,
+            tuple(
+                columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
+                for layer in range(binding.first, binding.last + 1)
+            ),
         )
         for rule in rulebook.rules
         if rule.strength == "hard"
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states))
     ]
-
-
-def _letters(
-    graph: TraceGraph, rulebook: CompiledRulebook, rule: CompiledRule, binding: Binding
-) -> tuple[tuple[int, ...], ...]:
-    return tuple(
-        tuple(
-            letter(
-                rule.machine,
-                binding.objects,
-                state,
-                rulebook.vocabulary,
-                f"a cell of layer {layer}",
-                rule.name,
-            )
-            for state in graph.states[layer]
-        )
-        for layer in range(binding.first, binding.last + 1)
-    )
 
 
 def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:

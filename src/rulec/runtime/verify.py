@@ -4,32 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.machine import Machine
 from rulec.diagnostics import RulecError
-from rulec.runtime.binding import Binding, bindings
-from rulec.runtime.reading import check_objects, check_state, letter
+from rulec.runtime.binding import bindings
+from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.letters import Columns
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
-from rulec.vocabulary import Vocabulary
+from rulec.trace.check import check_trace
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """Judge a trace by every rule, for every binding of its variables.
 
     Raises:
-        RulecError: R0502 to R0505 if the trace does not fit the rulebook's vocabulary, with the
-            trace's own place.
+        RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary, with
+            the trace's own place.
     """
-    vocabulary = rulebook.vocabulary
-    check_objects(trace.objects, vocabulary, trace.place)
+    check_trace(trace)
+    check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
-        check_state(state, trace.objects, vocabulary, f"state {number}", trace.place)
+        check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
+    columns = Columns(trace.states, rulebook.vocabulary, "state {}".format, trace.place)
     violations = []
     for rule in rulebook.rules:
-        for binding in bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states)):
-            letters = _letters(rule, binding, trace, vocabulary)
-            accepted, step = run(rule.machine, letters)
+        # Objects that did the same are judged once.
+        verdicts: dict[tuple[int, ...], tuple[bool, int | None]] = {}
+        for binding in bindings(
+            rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
+        ):
+            word = columns.word(rule, binding.objects, binding.first, binding.last)
+            if word not in verdicts:
+                verdicts[word] = run(rule.machine, word)
+            accepted, step = verdicts[word]
             if not accepted:
                 step = None if step is None else binding.first + step
                 violations.append(Violation(rule.name, rule.strength, binding.objects, step))
@@ -55,7 +63,7 @@ def verify_all(
             yield verdict
 
 
-def run(machine: Machine, letters: Sequence[int]) -> tuple[bool, int | None]:
+def run(machine: Machine, word: Sequence[int]) -> tuple[bool, int | None]:
     """Run a machine over a non-empty word of letter classes.
 
     Returns:
@@ -64,26 +72,8 @@ def run(machine: Machine, letters: Sequence[int]) -> tuple[bool, int | None]:
     """
     following, dead = machine.following, machine.dead
     state = before = 0
-    for index, symbol in enumerate(letters):
+    for index, symbol in enumerate(word):
         before, state = state, following[state][symbol]
         if state == dead:
             return False, index
-    return machine.accepting[before][letters[-1]], None
-
-
-def _letters(
-    rule: CompiledRule, binding: Binding, trace: Trace, vocabulary: Vocabulary
-) -> list[int]:
-    stretch = range(binding.first, binding.last + 1)
-    return [
-        letter(
-            rule.machine,
-            binding.objects,
-            trace.states[number],
-            vocabulary,
-            f"state {number}",
-            rule.name,
-            trace.place,
-        )
-        for number in stretch
-    ]
+    return machine.accepting[before][word[-1]], None

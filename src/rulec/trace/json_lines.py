@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
@@ -34,8 +33,8 @@ def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
         file: its name, for messages.
 
     Yields:
-        For every line a Trace, or the RulecError (R0501, R0505, R0506) that says what is wrong
-        with it; for a stream without any trace one RulecError (R0501).
+        For every line a Trace, or the RulecError (R0501) that says why it is none; for a stream
+        without any trace one RulecError (R0501).
     """
     number = found = 0
     while line := stream.readline(LONGEST_LINE_BYTES + 1):
@@ -45,36 +44,23 @@ def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
         place = Place(file, number)
         found += bool(line.strip())
         if len(line) > LONGEST_LINE_BYTES:
-            yield _bad("R0501", f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
+            yield _bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
             while line and not line.endswith(b"\n"):
                 line = stream.readline(LONGEST_LINE_BYTES)
         elif line.strip():
             yield _trace(line, place)
     if not found:
-        yield _bad("R0501", "there is no trace in this file", Place(file))
+        yield _bad("there is no trace in this file", Place(file))
 
 
 def _trace(line: bytes, place: Place) -> Trace | RulecError:
     try:
         record = _DECODER.decode(line)
     except RecursionError:
-        return _bad("R0501", "this is not a trace: it is nested too deep", place)
+        return _bad("this is not a trace: it is nested too deep", place)
     except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
-        return _bad("R0501", f"this is not a trace: {_in_words(str(problem))}", place)
-    if not record.states:
-        return _bad("R0506", "the trace has no states; it needs at least one to judge", place)
-    if not (record.step_s > 0 and math.isfinite(record.step_s)):
-        return _bad("R0501", f"step_s is {record.step_s:g}; it has to be more than 0 s", place)
-    for name, (first, last) in record.present.items():
-        if name not in record.objects:
-            message = f"`present` speaks of `{name}`, which is not among the trace's objects"
-            return _bad("R0505", message, place)
-        if not 0 <= first <= last < len(record.states):
-            message = (
-                f"`present` has `{name}` in states {first} to {last}; "
-                f"the trace has states 0 to {len(record.states) - 1}"
-            )
-            return _bad("R0505", message, place)
+        message = f"this is not a trace: {_in_words(str(problem))}"
+        return _bad(message, place, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}')
     return Trace(
         str(record.id) or f"line {place.line}",
         record.step_s,
@@ -109,9 +95,8 @@ _JSON_WORDS = {
 }
 
 
-def _bad(code: str, message: str, place: Place) -> RulecError:
-    help_text = "docs/traces.md shows a whole trace" if code == "R0501" else ""
-    return RulecError(Diagnostic(code, message, place, help=help_text))
+def _bad(message: str, place: Place, help_text: str = "") -> RulecError:
+    return RulecError(Diagnostic("R0501", message, place, help=help_text))
 
 
 def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:

@@ -1,14 +1,14 @@
-"""What rules read of states: checked against the vocabulary, then turned into letters."""
+"""Do objects and states fit a vocabulary? Without a full answer there is no verdict."""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rulec.automata.machine import Machine, Read
 from rulec.diagnostics import Diagnostic, Place, RulecError, nearest_name
-from rulec.trace import State, Value
+from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 
@@ -114,7 +114,12 @@ def _shown(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, Mapping):
         return "given per object"
-    text = f"{value:g}" if isinstance(value, float) else str(value)
+    if isinstance(value, str):
+        text = json.dumps(value, ensure_ascii=False)
+    elif isinstance(value, int | float):
+        text = f"{value:g}"
+    else:
+        text = f"{value} ({type(value).__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
 
 
@@ -131,54 +136,6 @@ def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
     if enumeration is not None:
         return f'`{name}` is a value: write {{"{enumeration.name}": … "{name}"}}'
     return _suggest(name, vocabulary.declarations)
-
-
-def value_in(
-    state: State, name: str, objects: Sequence[str], declaration: Declaration
-) -> Value | None:
-    """The value that a state gives, or the declared default; None if there is neither."""
-    value: Any = state.get(name)
-    for item in objects:
-        value = value.get(item) if value is not None else None
-    return declaration.default if value is None else value
-
-
-def letter(
-    machine: Machine,
-    binding: Mapping[str, str],
-    state: State,
-    vocabulary: Vocabulary,
-    where: str,
-    rule: str,
-    place: Place | None = None,
-) -> int:
-    """The class of the letter that a machine reads in a state. Raises RulecError R0504.
-
-    The state must have passed ``check_state``.
-    """
-    index = 0
-    stride = 1
-    for read in machine.reads:
-        declaration = vocabulary.declarations[read.name]
-        items = [binding[variable] for variable in read.variables]
-        value = value_in(state, read.name, items, declaration)
-        if value is None:
-            raise _missing(read, items, where, rule, place)
-        index += stride * read.digit(value)
-        stride *= read.size
-    return machine.letters[index]
-
-
-def _missing(
-    read: Read, items: Sequence[str], where: str, rule: str, place: Place | None
-) -> RulecError:
-    of = f" of `{', '.join(items)}`" if items else ""
-    return _error(
-        "R0504",
-        f"{where} does not say the `{read.name}`{of}, which rule {rule} needs",
-        place,
-        "supply it in every state, or declare a default in the vocabulary",
-    )
 
 
 def _error(code: str, message: str, place: Place | None, help_text: str = "") -> RulecError:

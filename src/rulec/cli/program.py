@@ -1,0 +1,42 @@
+"""Where the program starts: prepared for signals before the rest is imported."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from io import TextIOWrapper
+from types import FrameType
+
+
+def run() -> int:
+    """Run the command line as a process of its own and return its exit status."""
+    try:
+        _prepare()
+        from rulec.cli.main import main
+
+        return main()
+    except KeyboardInterrupt:
+        return 128 + signal.SIGINT
+
+
+def _prepare() -> None:
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        # Unless it is ignored, as under nohup: end so that what is half done is cleaned up.
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _leave)
+    # A closed standard stream is None.
+    sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115, PTH123 - open for good
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115, PTH123
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115, PTH123
+    for stream in (sys.stdout, sys.stderr):
+        # A file's name may hold what the terminal's encoding does not.
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    if hasattr(sys, "set_int_max_str_digits"):
+        # Counts are exact however long; no number comes from outside but through JSON and TOML.
+        sys.set_int_max_str_digits(0)
+
+
+def _leave(number: int, _: FrameType | None) -> None:
+    raise SystemExit(128 + number)

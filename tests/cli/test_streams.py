@@ -1,0 +1,161 @@
+"""Pipes, full disks, closed streams and signals: the exit status stays true, no file half-made."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+RULEC = [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"]
+MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]
+TRACES = ["traces", "s2", "--step", "0.5", "-o", "-"]
+
+
+def run(arguments, **streams):
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
+    return subprocess.run([*RULEC, *arguments], check=False, **streams)
+
+
+def shell(command, *arguments):
+    """``command`` in a shell, in which "$@" is rulec with the arguments."""
+    return subprocess.run(
+        ["sh", "-c", command, "sh", *RULEC, *arguments], capture_output=True, check=False
+    )
+
+
+@pytest.mark.parametrize("arguments", [MANEUVERS, TRACES, ["--help"]])
+def test_a_reader_that_has_left_is_no_verdict(arguments):
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = run(arguments, stdout=writing)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+@pytest.mark.parametrize("arguments", [MANEUVERS, TRACES, ["--version"], ["compile", "--help"]])
+def test_a_full_disk_is_said(arguments):
+    done = shell('"$@" >/dev/full', *arguments)
+    assert done.returncode == 2
+    assert done.stderr == b"rulec: cannot write to standard output: no space left on device\n"
+
+
+def test_a_message_that_cannot_be_written_keeps_its_status():
+    assert shell('"$@" 2>/dev/full', "verify", "missing", "-r", "esterle2019").returncode == 2
+    assert shell('"$@" 2>/dev/full', "maneuvers", "s9", "-r", "esterle2019").returncode == 2
+    assert shell('"$@" 2>/dev/full', "maneuvers").returncode == 2
+
+
+def test_closed_streams():
+    assert shell('"$@" >&-', *MANEUVERS).returncode == 0
+    assert shell('"$@" 2>&-', *MANEUVERS).returncode == 0
+    assert shell('"$@" 2>&-', *TRACES).stdout.count(b"\n") == 75441
+    done = shell('"$@" <&-', "verify", "-", "-r", "esterle2019")
+    assert done.returncode == 2
+    assert b"there is no trace" in done.stderr
+
+
+def test_traces_from_a_pipe_with_a_name(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = subprocess.Popen(
+        [*RULEC, "verify", str(pipe), "-r", "esterle2019"], stdout=subprocess.PIPE
+    )
+    with pipe.open("wb") as stream:
+        stream.write(b'{"states": [{}]}\n' * 300)
+    assert reader.communicate()[0] == b"300 traces: 300 satisfied, 0 violated\n"
+    assert reader.returncode == 0
+
+
+def started(arguments, folder):
+    """A running command that has begun to write into the folder."""
+    process = subprocess.Popen([*RULEC, *arguments], stderr=subprocess.PIPE)
+    while not any(part.stat().st_size for part in folder.iterdir()):
+        assert process.poll() is None
+        time.sleep(0.01)
+    return process
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_a_signal_leaves_nothing_half_written(number, tmp_path):
+    file = str(tmp_path / "traces.jsonl")
+    process = started(
+        ["traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", file], tmp_path
+    )
+    process.send_signal(number)
+    process.communicate()
+    assert process.returncode == 128 + number
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files_that_exist_survive_what_goes_wrong(tmp_path):
+    file = tmp_path / "traces.jsonl"
+    file.write_text("old")
+    process = subprocess.Popen(
+        [*RULEC, "traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", str(file)],
+        stderr=subprocess.PIPE,
+    )
+    while len(list(tmp_path.iterdir())) < 2:
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    process.communicate()
+    assert file.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_device_is_written_to_and_stays_one():
+    assert run(["traces", "s1", "-o", os.devnull]).returncode == 0
+    assert not os.path.isfile(os.devnull)
+
+
+def test_a_link_that_leads_nowhere_is_replaced_and_one_that_leads_somewhere_is_followed(tmp_path):
+    loop, link, target = tmp_path / "loop", tmp_path / "link", tmp_path / "target"
+    loop.symlink_to(loop)
+    link.symlink_to(target)
+    target.write_text("old")
+    for file in (loop, link):
+        assert run(["traces", "s1", "-o", str(file)]).returncode == 0
+        assert len(file.read_text().splitlines()) == 16
+    assert link.is_symlink()
+    assert target.read_text() != "old"
+
+
+def test_compiled_files_appear_together_or_not_at_all(tmp_path):
+    (tmp_path / "R2.hoa").mkdir()
+    done = run(["compile", "esterle2019", "-o", str(tmp_path)])
+    assert done.returncode == 2
+    assert b"cannot be written: it is a folder" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["R2.hoa"]
+
+
+def test_an_output_without_a_name_is_refused(tmp_path):
+    done = subprocess.run(
+        [*RULEC, "compile", "esterle2019", "-o", ""], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert done.returncode == 2
+    assert b"--output names no folder" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_that_no_encoding_holds(tmp_path):
+    source = os.fsencode(tmp_path) + b"/r\xff.rules"
+    with open(source, "w") as stream:
+        stream.write("rulebook r\nsignal p\nhard rule A { require p }\n")
+    folder = str(tmp_path / "out")
+    assert run(["compile", source, "-o", folder]).returncode == 0
+    done = run(["verify", "-", "-r", f"{folder}/r.json"], input=b'{"states": [{"p": true}]}')
+    assert done.returncode == 0
+
+
+def test_counts_of_any_length():
+    done = run(["maneuvers", "s2", "-r", "esterle2019", "--step", "0.001", "--json"])
+    assert done.returncode == 0
+    done = run(["maneuvers", "s2", "-r", "esterle2019", "--step", "0.001"])
+    assert b"maneuvers   about " in done.stdout
+
+
+def test_a_list_longer_than_any():
+    done = run([*MANEUVERS, "--json", "--list", "9" * 30])
+    assert done.stdout.count(b'"margin_s"') == 16
