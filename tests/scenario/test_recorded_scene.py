@@ -1,6 +1,10 @@
-"""S3's figures against the recorded scene that they were taken from."""
+"""S3's figures against the recorded scene that they were taken from.
+
+It is one of CommonRoad's, and not part of this project: RULEC_RECORDINGS names the folder it is in.
+"""
 
 import math
+import os
 import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 from pathlib import Path
@@ -9,7 +13,8 @@ import pytest
 
 from rulec.scenario import load_scenario
 
-RECORDING = Path(__file__).resolve().parents[3] / "shared/data/commonroad/USA_US101-1_1_T-1.xml"
+BESIDE = Path(__file__).resolve().parents[3] / "shared/data/commonroad"
+RECORDING = Path(os.environ.get("RULEC_RECORDINGS", BESIDE)) / "USA_US101-1_1_T-1.xml"
 EGO_LANE = "536"
 LANES_FROM_THE_RIGHT = ("544", "542", "540", "538", "536", "534")
 RECORDED = {"o1": "489", "o2": "484"}
@@ -18,7 +23,7 @@ RECORDED = {"o1": "489", "o2": "484"}
 @pytest.fixture(scope="module")
 def recording():
     if not RECORDING.exists():
-        pytest.skip(f"the recording is not here: {RECORDING}")
+        pytest.skip(f"CommonRoad's {RECORDING.name} is not here: set RULEC_RECORDINGS")
     return ElementTree.parse(RECORDING).getroot()
 
 
