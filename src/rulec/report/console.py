@@ -7,6 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 import click
@@ -15,7 +16,10 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.diagnostics import render_diagnostics
 
 if TYPE_CHECKING:
-    from rich.progress import Progress
+    from rich.progress import Progress, TaskID
+
+
+REFRESH_S = 0.2
 
 
 def wants_color(stream: TextIO) -> bool:
@@ -26,7 +30,7 @@ def wants_color(stream: TextIO) -> bool:
 def print_result(text: str) -> None:
     """A line of the answer."""
     if _bar is not None and sys.stdout.isatty():
-        _print_above(text)
+        _bar.show(text)
     else:
         click.echo(text, color=wants_color(sys.stdout))
 
@@ -64,20 +68,42 @@ def _print_aside(text: str) -> None:
     # Where standard error cannot be written, the exit status has to do.
     with suppress(OSError):
         if _bar is not None:
-            _print_above(text)
+            _bar.show(text)
         else:
             click.echo(text, err=True, color=True)
 
 
-_bar: Progress | None = None
+class _Bar:
+    """A progress bar, and text that scrolls away above it.
+
+    A terminal shows both at once, so the bar has to make room for the text. It does so a few times
+    a second, whatever the number of lines.
+    """
+
+    def __init__(self, bar: Progress, task: TaskID) -> None:
+        self._bar = bar
+        self._task = task
+        self._lines: list[str] = []
+        self._flushed = 0.0
+
+    def show(self, text: str) -> None:
+        self._lines.append(text)
+        if monotonic() - self._flushed > REFRESH_S:
+            self.flush()
+
+    def tell(self, done: float) -> None:
+        self._bar.update(self._task, completed=done)
+
+    def flush(self) -> None:
+        from rich.text import Text
+
+        if self._lines:
+            self._bar.console.print(Text.from_ansi("\n".join(self._lines)), soft_wrap=True)
+        self._lines.clear()
+        self._flushed = monotonic()
 
 
-def _print_above(text: str) -> None:
-    """A terminal shows the bar and the text at once; so the bar has to make room."""
-    from rich.text import Text
-
-    assert _bar is not None
-    _bar.console.print(Text.from_ansi(text), soft_wrap=True)
+_bar: _Bar | None = None
 
 
 @contextmanager
@@ -98,10 +124,10 @@ def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=total)
-        _bar = bar
+    with Progress(console=Console(stderr=True), transient=True) as live:
+        _bar = _Bar(live, live.add_task(what, total=total))
         try:
-            yield lambda done: bar.update(task, completed=done)
+            yield _bar.tell
         finally:
+            _bar.flush()
             _bar = None
