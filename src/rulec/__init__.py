@@ -21,6 +21,7 @@ from rulec.version import __version__
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook as CompiledRulebook
     from rulec.diagnostics import RulecError as RulecError
+    from rulec.maneuvers import Maneuvers as Maneuvers
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.rulebook.model import Rulebook as Rulebook
     from rulec.runtime.verdict import Verdict as Verdict
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario import load_scenario as load_scenario
     from rulec.trace import Trace as Trace
-    from rulec.workflow import Maneuvers as Maneuvers
     from rulec.workflow import compile_rulebook as compile_rulebook
     from rulec.workflow import find_maneuvers as find_maneuvers
     from rulec.workflow import load_rulebook as load_rulebook
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "CompiledRulebook": "rulec.automata.compiled",
-    "Maneuvers": "rulec.workflow",
+    "Maneuvers": "rulec.maneuvers",
     "NavigationGraph": "rulec.partition",
     "Rulebook": "rulec.rulebook.model",
     "RulecError": "rulec.diagnostics",

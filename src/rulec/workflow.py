@@ -9,29 +9,20 @@ The command line and ``import rulec`` are thin layers over these functions.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.automata import compiled_file
 from rulec.automata.compiled import CompiledRulebook
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import opened
-from rulec.runtime import cheapest, product
-from rulec.runtime.cheapest import Maneuver
+from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.scenario import Scenario
-
-RELATIONS_OF: dict[PartitionName, set[str]] = {
-    "paper": {"position"},
-    "fine": {"station", "lateral"},
-}
-"""The relations that only one partition supplies."""
 
 
 def load_rulebook(reference: str | Path, search_path: Sequence[str | Path] = ()) -> Rulebook:
@@ -96,20 +87,6 @@ def navigation_graph(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Maneuvers:
-    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule."""
-
-    graph: NavigationGraph
-    traces: int
-    satisfying: int
-    product: product.Product
-
-    def cheapest(self, n: int) -> list[Maneuver]:
-        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
-        return list(islice(cheapest.cheapest(self.product), min(n, self.satisfying)))
-
-
 def find_maneuvers(
     scenario: str | Path | Scenario,
     rulebook: str | Path | Rulebook | CompiledRulebook,
@@ -126,41 +103,9 @@ def find_maneuvers(
     rules = compile_rulebook(rulebook)
     graph = navigation_graph(
         scenario,
-        partition=_partition_for(rules, partition),
+        partition=partition_for(rules, partition),
         adjacency=adjacency,
         step_s=step_s,
         horizon_s=horizon_s,
     )
-    traces = graph.trace_graph()
-    try:
-        instances = product.instances(traces, rules)
-    except RulecError as error:
-        file = scenario if isinstance(scenario, str | Path) else scenario.name
-        place = Place(str(file))
-        raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
-    explored = product.explore(traces, instances)
-    return Maneuvers(graph, product.count_paths(traces), explored.accepted, explored)
-
-
-def _partition_for(rules: CompiledRulebook, wanted: PartitionName | None) -> PartitionName:
-    """The wanted partition, or the one that the rules need. Raises RulecError R0405."""
-    read = {read.name for rule in rules.rules for read in rule.machine.reads}
-    needed: list[PartitionName] = [name for name, own in RELATIONS_OF.items() if own & read]
-    if len(needed) > 1:
-        raise _no_partition(
-            f"rulebook {rules.name} reads both `position` and `station` or `lateral`, "
-            "which no one partition supplies",
-            "say it with station and lateral alone: they tell apart all that position does",
-        )
-    if wanted and needed and wanted != needed[0]:
-        relations = " and ".join(f"`{name}`" for name in sorted(RELATIONS_OF[needed[0]] & read))
-        raise _no_partition(
-            f"rulebook {rules.name} reads {relations}, which the partition `{wanted}` does not "
-            "supply",
-            f"use the partition `{needed[0]}`, or leave the choice to the rulebook",
-        )
-    return wanted or (needed[0] if needed else "paper")
-
-
-def _no_partition(message: str, way_out: str) -> RulecError:
-    return RulecError(Diagnostic("R0405", message, help=way_out))
+    return judged(graph, rules)

@@ -59,7 +59,7 @@ def test_a_rule_that_explodes_is_an_error_and_the_others_compile(position):
     rules = [Rule(name, "hard", (), always(Atom("s0"))) for name in "AB"]
     rules.insert(position, Rule("Boom", "hard", (), exploding()))
     with pytest.raises(RulecError) as caught:
-        compile_rulebook(Rulebook("test", vocabulary, tuple(rules)), cpu_limit_s=2)
+        compile_rulebook(Rulebook("test", vocabulary, tuple(rules)), cpu_limit_s=1)
     assert [d.code for d in caught.value.diagnostics] == ["R0401"]
     assert "Boom" in caught.value.diagnostics[0].message
     assert "rule of its own" in caught.value.diagnostics[0].help
@@ -137,6 +137,31 @@ def test_an_automaton_that_fails_its_check_is_refused():
         spot_bridge._check(weaker, spot.formula("p"))
     with pytest.raises(spot_bridge.CheckError):
         spot_bridge._check(spot.translate("FG p", "BA"), spot.formula("FG p"))
+
+
+def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
+    failing = """
+from rulec.automata import spot_bridge
+def fail(*_): raise spot_bridge.CheckError
+spot_bridge._check = fail
+main()
+"""
+    worker = compiler._WORKER.replace("\nmain()\n", failing)
+    assert worker != compiler._WORKER
+    monkeypatch.setattr(compiler, "_WORKER", worker)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", P), rule("B", Q)))
+    assert [one.code for one in caught.value.diagnostics] == ["R0402", "R0402"]
+
+
+def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
+    worker = compiler._WORKER.replace(
+        "\nmain()\n",
+        "\nfrom rulec.automata import spot_bridge\nspot_bridge._check = None\nmain()\n",
+    )
+    monkeypatch.setattr(compiler, "_WORKER", worker)
+    with pytest.raises(RuntimeError, match="while compiling rule A"):
+        compile_rulebook(book(rule("A", P)))
 
 
 def test_files_of_the_working_directory_are_not_imported(tmp_path, monkeypatch):

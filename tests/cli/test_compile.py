@@ -40,9 +40,10 @@ def test_an_example_that_comes_out_otherwise_is_a_warning(tmp_path, capsys):
     )
     assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 0
     err = capsys.readouterr().err
-    assert "example number 2 of rule A says `accept`, but the rule rejects it" in err
-    assert "example number 3 of rule A says `reject`, but the rule accepts it" in err
+    assert "example number 2 of rule `A` says `accept`, but the rule rejects it" in err
+    assert "example number 3 of rule `A` says `reject`, but the rule accepts it" in err
     assert "number 1" not in err
+    assert err.count("warning[R0406]") == 2
 
 
 def test_a_rule_that_explodes(tmp_path, capsys):
@@ -52,4 +53,4 @@ def test_a_rule_that_explodes(tmp_path, capsys):
     source.write_text(f"rulebook boom\nsignal {atoms}\nhard rule Boom {{ require {untils} }}\n")
     assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
-    assert "rule Boom would be too large" in capsys.readouterr().err
+    assert "rule `Boom` would be too large" in capsys.readouterr().err

@@ -110,6 +110,7 @@ def test_relations_of_two_partitions(tmp_path, capsys):
     )
     status, _, err = answer(capsys, "s2", "--rulebook", str(source))
     assert status == 2
+    assert "error[R0405]" in err
     assert "no one partition" in err
 
 

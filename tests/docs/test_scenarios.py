@@ -11,6 +11,7 @@ import pytest
 from rulec.partition import navigation_graph
 from rulec.scenario import available_scenarios, load_scenario, schema
 from rulec.scenario.model import SURFACES
+from rulec.workflow import find_maneuvers
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
@@ -27,6 +28,12 @@ def test_the_sample_is_a_scenario(tmp_path, partition):
     graph = navigation_graph(load_scenario(file), partition=partition)
     assert set(graph.objects) == {"bus", "child", "bike"}
     assert graph.goals
+
+
+def test_the_sample_is_judged_by_what_ships(tmp_path):
+    file = tmp_path / "sample.toml"
+    file.write_text(block("toml"), encoding="utf-8")
+    assert find_maneuvers(file, "esterle2019").satisfying > 0
 
 
 def test_the_program_prints_what_is_shown():

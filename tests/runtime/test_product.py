@@ -3,7 +3,7 @@
 from fractions import Fraction
 from itertools import islice, pairwise, product
 
-from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
+from books import P, Q, always, book, both, compile_here, eventually, far, implies, near, no, rule
 from graphs import graphs
 from hypothesis import given
 from words import formulas
@@ -61,7 +61,7 @@ def test_counts_are_those_of_enumeration(graph):
 @given(formulas, graphs())
 def test_any_rule_counts_as_enumeration_does(formula, graph):
     x = ("x: thing",) if any(atom.arguments for atom in atoms_of(formula)) else ()
-    rules = compile_rulebook(book(rule("A", formula, *x)))
+    rules = compile_here(book(rule("A", formula, *x)))
     verdicts = [verify(trace, rules).satisfied for trace in all_traces(graph, "t", 10**6)]
     assert explore(graph, instances(graph, rules)).accepted == sum(verdicts)
 

@@ -2,6 +2,8 @@
 
 from words import VOCABULARY
 
+from rulec.automata import compiler
+from rulec.automata.compiled import CompiledRulebook
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Rule, Rulebook, Variable
 
@@ -40,6 +42,20 @@ def rule(name, formula, *variables, strength="hard"):
     """A rule over variables given as ``"x: thing"``."""
     bound = (Variable(*text.split(": ")) for text in variables)
     return Rule(name, strength, tuple(bound), formula, cite=f"Art. {name}")
+
+
+def compile_here(rulebook):
+    """As the compiler does, without a process of its own: for tests with many small rulebooks."""
+    from rulec.automata import spot_bridge
+    from rulec.automata.spot_worker import _answer
+
+    compiled = []
+    for one in rulebook.rules:
+        job = compiler._job(rulebook, one, cpu_limit_s=5)
+        compiled.append(compiler._compiled(one, _answer(job)))
+    return CompiledRulebook(
+        rulebook.name, rulebook.vocabulary, tuple(compiled), "", "", "", (), "", spot_bridge.VERSION
+    )
 
 
 def book(*rules):

@@ -24,7 +24,7 @@ def checked(read: schema.File) -> CompiledRulebook:
     for name in (read.name, *names):
         # They become names of files.
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
-        _require(bool(plain), f"{name!r} is not a name")
+        _require(bool(plain), f"`{name}` is not a name")
     _require(len(set(names)) == len(names), "two rules have the same name")
     return CompiledRulebook(
         read.name,
@@ -57,26 +57,26 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
     for item in types.values():
         seen, parent = {item.name}, item.parent
         while parent is not None:
-            _require(parent in types and parent not in seen, f"type {item.name} has no root")
+            _require(parent in types and parent not in seen, f"type `{item.name}` has no root")
             seen.add(parent)
             parent = types[parent].parent
     for declaration in vocabulary.declarations.values():
         for parameter in declaration.parameters:
-            _require(parameter in types, f"{declaration.name} is about an unknown type")
+            _require(parameter in types, f"`{declaration.name}` is about an unknown type")
         if isinstance(declaration, Enumeration) and declaration.default is not None:
             known = declaration.default in declaration.values
-            _require(known, f"the default of {declaration.name} is not one of its values")
+            _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
 def _rule(rule: schema.Rule, vocabulary: Vocabulary) -> CompiledRule:
     variables = tuple(Variable(name, type_name) for name, type_name in rule.variables)
     types = {variable.name: variable.type for variable in variables}
-    _require(len(types) == len(variables), f"rule {rule.name} names a variable twice")
+    _require(len(types) == len(variables), f"rule `{rule.name}` names a variable twice")
     for type_name in types.values():
-        _require(type_name in vocabulary.types, f"rule {rule.name} is about an unknown type")
+        _require(type_name in vocabulary.types, f"rule `{rule.name}` is about an unknown type")
     for read in rule.machine.reads:
         fits = _fits(read, vocabulary.declarations.get(read.name), types.keys())
-        _require(fits, f"rule {rule.name} reads {read.name}, which its vocabulary lacks")
+        _require(fits, f"rule `{rule.name}` reads `{read.name}`, which its vocabulary lacks")
     strength: Strength = rule.strength
     return CompiledRule(
         rule.name,
@@ -122,9 +122,9 @@ def _machine(read: schema.Machine, rule: str) -> Machine:
         len(read.accepting) == n_states,
         all(0 <= state < n_states for state in chain.from_iterable(read.following)),
     ]
-    _require(all(fits), f"the table of rule {rule} has a row or number that does not fit")
+    _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
     traps = [trap(read.following, read.accepting, verdict=verdict) for verdict in (False, True)]
-    _require(traps == [read.dead, read.safe], f"rule {rule} names a wrong dead or safe state")
+    _require(traps == [read.dead, read.safe], f"rule `{rule}` names a wrong dead or safe state")
     return Machine(
         reads,
         tuple(read.letters),

@@ -14,6 +14,7 @@ from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.compiled_check import checked
 from rulec.automata.compiled_schema import File, Header
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics.json_words import json_words
 from rulec.files import make_folder, opened, written_whole
 
 FORMAT = "rulec compiled rulebook"
@@ -66,7 +67,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
     try:
         header = msgspec.json.decode(data, type=Header)
     except msgspec.MsgspecError as problem:
-        raise _damaged(file, f"this is not a compiled rulebook: {problem}") from None
+        raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
         raise _damaged(file, "this is not a compiled rulebook") from None
     if header.version != VERSION:
@@ -79,7 +80,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
         read = msgspec.json.decode(data, type=File)
         return checked(read)
     except (msgspec.MsgspecError, ValueError) as problem:
-        raise _damaged(file, f"this compiled rulebook is damaged: {problem}") from None
+        raise _damaged(file, f"this compiled rulebook is damaged: {json_words(problem)}") from None
 
 
 def _damaged(file: str, message: str) -> RulecError:

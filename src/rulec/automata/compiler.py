@@ -145,7 +145,7 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
     if failed is not None and failed.why == "check":
         return Diagnostic(
             "R0402",
-            f"the automaton of rule {rule.name} is not equivalent to its formula",
+            f"the automaton of rule `{rule.name}` is not equivalent to its formula",
             place,
             help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
         )
@@ -156,7 +156,7 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
     )
     return Diagnostic(
         "R0401",
-        f"the automaton of rule {rule.name} would be too large: {why}",
+        f"the automaton of rule `{rule.name}` would be too large: {why}",
         place,
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
         "rules beside each other do not",

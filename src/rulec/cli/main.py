@@ -41,7 +41,7 @@ class _Verbs(click.Group):
 
         nearest = nearest_name(args[0], VERBS)
         if args[0] not in VERBS and not args[0].startswith("-") and nearest is not None:
-            ctx.fail(f"No such command '{args[0]}'. Did you mean '{nearest}'?")
+            ctx.fail(f"there is no command `{args[0]}`; did you mean `{nearest}`?")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -9,9 +9,9 @@ from typing import Any
 import click
 
 from rulec.automata.compiled import CompiledRulebook
+from rulec.maneuvers import Maneuvers
 from rulec.partition import Cell, Envelope, NavigationGraph, envelope
 from rulec.runtime.cheapest import Maneuver
-from rulec.workflow import Maneuvers
 
 MOST_NAMED = 6
 """So many objects' relations fit on a line of text; JSON has them all."""

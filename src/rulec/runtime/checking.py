@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, nearest_name
+from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
@@ -96,7 +96,7 @@ def _fits(value: Any, declaration: Declaration) -> bool:
 def _wanted(declaration: Declaration) -> str:
     match declaration:
         case Enumeration():
-            return f"it is one of {', '.join(declaration.values)}"
+            return f"it is one of {named(declaration.values)}"
         case Signal():
             return "it is true or false"
         case Quantity():
@@ -125,10 +125,7 @@ def _shown(value: Any) -> str:
 
 def _suggest(name: str, known: Iterable[str]) -> str:
     known = list(known)
-    nearest = nearest_name(name, known)
-    if nearest is not None:
-        return f"did you mean `{nearest}`?"
-    return f"known: {', '.join(known[:12])}{' …' if len(known) > 12 else ''}" if known else ""
+    return did_you_mean(name, known) or (f"known: {named(known)}" if known else "")
 
 
 def _unknown_name(name: str, vocabulary: Vocabulary) -> str:

@@ -52,11 +52,11 @@ def _accepts(rule: CompiledRule, rulebook: CompiledRulebook, trace: Trace) -> bo
 
 
 def _surprise(rule: Rule, example: Example, number: int) -> Diagnostic:
-    name = f'"{example.label}"' if example.label else f"number {number}"
+    name = f"`{example.label}`" if example.label else f"number {number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")
     return Diagnostic(
         "R0406",
-        f"example {name} of rule {rule.name} says `{claim}`, but the rule {truth} it",
+        f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
         at(example.span),
         help="either the formula or the example does not say what is meant",
         severity="warning",

@@ -72,7 +72,7 @@ class Columns:
                 Diagnostic(
                     "R0504",
                     f"{self._where(number)} does not say the `{read.name}`{of}, "
-                    f"which rule {rule} needs",
+                    f"which rule `{rule}` needs",
                     self._place,
                     help="supply it in every state, or declare a default in the vocabulary",
                 )

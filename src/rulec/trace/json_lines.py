@@ -8,6 +8,7 @@ from typing import IO, Any
 import msgspec
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics.json_words import json_words
 from rulec.trace.model import Trace
 
 LONGEST_LINE_BYTES = 256 << 20
@@ -59,7 +60,7 @@ def _trace(line: bytes, place: Place) -> Trace | RulecError:
     except RecursionError:
         return _bad("this is not a trace: it is nested too deep", place)
     except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
-        message = f"this is not a trace: {_in_words(str(problem))}"
+        message = f"this is not a trace: {json_words(problem)}"
         return _bad(message, place, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}')
     return Trace(
         str(record.id) or f"line {place.line}",
@@ -69,30 +70,6 @@ def _trace(line: bytes, place: Place) -> Trace | RulecError:
         record.present,
         place,
     )
-
-
-def _in_words(problem: str) -> str:
-    """Msgspec's message, its path ``$.states[3]`` turned into a reader's ``in states[3]``."""
-    text, _, path = problem.partition(" - at `$")
-    path = path.rstrip("`").lstrip(".")
-    text = text[:1].lower() + text[1:]
-    for theirs, ours in _JSON_WORDS.items():
-        text = text.replace(theirs, ours)
-    return f"{text} (in `{path}`)" if path else text
-
-
-_JSON_WORDS = {
-    "jSON": "JSON",
-    "`bool | float | str | object`": "true, false, a number, a string or an object",
-    "`array`": "a list",
-    "`object`": "an object",
-    "`str`": "a string",
-    "`int | str`": "a string",
-    "`float`": "a number",
-    "`int`": "a whole number",
-    "`bool`": "true or false",
-    "`null`": "null",
-}
 
 
 def _bad(message: str, place: Place, help_text: str = "") -> RulecError:

@@ -1,0 +1,27 @@
+"""What is wrong with a JSON document, in a reader's words."""
+
+from __future__ import annotations
+
+
+def json_words(problem: Exception) -> str:
+    """Msgspec's message, its path ``$.states[3]`` turned into a reader's ``states[3]``."""
+    text, _, path = str(problem).partition(" - at `$")
+    path = path.rstrip("`").lstrip(".")
+    text = text[:1].lower() + text[1:]
+    for theirs, ours in _JSON_WORDS.items():
+        text = text.replace(theirs, ours)
+    return f"{text} (in `{path}`)" if path else text
+
+
+_JSON_WORDS = {
+    "jSON": "JSON",
+    "`bool | float | str | object`": "true, false, a number, a string or an object",
+    "`array`": "a list",
+    "`object`": "an object",
+    "`str`": "a string",
+    "`int | str`": "a string",
+    "`float`": "a number",
+    "`int`": "a whole number",
+    "`bool`": "true or false",
+    "`null`": "null",
+}

@@ -1,0 +1,84 @@
+"""Where partition and rules meet: a navigation graph judged by a compiled rulebook."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.diagnostics import Diagnostic, Place, RulecError, named
+from rulec.runtime.cheapest import Maneuver, cheapest
+from rulec.runtime.product import Product, count_paths, explore, instances
+
+if TYPE_CHECKING:
+    from rulec.partition import NavigationGraph, PartitionName
+
+RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
+    "paper": ("position",),
+    "fine": ("station", "lateral"),
+}
+"""The relations that only one partition supplies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Maneuvers:
+    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule."""
+
+    graph: NavigationGraph
+    traces: int
+    satisfying: int
+    product: Product
+
+    def cheapest(self, n: int) -> list[Maneuver]:
+        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
+        return list(islice(cheapest(self.product), min(n, self.satisfying)))
+
+
+def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
+    """Count a graph's paths, and those that keep every hard rule.
+
+    Raises:
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read.
+    """
+    traces = graph.trace_graph()
+    try:
+        bound = instances(traces, rules)
+    except RulecError as error:
+        place = Place(graph.scenario.name)
+        raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
+    explored = explore(traces, bound)
+    return Maneuvers(graph, count_paths(traces), explored.accepted, explored)
+
+
+def partition_for(rules: CompiledRulebook, wanted: PartitionName | None) -> PartitionName:
+    """The wanted partition, or the one that the rules need.
+
+    Raises:
+        RulecError: R0405 if the rules need another one, or two.
+    """
+    read = {read.name for rule in rules.rules for read in rule.machine.reads}
+    needed = {
+        name: [relation for relation in relations if relation in read]
+        for name, relations in RELATIONS_OF.items()
+        if read.intersection(relations)
+    }
+    if len(needed) > 1:
+        raise _no_partition(
+            f"rulebook `{rules.name}` reads {named(needed['paper'])} and {named(needed['fine'])}, "
+            "which no one partition supplies",
+            "say it with `station` and `lateral` alone: they tell apart all that `position` does",
+        )
+    for name, relations in needed.items():
+        if wanted not in (None, name):
+            raise _no_partition(
+                f"rulebook `{rules.name}` reads {named(relations)}, which the partition "
+                f"`{wanted}` does not supply",
+                f"use the partition `{name}`, or leave the choice to the rulebook",
+            )
+        return name
+    return wanted or "paper"
+
+
+def _no_partition(message: str, way_out: str) -> RulecError:
+    return RulecError(Diagnostic("R0405", message, help=way_out))
