@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from errno import EISDIR
 from pathlib import Path
 from typing import IO
+from unicodedata import normalize
 
 from rulec.diagnostics import Diagnostic, Label, Place, RulecError, Source, Span
 
@@ -94,7 +95,10 @@ def _reason(problem: OSError | ValueError) -> str:
 
 
 def decoded(name: str, data: bytes) -> Source:
-    """The text of a file in UTF-8; a byte order mark is dropped.
+    """The text of a file in UTF-8, whatever editor it came from.
+
+    A byte order mark is dropped, every line end becomes one line feed, and letters with marks take
+    their composed form, so that names that look alike are alike.
 
     Raises:
         RulecError: R0101 if it is in another encoding, or no text at all.
@@ -103,7 +107,8 @@ def decoded(name: str, data: bytes) -> Source:
         text = data.decode("utf-8")
     except UnicodeDecodeError as reason:
         raise RulecError(_not_utf8(name, data, reason.start)) from None
-    return without_null(Source(name, text.removeprefix("\ufeff")))
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    return without_null(Source(name, normalize("NFC", text)))
 
 
 def without_null(source: Source) -> Source:

@@ -249,6 +249,8 @@ def test_broken_toml(tmp_path, text, line, column, words):
         (b"\x7fELF\x02\x01\x01\x00\xff\xfe", "R0101", "is not UTF-8"),
         (b"a = 'x\x00'\n", "R0101", "null character"),
         (b"a = " + b"[" * 100_000, "R0602", "nested too deeply"),
+        (b"a" + b".a" * 100_000 + b" = 1", "R0602", "too many parts joined by dots"),
+        (b"[" + b"a . " * 100_000 + b"a]", "R0602", "too many parts joined by dots"),
         (b"a = " + b"9" * 5000, "R0602", "Exceeds the limit"),
         (b"#" * 4_000_001, "R0602", "too large"),
     ],

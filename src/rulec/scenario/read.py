@@ -79,11 +79,17 @@ def _text(path: Path) -> Source:
     return decoded(str(path), content)
 
 
+_DEEP_KEY = re.compile(r"^[ \t\[]*\w+(?:[ \t]*\.[ \t]*\w+){40}", re.MULTILINE)
+
+
 def _parse(source: Source) -> dict[str, Any]:
     try:
         tomllib: Any = import_module("tomllib")
     except ModuleNotFoundError:  # Python 3.10
         tomllib = import_module("tomli")
+    if _DEEP_KEY.search(source.text):
+        # The parser's time grows with the square of a key's depth.
+        raise _not_toml("a key has too many parts joined by dots", Place(source.name))
     try:
         parsed: dict[str, Any] = tomllib.loads(source.text)
     except RecursionError:
@@ -92,7 +98,11 @@ def _parse(source: Source) -> dict[str, Any]:
         message, place = _syntax_error(str(error), source)
     else:
         return parsed
-    raise RulecError(
+    raise _not_toml(message, place) from None
+
+
+def _not_toml(message: str, place: Place) -> RulecError:
+    return RulecError(
         Diagnostic(
             "R0602",
             f"the file is not TOML: {message}",
@@ -100,7 +110,7 @@ def _parse(source: Source) -> dict[str, Any]:
             help="numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables "
             "`[[obstacle]]`",
         )
-    ) from None
+    )
 
 
 def _syntax_error(message: str, source: Source) -> tuple[str, Place]:

@@ -148,6 +148,8 @@ def _operators(scene: Scene) -> str:
     operand, operator = wants_operand(scene.accepted), wants_operator(scene.accepted)
     if not (operand or operator or "AND" in scene.accepted):
         return ""
+    if operator and len(before) > 1 and set(before) <= set("GFX"):
+        return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if before == "never":
         return "write `always not …`"
     if before == "if" or text in ("if", "then"):
