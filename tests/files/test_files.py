@@ -36,9 +36,14 @@ def test_a_file_is_replaced_whole(tmp_path):
 def test_a_file_stays_when_its_successor_fails(tmp_path):
     file = tmp_path / "file"
     file.write_text("old")
-    with pytest.raises(KeyboardInterrupt), written_whole(file) as stream:
-        stream.write(b"half")
-        raise KeyboardInterrupt
+
+    def half():
+        with written_whole(file) as stream:
+            stream.write(b"half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        half()
     assert file.read_text() == "old"
     assert list(tmp_path.iterdir()) == [file]
 

@@ -34,8 +34,8 @@ def _prepare() -> None:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     if hasattr(sys, "set_int_max_str_digits"):
-        # Counts are exact however long; no number comes from outside but through JSON and TOML.
-        sys.set_int_max_str_digits(0)
+        # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
+        sys.set_int_max_str_digits(100_000)
 
 
 def _leave(number: int, _: FrameType | None) -> None:
