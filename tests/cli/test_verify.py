@@ -48,13 +48,39 @@ def test_satisfied(verify):
 
 
 def test_text(verify):
-    status, out, err = verify([line("t1", "brrf"), line("t2", "bblf")])
+    status, out, err = verify([line("t1", "brrf"), line("t2", "bblf")], options=["--explain", "0"])
     assert (status, err) == (1, "")
     assert out == (
         "t1: violated\n"
         "  hard rule R1 [Article 11.1, 11.6] for v = v1: beyond saving after state 3\n"
         "2 traces: 1 satisfied, 1 violated\n"
     )
+
+
+def test_the_first_violations_are_explained(verify):
+    bad = [line("t1", "brrf"), line("t2", "brrf"), line("t3", "brrf")]
+    _, out, _ = verify(bad)
+    assert out.count("position(v1)") == 1
+    _, out, _ = verify(bad, options=["--explain", "2"])
+    assert out.count("position(v1)") == 2
+    rows = [row.split() for row in out.splitlines()]
+    assert ["position(v1)", "b", "r", "r", "f*"] in rows
+    assert ["state", "0", "1", "2", "3"] in rows
+    # Until is true one state before what it waits for, and the whole is lost from the start.
+    assert ["r(v)", "until", "f(v)", "F", "T", "T", "T"] in rows
+
+
+def test_explanations_as_data(verify):
+    _, out, _ = verify([line("t1", "brrf")], options=["--json", "--explain", "1"])
+    (violation,) = json.loads(out)["violations"]
+    explanation = violation["explanation"]
+    assert explanation["decisive"] == violation["step"] == 3
+    assert explanation["states"] == [0, 1, 2, 3]
+    assert explanation["cite"] == "Article 11.1, 11.6"
+    facts = {fact["reads"]: fact["values"] for fact in explanation["facts"]}
+    assert facts == {"CONGESTED": [False] * 4, "position(v1)": ["b", "r", "r", "f"]}
+    assert explanation["parts"][0]["depth"] == 0
+    assert explanation["parts"][0]["values"][0] is False
 
 
 def test_a_bad_trace_never_hides_the_good_ones(verify):

@@ -30,7 +30,7 @@ def machine_of(formula):
 
 
 def classes(machine, word):
-    rule = CompiledRule("rule", "hard", (), "", "", "", machine, "")
+    rule = CompiledRule("rule", "hard", (), "", "", Constant(True), machine, "")
     columns = Columns(word, VOCABULARY, "state {}".format)
     return columns.word(rule, {"x": "car1"}, 0, len(word) - 1)
 

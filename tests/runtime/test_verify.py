@@ -6,7 +6,7 @@ from books import P, Q, always, book, both, eventually, far, implies, near, no, 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
-from rulec.runtime.verify import verify, verify_all
+from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
 
 CARS = {"car1": "car", "car2": "car", "thing1": "thing"}
@@ -157,6 +157,6 @@ def test_values_are_only_needed_where_a_rule_reads_them():
 
 def test_one_bad_trace_does_not_stop_the_others():
     broken = RulecError(())
-    answers = list(verify_all([trace("ggg"), broken, trace("...")], RULES))
+    answers = [judge(item, RULES) for item in (trace("ggg"), broken, trace("..."))]
     assert [type(answer) for answer in answers] == [Verdict, NotJudged, NotJudged]
     assert (answers[1].trace, answers[2].trace) == (None, "t")

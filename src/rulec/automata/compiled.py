@@ -5,20 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.automata.machine import Machine
+from rulec.logic.formula import Formula
 from rulec.rulebook.model import SourceFile, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledRule:
-    """A rule with its machine; ``formula`` in words, ``hoa`` its automaton in HOA v1."""
+    """A rule with its machine; ``hoa`` is its automaton in HOA v1."""
 
     name: str
     strength: Strength
     variables: tuple[Variable, ...]
     cite: str
     says: str
-    formula: str
+    formula: Formula
     machine: Machine
     hoa: str
 

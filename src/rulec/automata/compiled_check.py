@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Container
 from itertools import chain
 
 from rulec.automata import compiled_schema as schema
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.letters import reads_of
 from rulec.automata.machine import Machine, Read, trap
+from rulec.logic.data import from_data
+from rulec.logic.formula import Atom, atoms_of
+from rulec.logic.printing import in_words
 from rulec.rulebook.model import SourceFile, Strength, Variable
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
@@ -74,9 +78,14 @@ def _rule(rule: schema.Rule, vocabulary: Vocabulary) -> CompiledRule:
     _require(len(types) == len(variables), f"rule `{rule.name}` names a variable twice")
     for type_name in types.values():
         _require(type_name in vocabulary.types, f"rule `{rule.name}` is about an unknown type")
-    for read in rule.machine.reads:
-        fits = _fits(read, vocabulary.declarations.get(read.name), types.keys())
-        _require(fits, f"rule `{rule.name}` reads `{read.name}`, which its vocabulary lacks")
+    formula = from_data(rule.tree)
+    for atom in atoms_of(formula):
+        fits = _fits(atom, vocabulary.declarations.get(atom.name), types)
+        _require(fits, f"rule `{rule.name}` speaks of `{atom}`, which its vocabulary lacks")
+    _require(in_words(formula) == rule.formula, f"rule `{rule.name}` has two different formulas")
+    machine = _machine(rule.machine, rule.name)
+    same = machine.reads == reads_of(formula, vocabulary)
+    _require(same, f"the table of rule `{rule.name}` does not read what its formula does")
     strength: Strength = rule.strength
     return CompiledRule(
         rule.name,
@@ -84,26 +93,22 @@ def _rule(rule: schema.Rule, vocabulary: Vocabulary) -> CompiledRule:
         variables,
         rule.cite,
         rule.says,
-        rule.formula,
-        _machine(rule.machine, rule.name),
+        formula,
+        machine,
         rule.hoa,
     )
 
 
-def _fits(read: schema.Read, declaration: Declaration | None, variables: Collection[str]) -> bool:
-    if declaration is None or isinstance(declaration, Quantity):
-        return False
-    about = len(declaration.parameters) == len(read.variables)
-    values = declaration.values if isinstance(declaration, Enumeration) else ()
-    told_apart = set(read.values)
-    return (
-        about
-        and set(read.variables) <= set(variables)
-        and bool(values) == bool(told_apart)
-        and told_apart <= set(values)
-        and len(told_apart) == len(read.values)
-        and read.others == (len(told_apart) < len(values))
-    )
+def _fits(atom: Atom, declaration: Declaration | None, variables: Container[str]) -> bool:
+    match declaration:
+        case Enumeration(values=values):
+            known = atom.value in values
+        case Signal():
+            known = atom.value is None
+        case _:
+            return False
+    about = len(declaration.parameters) == len(atom.arguments)
+    return known and about and all(argument in variables for argument in atom.arguments)
 
 
 def _machine(read: schema.Machine, rule: str) -> Machine:

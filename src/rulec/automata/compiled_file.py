@@ -7,15 +7,18 @@ import json
 import re
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.compiled_check import checked
 from rulec.automata.compiled_schema import File, Header
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.diagnostics.json_words import json_words
 from rulec.files import make_folder, opened, written_whole
+from rulec.logic.data import to_data
+from rulec.logic.printing import in_words
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 1
@@ -43,13 +46,24 @@ def to_json(rulebook: CompiledRulebook) -> str:
                 for item in vocabulary.declarations.values()
             ],
         },
-        "rules": [
-            {**msgspec.to_builtins(rule), "variables": [(v.name, v.type) for v in rule.variables]}
-            for rule in rulebook.rules
-        ],
+        "rules": [_rule(rule) for rule in rulebook.rules],
     }
     text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
     return _ROW.sub(lambda row: re.sub(r"\s+", " ", row[0]), text) + "\n"
+
+
+def _rule(rule: CompiledRule) -> dict[str, Any]:
+    return {
+        "name": rule.name,
+        "strength": rule.strength,
+        "variables": [(variable.name, variable.type) for variable in rule.variables],
+        "cite": rule.cite,
+        "says": rule.says,
+        "formula": in_words(rule.formula),
+        "tree": to_data(rule.formula),
+        "machine": rule.machine,
+        "hoa": rule.hoa,
+    }
 
 
 _ROW = re.compile(r"\[\s[^\[\]{}\"]*\]")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 
@@ -77,6 +77,7 @@ class Rule(msgspec.Struct, forbid_unknown_fields=True):
     cite: str
     says: str
     formula: str
+    tree: Any
     machine: Machine
     hoa: str
 

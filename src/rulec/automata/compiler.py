@@ -17,7 +17,6 @@ from rulec.automata.letters import reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.printing import in_words
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.version import __version__
 
@@ -132,7 +131,7 @@ def _compiled(rule: Rule, done: Done) -> CompiledRule:
         rule.variables,
         rule.cite,
         rule.says,
-        in_words(rule.formula),
+        rule.formula,
         done.machine,
         done.hoa,
     )

@@ -16,14 +16,27 @@ from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook
+    from rulec.diagnostics import RulecError
     from rulec.runtime.verdict import NotJudged, Verdict
+    from rulec.trace import Trace
+
+    Answer = tuple[Trace | RulecError, Verdict | NotJudged]
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @rulebook_option
+@click.option(
+    "--explain",
+    "n_explained",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Explain the first N violations state by state.  [default: 1; with --json 0]",
+)
 @json_option
-def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
+def command(
+    files: tuple[str, ...], rulebook: str, n_explained: int | None, json_output: bool
+) -> int:
     """Judge the traces in FILE..., one JSON object a line; `-` is standard input.
 
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
@@ -33,21 +46,27 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
     """
     from rulec.report import verdicts
     from rulec.report.console import Complaints, print_diagnostics, print_result
-    from rulec.runtime.verdict import Verdict
+    from rulec.runtime.explanation import explain
+    from rulec.runtime.verdict import NotJudged, Verdict
+    from rulec.trace import Trace
     from rulec.workflow import compile_rulebook
 
     rules = compile_rulebook(rulebook, warn=print_diagnostics)
     satisfied = violated = not_judged = 0
     complaints = Complaints()
-    for answer in _answers(files, rules):
-        if isinstance(answer, Verdict):
+    to_explain = n_explained if n_explained is not None else 0 if json_output else 1
+    for trace, answer in _answers(files, rules):
+        if isinstance(answer, Verdict) and isinstance(trace, Trace):
             satisfied += answer.satisfied
             violated += not answer.satisfied
+            chosen = answer.violations[:to_explain]
+            to_explain -= len(chosen)
+            explained = [explain(violation, trace, rules) for violation in chosen]
             if json_output:
-                print_result(verdicts.as_json(answer))
+                print_result(verdicts.as_json(answer, explained))
             elif answer.violations:
-                print_result(verdicts.as_text(answer, rules))
-        else:
+                print_result(verdicts.as_text(answer, rules, explained))
+        elif isinstance(answer, NotJudged):
             not_judged += 1
             complaints.add(answer.error)
             if json_output:
@@ -60,7 +79,8 @@ def command(files: tuple[str, ...], rulebook: str, json_output: bool) -> int:
     return ExitStatus.VIOLATED if violated else ExitStatus.OK
 
 
-def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Verdict | NotJudged]:
+def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Answer]:
+    """Every trace, or why there is none, with its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
@@ -75,18 +95,18 @@ def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Verdic
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
                 yield from _judged(stream, file, size, rules)
         except RulecError as error:
-            yield NotJudged(None, error)
+            yield error, NotJudged(None, error)
 
 
 def _judged(
     stream: IO[bytes], name: str, size: int | None, rules: CompiledRulebook
-) -> Iterator[Verdict | NotJudged]:
+) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.verify import verify_all
+    from rulec.runtime.verify import judge
     from rulec.trace.json_lines import read_traces
 
     with progress(f"judging {name}", size) as tell:
-        for number, answer in enumerate(verify_all(read_traces(stream, name), rules)):
+        for number, trace in enumerate(read_traces(stream, name)):
             if size is not None and number % 100 == 0:
                 tell(stream.tell())
-            yield answer
+            yield trace, judge(trace, rules)

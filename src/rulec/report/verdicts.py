@@ -3,35 +3,39 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
 
 from rulec.automata.compiled import CompiledRulebook
+from rulec.report import explanation
 from rulec.report.excerpt import visible
+from rulec.runtime.explanation import Explanation
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 
 MOST_VIOLATIONS = 20
 """So many are shown for a trace; JSON has them all."""
 
 
-def as_json(verdict: Verdict) -> str:
-    """One line of JSON for a trace, as docs/traces.md describes it."""
-    return json.dumps(
+def as_json(verdict: Verdict, explained: Sequence[Explanation] = ()) -> str:
+    """One line of JSON for a trace, as docs/traces.md describes it.
+
+    ``explained`` are explanations of the first violations, which get a field of their own.
+    """
+    violations: list[dict[str, Any]] = [
         {
-            "trace": verdict.trace,
-            "satisfied": verdict.satisfied,
-            "violations": [
-                {
-                    "rule": violation.rule,
-                    "binding": dict(violation.binding),
-                    "step": violation.step,
-                    "strength": violation.strength,
-                }
-                for violation in verdict.violations
-            ],
-        },
+            "rule": violation.rule,
+            "binding": dict(violation.binding),
+            "step": violation.step,
+            "strength": violation.strength,
+        }
+        for violation in verdict.violations
+    ]
+    for violation, why in zip(violations, explained, strict=False):
+        violation["explanation"] = explanation.as_data(why)
+    return json.dumps(
+        {"trace": verdict.trace, "satisfied": verdict.satisfied, "violations": violations},
         ensure_ascii=False,
     )
 
@@ -49,10 +53,15 @@ def not_judged_as_json(answer: NotJudged) -> str:
     return json.dumps({"trace": answer.trace, "error": details}, ensure_ascii=False)
 
 
-def as_text(verdict: Verdict, rulebook: CompiledRulebook) -> str:
-    """The violations of a trace, a line each, below a line that names the trace."""
+def as_text(
+    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
+) -> str:
+    """The violations of a trace, a line each, below a line that names the trace.
+
+    ``explained`` are explanations of the first violations; each follows its line.
+    """
     if not verdict.violations:
-        return f"{verdict.trace}: {click.style('satisfied', fg='green')}"
+        return f"{visible(verdict.trace)}: {click.style('satisfied', fg='green')}"
     word = (
         click.style("satisfied, but for soft rules", fg="yellow")
         if verdict.satisfied
@@ -61,7 +70,10 @@ def as_text(verdict: Verdict, rulebook: CompiledRulebook) -> str:
     cites = {rule.name: rule.cite for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
-    lines += [f"  {visible(_violation(violation, cites))}" for violation in shown]
+    for number, violation in enumerate(shown):
+        lines.append(f"  {visible(_violation(violation, cites))}")
+        if number < len(explained):
+            lines.append(explanation.as_text(explained[number]))
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join(lines)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.machine import Machine
@@ -44,23 +44,17 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     return Verdict(trace.id, tuple(violations))
 
 
-def verify_all(
-    traces: Iterable[Trace | RulecError], rulebook: CompiledRulebook
-) -> Iterator[Verdict | NotJudged]:
-    """Judge traces one by one; one that cannot be judged does not stop the others.
+def judge(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
+    """As ``verify``, for one of many: what cannot be judged is an answer too.
 
-    ``traces`` may hold, in place of a trace, the error that kept it from being read.
+    ``item`` may be, in place of a trace, the error that kept it from being read.
     """
-    for trace in traces:
-        if isinstance(trace, RulecError):
-            yield NotJudged(None, trace)
-            continue
-        try:
-            verdict = verify(trace, rulebook)
-        except RulecError as error:
-            yield NotJudged(trace.id, error)
-        else:
-            yield verdict
+    if isinstance(item, RulecError):
+        return NotJudged(None, item)
+    try:
+        return verify(item, rulebook)
+    except RulecError as error:
+        return NotJudged(item.id, error)
 
 
 def run(machine: Machine, word: Sequence[int]) -> tuple[bool, int | None]:
