@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -10,6 +11,8 @@ from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.product import Product, count_paths, explore, instances
+from rulec.trace import State, TraceGraph, Value
+from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph, PartitionName
@@ -19,6 +22,9 @@ RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
     "fine": ("station", "lateral"),
 }
 """The relations that only one partition supplies."""
+
+SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
+"""All that partitions supply."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +47,7 @@ def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
     Raises:
         RulecError: R0502 to R0505 if the graph does not supply what the rules read.
     """
-    traces = graph.trace_graph()
+    traces = _in_terms_of(rules.vocabulary, graph.trace_graph())
     try:
         bound = instances(traces, rules)
     except RulecError as error:
@@ -49,6 +55,41 @@ def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
     explored = explore(traces, bound)
     return Maneuvers(graph, count_paths(traces), explored.accepted, explored)
+
+
+def _in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
+    """Leave out what the partition supplies and the vocabulary has no word for.
+
+    The author of a rulebook has not written these names, unlike those in a file of traces.
+    """
+    if not vocabulary.types:
+        traces = replace(traces, objects={}, present={})
+    return replace(
+        traces,
+        states=tuple(
+            tuple(_state(vocabulary, traces.objects, state) for state in layer)
+            for layer in traces.states
+        ),
+    )
+
+
+def _state(vocabulary: Vocabulary, objects: Mapping[str, str], state: State) -> State:
+    kept: dict[str, Value | Mapping[str, Value]] = {}
+    for name, value in state.items():
+        declaration = vocabulary.declarations.get(name)
+        if name in SUPPLIED and declaration is None:
+            continue
+        if name in SUPPLIED and isinstance(value, Mapping) and declaration is not None:
+            kind = declaration.parameters[0] if declaration.parameters else None
+            value = {
+                item: inner
+                for item, inner in value.items()
+                if objects.get(item) not in vocabulary.types
+                or kind is None
+                or vocabulary.is_subtype(objects[item], kind)
+            }
+        kept[name] = value
+    return kept
 
 
 def partition_for(rules: CompiledRulebook, wanted: PartitionName | None) -> PartitionName:
@@ -77,7 +118,13 @@ def partition_for(rules: CompiledRulebook, wanted: PartitionName | None) -> Part
                 f"use the partition `{name}`, or leave the choice to the rulebook",
             )
         return name
-    return wanted or "paper"
+    return wanted or _spoken_of(rules.vocabulary)
+
+
+def _spoken_of(vocabulary: Vocabulary) -> PartitionName:
+    """The partition whose relations a vocabulary declares, for rules that read none of them."""
+    declared = {name for name in vocabulary.declarations if name in RELATIONS_OF["fine"]}
+    return "fine" if declared else "paper"
 
 
 def _no_partition(message: str, way_out: str) -> RulecError:

@@ -1,6 +1,7 @@
 """The compiled rulebook's file: read back as it was, or refused with a reason."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from books import P, Q, always, book, eventually, far, implies, near, rule
@@ -32,6 +33,25 @@ def refused(data):
 
 def test_read_back_as_it_was():
     assert from_json(TEXT.encode(), "x.json") == COMPILED
+
+
+texts = st.text(st.sampled_from('[]{}",:\\ \n\u00a0ab1') | st.characters(codec="utf-8"))
+
+
+@given(texts, texts)
+def test_texts_are_kept_to_the_letter(cite, title):
+    rule_with_text = replace(COMPILED.rules[0], cite=cite, says=title)
+    compiled = replace(COMPILED, rules=(rule_with_text,), title=title, law=cite)
+    assert from_json(to_json(compiled).encode(), "x.json") == compiled
+
+
+def test_a_row_of_a_table_stands_on_one_line():
+    assert (
+        f'"letters": {list(COMPILED.rules[1].machine.letters)}'.replace("[", "[ ").replace(
+            "]", " ]"
+        )
+        in TEXT
+    )
 
 
 def test_the_documented_parts_are_there():

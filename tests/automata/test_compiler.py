@@ -1,14 +1,19 @@
 """Compiling: Spot in a process of its own, and what becomes of rules that explode."""
 
+from dataclasses import replace
 from functools import reduce
 
 import pytest
 from books import P, Q, always, book, far, implies, near, rule
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from words import formulas
 
 from rulec.automata import compiler
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
+from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
 
@@ -129,12 +134,12 @@ def test_an_automaton_that_fails_its_check_is_refused():
 
     from rulec.automata import spot_bridge
 
-    wrong = spot.translate("!p", "parity", "det", "complete")
-    with pytest.raises(spot_bridge.CheckError):
-        spot_bridge._check(wrong, spot.formula("p"))
-    weaker = spot.translate("G p", "parity", "det", "complete")
-    with pytest.raises(spot_bridge.CheckError):
-        spot_bridge._check(weaker, spot.formula("p"))
+    spot_bridge._check(spot.translate("p", "parity", "det", "complete"), spot.formula("p"))
+    # Another language, one too small, one too large; then the right one, but nondeterministic.
+    for wrong in ("!p", "G p", "F p"):
+        automaton = spot.translate(wrong, "parity", "det", "complete")
+        with pytest.raises(spot_bridge.CheckError):
+            spot_bridge._check(automaton, spot.formula("p"))
     with pytest.raises(spot_bridge.CheckError):
         spot_bridge._check(spot.translate("FG p", "BA"), spot.formula("FG p"))
 
@@ -162,6 +167,26 @@ def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RuntimeError, match="while compiling rule A"):
         compile_rulebook(book(rule("A", P)))
+
+
+@settings(max_examples=10)
+@given(st.lists(formulas, min_size=2, max_size=8))
+def test_a_rules_table_does_not_depend_on_its_neighbours(several):
+    rules = [rule(f"r{n}", formula, "x: thing") for n, formula in enumerate(several)]
+    forward = [one.machine for one in compile_rulebook(book(*rules)).rules]
+    backward = [one.machine for one in compile_rulebook(book(*rules[::-1])).rules]
+    assert forward == backward[::-1]
+    assert compile_rulebook(book(rules[-1])).rules[0].machine == forward[-1]
+
+
+def test_nor_do_the_files_of_the_papers_rules():
+    source = load_rulebook("esterle2019")
+    together = compile_rulebook(source).rules
+    for rule_alone in together:
+        (one,) = (each for each in source.rules if each.name == rule_alone.name)
+        assert compile_rulebook(replace(source, rules=(one,))).rules == (rule_alone,)
+    backward = compile_rulebook(replace(source, rules=source.rules[::-1])).rules
+    assert backward[::-1] == together
 
 
 def test_files_of_the_working_directory_are_not_imported(tmp_path, monkeypatch):

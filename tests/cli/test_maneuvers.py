@@ -82,6 +82,39 @@ def test_the_rulebook_chooses_the_partition(tmp_path, capsys):
         assert json.loads(out)["partition"] == "fine"
 
 
+@pytest.mark.parametrize(
+    ("rulebook", "partition"),
+    [
+        ("use road\nhard rule A { require always not crossing }", "fine"),
+        ("use paper\nhard rule A { require always not R_pc }", "paper"),
+        ("signal p default true\nhard rule A { require always p }", "paper"),
+        pytest.param(
+            "type obstacle\ntype vehicle is obstacle\ntype pedestrian is obstacle\n"
+            "type cyclist is obstacle\nposition(v: vehicle) is one of b, f, l, r\n"
+            "hard rule A (v: vehicle) { require always not r(v) }",
+            "paper",
+        ),
+    ],
+)
+def test_a_vocabulary_need_not_have_words_for_all_that_a_partition_supplies(
+    rulebook, partition, tmp_path, capsys
+):
+    source = tmp_path / "few_words.rules"
+    source.write_text(f"rulebook few_words\n{rulebook}\n")
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        "[road]\ns = [0.0, 100.0]\nlanes = [-1.75, 1.75, 5.25]\n[ego]\ns = 10.0\nd = 0.0\n"
+        '[[obstacle]]\nid = "v1"\ntype = "vehicle"\nlength = 4.0\nwidth = 2.0\n'
+        "s = 40.0\nd = 0.0\n"
+        '[[obstacle]]\nid = "p1"\ntype = "pedestrian"\nlength = 1.0\nwidth = 1.0\n'
+        "s = 70.0\nd = 3.5\nwalking_direction = -90.0\n"
+    )
+    for scenario in ("s2", str(scene)):
+        status, out, err = answer(capsys, scenario, "--rulebook", str(source), "--json")
+        assert (status, err) == (0, "")
+        assert json.loads(out)["partition"] == partition
+
+
 def test_a_partition_that_does_not_supply_what_rules_read(capsys):
     status, _, err = answer(capsys, "s2", "-r", "esterle2019", "--partition", "fine")
     assert status == 2

@@ -2,12 +2,16 @@
 
 import pytest
 from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
+from words import VOCABULARY
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
+from rulec.logic.formula import Atom
+from rulec.rulebook.model import Rulebook
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
+from rulec.vocabulary import Signal, Vocabulary
 
 CARS = {"car1": "car", "car2": "car", "thing1": "thing"}
 
@@ -60,6 +64,25 @@ def test_one_object_is_never_bound_twice():
     clash = rule("A", always(no(both(near("x"), near("y")))), "x: thing", "y: thing")
     assert violations(clash, trace("ngg")) == []
     assert violations(clash, trace("nng")) == [(("car1", "car2"), 0), (("car2", "car1"), 0)]
+
+
+def test_one_object_is_never_bound_twice_to_different_types():
+    clash = rule("A", always(no(both(near("x"), near("y")))), "x: car", "y: thing")
+    assert violations(clash, trace("n", objects={"car1": "car"})) == []
+    assert violations(clash, trace("nn", objects={"car1": "car", "thing1": "thing"})) == [
+        (("car1", "thing1"), 0)
+    ]
+
+
+def test_a_default_holds_for_each_object():
+    braking = Signal("braking", ("thing",), False)
+    vocabulary = Vocabulary("brakes", VOCABULARY.types, {"braking": braking})
+    never = rule("A", always(no(Atom("braking", ("x",)))), "x: car")
+    rules = compile_rulebook(Rulebook("test", vocabulary, (never,)))
+    objects = {"car1": "car", "car2": "car"}
+    states = ({"braking": {"car2": True}}, {})
+    found = verify(Trace("t", 1.0, objects, states), rules).violations
+    assert [violation.binding for violation in found] == [{"x": "car2"}]
 
 
 def test_a_rule_without_objects_to_bind_holds():

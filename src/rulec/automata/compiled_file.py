@@ -49,7 +49,15 @@ def to_json(rulebook: CompiledRulebook) -> str:
         "rules": [_rule(rule) for rule in rulebook.rules],
     }
     text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
-    return _ROW.sub(lambda row: re.sub(r"\s+", " ", row[0]), text) + "\n"
+    return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
+
+
+_STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
+"""A string, or a list of neither lists, objects nor strings, over several lines."""
+
+
+def _on_one_line(found: re.Match[str]) -> str:
+    return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
 
 
 def _rule(rule: CompiledRule) -> dict[str, Any]:
@@ -64,10 +72,6 @@ def _rule(rule: CompiledRule) -> dict[str, Any]:
         "machine": rule.machine,
         "hoa": rule.hoa,
     }
-
-
-_ROW = re.compile(r"\[\s[^\[\]{}\"]*\]")
-"""A list of neither lists, objects nor strings, over several lines."""
 
 
 def from_json(data: bytes, file: str) -> CompiledRulebook:
