@@ -7,7 +7,8 @@ from hypothesis import assume, given
 from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
-from rulec.partition import navigation_graph
+from rulec.partition import Layer, navigation_graph
+from rulec.partition.margin import edges
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario, load_scenario
 
 
@@ -129,3 +130,34 @@ def test_a_gap_follows_an_obstacle_that_changes_lane():
         ]
         assert len(follower) == 1
         behind = follower[0]
+
+
+def layer(*neighbours):
+    """A layer of which only the adjacency matters here."""
+    return Layer(0.0, (), (None,) * len(neighbours), neighbours)
+
+
+@pytest.mark.parametrize("older", [1, 2])
+def test_where_two_neighbours_become_one_the_longer_run_counts(older):
+    """Cells a, b, c: a has been next to one of b and c for longer; then both become one."""
+    first = layer(*[(older,) if i == 0 else (0,) if i == older else () for i in range(3)])
+    second = layer((1, 2), (0,), (0,))
+    third = layer((1,), (0,))
+    stay = ({0}, {1}, {2})
+    merge = ({0}, {1}, {1})
+    successors, margins = edges([first, second, third], [stay, merge])
+    assert successors[1][0] == (0, 1)
+    # Open in the first, the second and the third layer, on the side of the older neighbour.
+    assert margins[1][0] == (None, 3)
+
+
+@pytest.mark.parametrize("longer", [1, 2])
+def test_where_one_neighbour_becomes_two_the_longer_run_counts(longer):
+    """Time turned round: a and b; b splits in two, of which a stays next to one."""
+    first = layer((1,), (0,))
+    second = layer((1, 2), (0,), (0,))
+    third = layer(*[(longer,) if i == 0 else (0,) if i == longer else () for i in range(3)])
+    successors, margins = edges([first, second, third], [({0}, {1, 2}), ({0}, {1}, {2})])
+    assert successors[0][0] == (0, 1, 2)
+    assert margins[0][0][longer] == 3
+    assert margins[0][0][3 - longer] == 2
