@@ -55,16 +55,18 @@ def in_words(formula: Formula) -> str:
             inner = in_words(operand)
             return f"{operator.value} {f'({inner})' if isinstance(operand, Binary) else inner}"
         case Binary(operator, left, right):
-            return f"{_side(operator, left)} {operator.value} {_side(operator, right)}"
+            chain = operator in (BinaryOperator.AND, BinaryOperator.OR)
+            before = _side(operator, left, chain=chain)
+            return f"{before} {operator.value} {_side(operator, right)}"
 
 
-def _side(operator: BinaryOperator, formula: Formula) -> str:
+def _side(operator: BinaryOperator, formula: Formula, *, chain: bool = False) -> str:
     text = in_words(formula)
     if not isinstance(formula, Binary):
         return text
-    chain = operator is formula.operator and operator in (BinaryOperator.AND, BinaryOperator.OR)
+    chained = chain and operator is formula.operator
     tighter = _BINDING[formula.operator] > _BINDING[operator]
-    return text if chain or tighter else f"({text})"
+    return text if chained or tighter else f"({text})"
 
 
 def in_spot(formula: Formula) -> str:
