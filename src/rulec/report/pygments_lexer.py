@@ -1,0 +1,44 @@
+"""Rulebooks for Pygments, which colours them in documentation and in terminals."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, ClassVar
+
+from pygments.lexer import RegexLexer, bygroups
+from pygments.token import Comment, Keyword, Literal, Name, Number, Operator, Punctuation, String
+from pygments.token import Text as Blank
+
+from rulec.syntax import highlighting as words
+
+_RULE_NAME: Any = bygroups(  # type: ignore[no-untyped-call]
+    Keyword.Declaration, Blank.Whitespace, Name.Function
+)
+
+
+class RulecLexer(RegexLexer):
+    """The rulec language, under the names ``rulec`` and ``rules`` and in files ``*.rules``."""
+
+    name = "rulec"
+    aliases: ClassVar[list[str]] = ["rulec", "rules"]
+    filenames: ClassVar[list[str]] = ["*.rules"]
+    flags = re.MULTILINE
+
+    tokens: ClassVar[dict[str, list[Any]]] = {
+        "root": [
+            (r"\s+", Blank.Whitespace),
+            (words.COMMENT, Comment.Single),
+            (words.STRING, String.Double),
+            (words.RULE_NAME, _RULE_NAME),
+            (words.any_of(words.STRUCTURE_WORDS), Keyword.Declaration),
+            (words.any_of(words.CLAUSES), Keyword),
+            (words.any_of(words.CONSTANTS), Keyword.Constant),
+            (words.any_of(words.OPERATORS), Operator.Word),
+            (words.any_of(words.JOINING_WORDS), Keyword.Pseudo),
+            (words.OPERATOR_SIGNS, Operator),
+            (words.DATE, Literal.Date),
+            (words.NUMBER, Number),
+            (r"[^\W\d]\w*", Name),
+            (r"[{}(),:;/%°²³*.]", Punctuation),
+        ]
+    }

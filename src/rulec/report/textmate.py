@@ -1,0 +1,56 @@
+"""The TextMate grammar in ``grammar/``, made from the words that the parser knows.
+
+``python -m rulec.report.textmate grammar/rulec.tmLanguage.json`` makes it anew.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from rulec.files import written_whole
+from rulec.syntax import highlighting as words
+
+
+def textmate_grammar() -> str:
+    """The grammar's text, JSON as editors read it."""
+    return json.dumps(_grammar(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _grammar() -> dict[str, Any]:
+    return {
+        "$schema": "https://raw.githubusercontent.com/martinring/tmlanguage/master/tmlanguage.json",
+        "name": "rulec",
+        "scopeName": "source.rulec",
+        "fileTypes": ["rules"],
+        "patterns": [
+            _pattern("comment.line.number-sign.rulec", words.COMMENT),
+            _pattern("string.quoted.double.rulec", words.STRING),
+            {
+                "match": words.RULE_NAME,
+                "captures": {
+                    "1": {"name": "storage.type.rulec"},
+                    "3": {"name": "entity.name.function.rulec"},
+                },
+            },
+            _pattern("storage.type.rulec", words.any_of(words.STRUCTURE_WORDS)),
+            _pattern("keyword.control.rulec", words.any_of(words.CLAUSES)),
+            _pattern("constant.language.rulec", words.any_of(words.CONSTANTS)),
+            _pattern("keyword.operator.word.rulec", words.any_of(words.OPERATORS)),
+            _pattern("keyword.other.rulec", words.any_of(words.JOINING_WORDS)),
+            _pattern("keyword.operator.rulec", words.OPERATOR_SIGNS),
+            _pattern("constant.other.date.rulec", words.DATE),
+            _pattern("constant.numeric.rulec", words.NUMBER),
+        ],
+    }
+
+
+def _pattern(name: str, match: str) -> dict[str, str]:
+    return {"name": name, "match": match}
+
+
+if __name__ == "__main__":
+    with written_whole(Path(sys.argv[1])) as stream:
+        stream.write(textmate_grammar().encode())
