@@ -26,9 +26,12 @@ def command(rulebook: str, output: str) -> None:
     Spot. Each file appears whole or not at all.
     """
     from rulec.automata.compiled_file import write_compiled
+    from rulec.settings import search_path
     from rulec.workflow import compile_rulebook
 
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
-    for path in write_compiled(compile_rulebook(rulebook, warn=print_diagnostics), Path(output)):
+    for path in write_compiled(
+        compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics), Path(output)
+    ):
         print_result(f"wrote {path}")

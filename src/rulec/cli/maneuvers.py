@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import click
@@ -31,10 +32,11 @@ def command(
     """
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
+    from rulec.settings import search_path
     from rulec.workflow import compile_rulebook, find_maneuvers
 
     begin = time.perf_counter()
-    rules = compile_rulebook(rulebook, warn=print_diagnostics)
+    rules = compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics)
     found = find_maneuvers(scenario, rules, **options)
     listed = None if n_listed is None else found.cheapest(n_listed)
     seconds = time.perf_counter() - begin

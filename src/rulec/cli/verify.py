@@ -48,10 +48,11 @@ def command(
     from rulec.report.console import Complaints, print_diagnostics, print_result
     from rulec.runtime.explanation import explain
     from rulec.runtime.verdict import NotJudged, Verdict
+    from rulec.settings import search_path
     from rulec.trace import Trace
     from rulec.workflow import compile_rulebook
 
-    rules = compile_rulebook(rulebook, warn=print_diagnostics)
+    rules = compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics)
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1

@@ -72,4 +72,5 @@ CODES: dict[str, str] = {
     "R0701": "a file cannot be read",
     "R0702": "a file cannot be written",
     "R0703": "a name was not found on the search path",
+    "R0704": "a project's settings are wrong",
 }

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import re
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
 from rulec.files import decoded, opened
@@ -15,8 +12,11 @@ from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
 from rulec.scenario.model import Scenario
 from rulec.scenario.toml_places import TomlText
+from rulec.toml import parsed_toml
 
 LARGEST_BYTES = 4_000_000
+
+_HOW = "numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables `[[obstacle]]`"
 
 
 def available_scenarios() -> tuple[str, ...]:
@@ -53,7 +53,7 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
 def read_scenario(path: Path) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
     source = _text(path)
-    return to_scenario(_parse(source), path.stem, Findings(TomlText(source)))
+    return to_scenario(parsed_toml(source, "R0602", _HOW), path.stem, Findings(TomlText(source)))
 
 
 def _exists(name: str) -> bool:
@@ -77,50 +77,3 @@ def _text(path: Path) -> Source:
             )
         )
     return decoded(str(path), content)
-
-
-_DEEP_KEY = re.compile(r"^[ \t\[]*\w+(?:[ \t]*\.[ \t]*\w+){40}", re.MULTILINE)
-
-
-def _parse(source: Source) -> dict[str, Any]:
-    try:
-        tomllib: Any = import_module("tomllib")
-    except ModuleNotFoundError:  # Python 3.10
-        tomllib = import_module("tomli")
-    if _DEEP_KEY.search(source.text):
-        # The parser's time grows with the square of a key's depth.
-        raise _not_toml("a key has too many parts joined by dots", Place(source.name))
-    try:
-        parsed: dict[str, Any] = tomllib.loads(source.text)
-    except RecursionError:
-        message, place = "brackets are nested too deeply", Place(source.name)
-    except ValueError as error:
-        message, place = _syntax_error(str(error), source)
-    else:
-        return parsed
-    raise _not_toml(message, place) from None
-
-
-def _not_toml(message: str, place: Place) -> RulecError:
-    return RulecError(
-        Diagnostic(
-            "R0602",
-            f"the file is not TOML: {message}",
-            place,
-            help="numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables "
-            "`[[obstacle]]`",
-        )
-    )
-
-
-def _syntax_error(message: str, source: Source) -> tuple[str, Place]:
-    words = re.sub(r" \(at [^()]*\)$", "", message)
-    words = re.sub(r":? value has \d+ digits;.*", "", words)
-    at = re.search(r"\(at line (\d+), column (\d+)\)$", message)
-    if at is not None:
-        line, column = int(at.group(1)), int(at.group(2))
-    elif message.endswith("(at end of document)"):
-        line, column = source.position(len(source.text))
-    else:
-        return words, Place(source.name)
-    return words, Place(source.name, line, column, line, column + 1, source.line(line))
