@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
+from rulec.cli.arguments import complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
 
 @click.command()
-@click.argument("rulebook")
+@click.argument("rulebook", shell_complete=complete_rulebooks)
 @click.option(
     "-o",
     "--output",
