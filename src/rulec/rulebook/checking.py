@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
 from rulec.rulebook.finding import (
@@ -45,13 +46,13 @@ def check(
     findings: dict[tuple[object, ...], Diagnostic] = {}
     unread: list[Diagnostic] = []
     for path in _meant(references, search_path, unread):
-        identity = os.path.realpath(path)
-        if identity in files:
-            continue
         try:
             data = standard_input() if path is _STANDARD_INPUT else read_bytes(path)
         except RulecError as error:
             unread += error.diagnostics
+            continue
+        identity = os.path.realpath(path)
+        if identity in files:
             continue
         files[identity] = str(path)
         for one in diagnose(str(path), data, path, search_path):
@@ -105,7 +106,7 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]
 
 def _in_folder(folder: str) -> list[Path]:
     found: list[Path] = []
-    for here, inner, names in os.walk(folder):
+    for here, inner, names in os.walk(folder, onerror=_locked):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         found += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
     if not found:
@@ -113,6 +114,12 @@ def _in_folder(folder: str) -> list[Path]:
         way_out = "give a folder with files whose names end in `.rules`"
         raise RulecError(Diagnostic("R0701", message, Place(folder), help=way_out))
     return found
+
+
+def _locked(problem: OSError) -> NoReturn:
+    message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
+    place = Place(os.fsdecode(problem.filename))
+    raise RulecError(Diagnostic("R0701", message, place, help="check its permissions"))
 
 
 def _nothing_called(name: str, known: Sequence[str]) -> Diagnostic:
