@@ -191,6 +191,7 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
     [
         (["build/a.json"], "`build/a.json` is compiled and has no examples"),
         (["esterle2019", "--threshold", "101"], "--threshold"),
+        (["esterle2019", "--threshold", "nan"], "--threshold"),
         (["esterle2019", "--output-format", "sarif"], "'junit'"),
         ([], "Missing argument"),
     ],

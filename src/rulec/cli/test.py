@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,15 @@ from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
     from rulec.runtime.examples import ExampleRun
+
+
+def _number(
+    context: click.Context, parameter: click.Parameter, value: float | None
+) -> float | None:
+    """Not a number is in no range, and click lets it pass."""
+    if value is not None and math.isnan(value):
+        raise click.BadParameter("it has to be a number from 0 to 100")
+    return value
 
 
 @click.command()
@@ -43,6 +53,7 @@ if TYPE_CHECKING:
 @click.option(
     "--threshold",
     type=click.FloatRange(0, 100),
+    callback=_number,
     metavar="PERCENT",
     help="Fail if the examples cover less; implies --coverage.",
 )
@@ -59,7 +70,7 @@ def command(
     Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
     could not be read or compiled.
     """
-    from rulec.report.console import print_result, wants_color
+    from rulec.report.console import print_aside, print_result, wants_color
     from rulec.report.examples import render, shortcomings
     from rulec.runtime.coverage import coverage
 
@@ -72,7 +83,7 @@ def command(
     print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
-        click.echo(f"rulec: {sentence}", err=True)
+        print_aside(f"rulec: {sentence}")
     if len(runs) < len(rulebooks):
         return ExitStatus.NOT_ANSWERED
     failed = any(not one.passed for run in runs for one in run.outcomes)
