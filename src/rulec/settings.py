@@ -12,15 +12,17 @@ FILE_NAME = "rulec.toml"
 _HOW = 'such as `search_path = ["rulebooks"]`'
 
 
-def search_path(folder: Path) -> tuple[Path, ...]:
+def search_path(folder: Path | None = None) -> tuple[Path, ...]:
     """The folders in which names of rulebooks and vocabularies are looked for first.
 
     Args:
-        folder: where to look for ``rulec.toml``, and above which; no such file means no folders.
+        folder: where to look for ``rulec.toml``, and above which, if not in the working folder; no
+            such file means no folders.
 
     Raises:
         RulecError: R0701 if it cannot be read, R0101 or R0704 for what is wrong in it.
     """
+    folder = folder or Path.cwd()
     for place in (folder, *folder.parents):
         file = place / FILE_NAME
         if file.is_file():

@@ -22,6 +22,7 @@ from rulec.trace import Trace, json_lines
 if TYPE_CHECKING:
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
+    from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
 
 
@@ -47,19 +48,33 @@ def compile_rulebook(
     """
     if isinstance(reference, CompiledRulebook):
         return reference
-    from rulec.automata.compiler import compile_rulebook as through_spot
-
     if not isinstance(reference, str | Path):
+        from rulec.automata.compiler import compile_rulebook as through_spot
+
         return through_spot(reference)
     if Path(reference).suffix == ".json":
         return compiled_file.read_compiled(Path(reference))
+    from rulec.runtime.examples import surprise
+
+    run = run_examples(reference, search_path)
+    warn([*run.warnings, *(surprise(one) for one in run.outcomes if not one.passed)])
+    return run.compiled
+
+
+def run_examples(
+    reference: str | Path, search_path: Sequence[str | Path] = (), pattern: str | None = None
+) -> ExampleRun:
+    """Compile a rulebook, given by name or by its source's path, and run its examples.
+
+    ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
+    wild. Raises RulecError like ``compile_rulebook``.
+    """
+    from rulec.automata.compiler import compile_rulebook as through_spot
     from rulec.rulebook.loader import read_rulebook
-    from rulec.runtime.examples import failing_examples
+    from rulec.runtime.examples import run_all
 
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path])
-    compiled = through_spot(loaded.rulebook)
-    warn([*loaded.warnings, *failing_examples(loaded.rulebook, compiled)])
-    return compiled
+    return run_all(loaded.rulebook, through_spot(loaded.rulebook), loaded.warnings, pattern)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

@@ -98,6 +98,17 @@ def test_no_color_is_obeyed():
     assert "error" in shown
 
 
+@pytest.mark.parametrize("verb", ["check", "test"])
+def test_findings_have_colour_for_people_only(verb, tmp_path):
+    file = tmp_path / "a.rules"
+    formula = "p" if verb == "test" else "p =>"
+    file.write_text(f"rulebook a signal p hard rule r {{ require {formula} reject {{ p }} }}")
+    arguments = [verb, str(file)]
+    assert "\x1b[1;31merror[R0" in on_terminal(arguments, {"NO_COLOR": ""})
+    assert "\x1b" not in on_terminal(arguments, {"NO_COLOR": "1"})
+    assert "\x1b" not in on_terminal([*arguments, "--output-format", "json"], {"NO_COLOR": ""})
+
+
 def test_a_pipe_gets_neither(tmp_path):
     done = subprocess.run(
         [*RULEC, "traces", "s2", "-o", str(tmp_path / "t")], capture_output=True, check=True

@@ -9,7 +9,9 @@ from rulec.diagnostics.codes import CODES
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = "".join(
-    path.read_text() for path in (ROOT / "src").rglob("*.py") if path.name != "codes.py"
+    path.read_text()
+    for path in (ROOT / "src").rglob("*.py")
+    if path.name != "codes.py" and path.parent.name != "explanations"
 )
 TESTS = "".join(
     path.read_text()

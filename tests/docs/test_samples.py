@@ -12,7 +12,7 @@ import pytest
 from rulec.automata.compiled_file import to_json
 from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.examples import failing_examples
+from rulec.runtime.examples import run_all
 from rulec.runtime.verify import run
 from rulec.workflow import compile_rulebook
 
@@ -61,8 +61,8 @@ def test_there_are_commands():
 def test_rulebooks_check(text):
     if re.search(r"^rulebook ", text, re.MULTILINE):
         rulebook = parse_rulebook(text)
-        compiled = compile_rulebook(rulebook)
-        assert list(failing_examples(rulebook, compiled)) == []
+        run = run_all(rulebook, compile_rulebook(rulebook))
+        assert [one.name for one in run.outcomes if not one.passed] == []
 
 
 def test_the_python_sample_prints_what_is_shown():

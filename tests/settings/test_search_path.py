@@ -2,6 +2,7 @@
 
 import pytest
 
+from rulec.cli.arguments import complete_rulebooks
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.settings import search_path
@@ -58,6 +59,14 @@ def test_names_are_looked_for_there(tmp_path, monkeypatch, capsys):
     assert main(["maneuvers", "s1", "--rulebook", "mine"]) == 0
     assert main(["compile", "mine", "-o", "out"]) == 0
     assert (inside / "out" / "A.hoa").exists()
+    assert main(["check", "mine", "words"]) == 0
+    assert main(["test", "mine"]) == 0
+    capsys.readouterr()
+    assert main(["list"]) == 0
+    listed = capsys.readouterr().out
+    assert "mine" in listed
+    assert "words" in listed
+    assert "mine" in [item.value for item in complete_rulebooks(None, None, "")]
     monkeypatch.chdir(tmp_path.parent)
     assert main(["compile", "mine", "-o", str(inside / "out")]) == 2
     assert "there is no rulebook `mine`" in capsys.readouterr().err

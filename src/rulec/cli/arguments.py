@@ -2,19 +2,90 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
+
+from rulec.diagnostics import RulecError
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
 
 
+_FILES = CompletionItem("", type="file")
+"""Has the shell offer files, as well as the names that follow."""
+
+
+def complete_rulebooks(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of rulebooks, and files."""
+    from rulec.rulebook.finding import available_rulebooks
+
+    return _named(available_rulebooks(_folders()), incomplete)
+
+
+def complete_sources(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of rulebooks and vocabularies, and files."""
+    from rulec.rulebook.finding import available_rulebooks, available_vocabularies
+
+    vocabularies = (path.stem for path in available_vocabularies(_folders()))
+    return _named([*available_rulebooks(_folders()), *vocabularies], incomplete)
+
+
+def complete_scenarios(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of scenarios, and files."""
+    from rulec.scenario import available_scenarios
+
+    return _named(available_scenarios(), incomplete)
+
+
+def complete_codes(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Codes of messages, with what they are about."""
+    from rulec.diagnostics.codes import CODES
+
+    return [
+        CompletionItem(code, help=title)
+        for code, title in CODES.items()
+        if code.startswith(incomplete.upper())
+    ]
+
+
+def _folders() -> tuple[Path, ...]:
+    """The project's own folders; while a command is typed nobody wants to hear of mistakes."""
+    from rulec.settings import search_path
+
+    try:
+        return search_path()
+    except RulecError:
+        return ()
+
+
+def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+    return [_FILES, *fitting]
+
+
 def rulebook_option(function: Decorated) -> Decorated:
     """``--rulebook R``, required."""
-    option = click.option("-r", "--rulebook", required=True, metavar="R", help=RULEBOOK_HELP)
+    option = click.option(
+        "-r",
+        "--rulebook",
+        required=True,
+        metavar="R",
+        help=RULEBOOK_HELP,
+        shell_complete=complete_rulebooks,
+    )
     return option(function)
 
 
@@ -46,7 +117,7 @@ def graph_options(function: Decorated) -> Decorated:
         click.option(
             "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
         ),
-        click.argument("scenario"),
+        click.argument("scenario", shell_complete=complete_scenarios),
     ):
         function = decorate(function)
     return function

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
+from rulec.cli.arguments import complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
 
 @click.command()
-@click.argument("rulebook")
+@click.argument("rulebook", shell_complete=complete_rulebooks)
 @click.option(
     "-o",
     "--output",
@@ -32,6 +33,6 @@ def command(rulebook: str, output: str) -> None:
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     for path in write_compiled(
-        compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics), Path(output)
+        compile_rulebook(rulebook, search_path(), print_diagnostics), Path(output)
     ):
         print_result(f"wrote {path}")

@@ -12,6 +12,8 @@ class ExitStatus(IntEnum):
     """Done; what was judged is satisfied."""
     VIOLATED = 1
     """A hard rule is violated, or no maneuver satisfies all of them."""
+    FOUND = 1
+    """There are mistakes in a rulebook, or its examples come out otherwise than they say."""
     NOT_ANSWERED = 2
     """The question could not be answered: wrong usage, bad input, output that cannot be written."""
     BUG = 70

@@ -15,8 +15,13 @@ from rulec.diagnostics import RulecError
 from rulec.version import __version__
 
 VERBS = {
+    "check": "Check rulebooks and vocabularies.",
     "compile": "Compile a rulebook to automata files.",
+    "completion": "Print the script that completes rulec's commands in a shell.",
+    "explain": "Explain a code of a message.",
+    "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
+    "test": "Run the examples of rulebooks.",
     "traces": "Write all maneuvers of a scenario as traces.",
     "verify": "Judge traces by a rulebook.",
 }
@@ -52,8 +57,8 @@ class _Verbs(click.Group):
 @click.command(
     cls=_Verbs,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit status: 0 satisfied, 1 a hard rule violated, 2 could not be answered, "
-    "70 a bug in rulec.",
+    epilog="Exit status: 0 all is well, 1 a hard rule is violated or a mistake found, "
+    "2 could not be answered, 70 a bug in rulec.",
 )
 @click.version_option(__version__, message="rulec %(version)s")
 def rulec() -> None:

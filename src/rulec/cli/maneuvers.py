@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import Any
 
 import click
@@ -36,7 +35,7 @@ def command(
     from rulec.workflow import compile_rulebook, find_maneuvers
 
     begin = time.perf_counter()
-    rules = compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics)
+    rules = compile_rulebook(rulebook, search_path(), print_diagnostics)
     found = find_maneuvers(scenario, rules, **options)
     listed = None if n_listed is None else found.cheapest(n_listed)
     seconds = time.perf_counter() - begin

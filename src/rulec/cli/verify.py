@@ -52,7 +52,7 @@ def command(
     from rulec.trace import Trace
     from rulec.workflow import compile_rulebook
 
-    rules = compile_rulebook(rulebook, search_path(Path.cwd()), print_diagnostics)
+    rules = compile_rulebook(rulebook, search_path(), print_diagnostics)
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1

@@ -40,7 +40,7 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
     if not diagnostics:
         return
     text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
-    _print_aside(text.rstrip("\n"))
+    print_aside(text.rstrip("\n"))
 
 
 class Complaints:
@@ -61,10 +61,11 @@ class Complaints:
         """Say how many have not been shown."""
         for code, count in self._seen.items():
             if count > self._most:
-                _print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
+                print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
 
 
-def _print_aside(text: str) -> None:
+def print_aside(text: str) -> None:
+    """Text on standard error, above the progress bar if there is one."""
     # Where standard error cannot be written, the exit status has to do.
     with suppress(OSError):
         if _bar is not None:

@@ -45,6 +45,11 @@ def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
+def available_vocabularies(search_path: Sequence[Path] = ()) -> tuple[Path, ...]:
+    """The files of the vocabularies that any rulebook may use, in the order of their names."""
+    return tuple(_vocabularies_in(_vocabulary_folders(None, search_path)))
+
+
 def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
     """The file of a vocabulary: beside the rulebook that uses it, on the search path, or ours.
 
@@ -57,14 +62,7 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
         candidate = folder / file
         if _is_file(candidate) and (user is None or not _same(candidate, user)):
             return candidate
-    known = sorted(
-        {
-            path.stem
-            for folder in folders
-            for path in _rules_files(folder)
-            if path.parent == folder and _lead(path) == "vocabulary"
-        }
-    )
+    known = [path.stem for path in _vocabularies_in(folders)]
     raise RulecError(
         Diagnostic(
             "R0703",
@@ -97,6 +95,15 @@ def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[
         beside.append(user.parent.parent / "vocabulary")
     listed = [inner for folder in search_path for inner in (folder, folder / "vocabulary")]
     return [*beside, *listed, rulebooks_folder() / "vocabulary"]
+
+
+def _vocabularies_in(folders: Sequence[Path]) -> list[Path]:
+    first: dict[str, Path] = {}
+    for folder in folders:
+        for path in _rules_files(folder):
+            if path.parent == folder and _lead(path) == "vocabulary":
+                first.setdefault(path.stem, path)
+    return [first[name] for name in sorted(first)]
 
 
 def _rules_files(folder: Path) -> Iterator[Path]:

@@ -22,6 +22,7 @@ from rulec.vocabulary import Vocabulary
 __all__ = [
     "Loaded",
     "available_rulebooks",
+    "diagnose",
     "load_rulebook",
     "load_vocabulary",
     "parse_rulebook",
@@ -87,10 +88,43 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
     return vocabulary
 
 
+def diagnose(
+    name: str, data: bytes, path: Path | None = None, search_path: Sequence[Path] = ()
+) -> tuple[Diagnostic, ...]:
+    """Everything that there is to say about a rulebook or a vocabulary, errors and warnings.
+
+    Args:
+        name: what messages call it.
+        data: its content.
+        path: where it is, so that vocabularies beside it are found; None if that is nowhere.
+        search_path: folders of vocabularies.
+    """
+    try:
+        source = decode(name, data)
+        file, mistakes = parse(source)
+        if file.kind == "rulebook":
+            return _resolved(source, data, path, search_path, (file, mistakes)).warnings
+        _, meanings = resolve_vocabulary(file)
+    except RulecError as error:
+        return error.diagnostics
+    return _in_order(name, [*mistakes, *meanings])
+
+
 def _load(source: Source, data: bytes, path: Path | None, search_path: Sequence[Path]) -> Loaded:
     file, mistakes = parse(source)
     if file.kind == "vocabulary" and file.name is not None:
         raise RulecError(_not_a_rulebook(file))
+    return _resolved(source, data, path, search_path, (file, mistakes))
+
+
+def _resolved(
+    source: Source,
+    data: bytes,
+    path: Path | None,
+    search_path: Sequence[Path],
+    parsed: tuple[tree.File, tuple[Diagnostic, ...]],
+) -> Loaded:
+    file, mistakes = parsed
     found = _Vocabularies(path, tuple(search_path))
     trees = [found.read(use) for use in _once(file.uses)]
     rulebook, meanings = resolve(

@@ -33,6 +33,8 @@ class Example:
     states: tuple[ExampleState, ...]
     label: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    state_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+    """Where each state is written; empty for an example that was not read from a text."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,8 @@ def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
 def _example(example: tree.Example, formula: Formula | None, scope: Scope) -> Example:
     needed = {} if formula is None else _without_default(formula, scope.declared)
     states = tuple(_state(state, needed, scope) for state in example.states)
-    return Example(example.accepts, states, example.label, example.span)
+    spans = tuple(state.span for state in example.states)
+    return Example(example.accepts, states, example.label, example.span, spans)
 
 
 def _without_default(

@@ -2,16 +2,93 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import Any
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.runtime.letters import Columns
 from rulec.runtime.verify import run
 from rulec.trace import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How an example came out.
+
+    ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
+    the rule's machine. ``lost_after`` is the first state, from 0, after which no continuation could
+    save the rule; None if there is none.
+    """
+
+    rule: Rule
+    example: Example
+    number: int
+    word: tuple[int, ...]
+    accepted: bool
+    lost_after: int | None
+
+    @property
+    def passed(self) -> bool:
+        """Does the rule do what the example says?"""
+        return self.accepted == self.example.accepts
+
+    @property
+    def name(self) -> str:
+        """The example's label, or its number."""
+        return self.example.label or str(self.number)
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleRun:
+    """A rulebook with its machines, the warnings about it, and how its examples came out.
+
+    ``pattern`` is what chose among them; None if all were run.
+    """
+
+    rulebook: Rulebook
+    compiled: CompiledRulebook
+    outcomes: tuple[Outcome, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    pattern: str | None = None
+
+
+def run_all(
+    rulebook: Rulebook,
+    compiled: CompiledRulebook,
+    warnings: tuple[Diagnostic, ...] = (),
+    pattern: str | None = None,
+) -> ExampleRun:
+    """Run the examples of all rules, or those whose ``RULE`` or ``RULE/LABEL`` is like a pattern.
+
+    An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
+    warnings are passed on.
+    """
+    outcomes = tuple(
+        _outcome(rule, machine, compiled, example, number)
+        for rule, machine in zip(rulebook.rules, compiled.rules, strict=True)
+        for number, example in enumerate(rule.examples, 1)
+        if pattern is None or _is_like(pattern, rule.name, example.label or str(number))
+    )
+    return ExampleRun(rulebook, compiled, outcomes, warnings, pattern)
+
+
+def _is_like(pattern: str, rule: str, example: str) -> bool:
+    return fnmatchcase(rule, pattern) or fnmatchcase(f"{rule}/{example}", pattern)
+
+
+def _outcome(
+    rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
+) -> Outcome:
+    """The verdict for the binding that gives every variable its own name."""
+    states = example_trace(rule, example).states
+    own = {variable.name: variable.name for variable in rule.variables}
+    columns = Columns(states, compiled.vocabulary, "state {}".format)
+    word = columns.word(machine, own, 0, len(states) - 1)
+    return Outcome(rule, example, number, word, *run(machine.machine, word))
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
@@ -30,34 +107,26 @@ def example_trace(rule: Rule, example: Example) -> Trace:
     return Trace(example.label or rule.name, 1.0, objects, tuple(states))
 
 
-def failing_examples(rulebook: Rulebook, compiled: CompiledRulebook) -> Iterator[Diagnostic]:
-    """A diagnostic (R0406) for every example that comes out otherwise than it says."""
-    for rule, machine in zip(rulebook.rules, compiled.rules, strict=True):
-        for number, example in enumerate(rule.examples, 1):
-            trace = example_trace(rule, example)
-            try:
-                accepted = _accepts(machine, compiled, trace)
-            except RulecError as error:
-                yield from error.diagnostics
-                continue
-            if accepted != example.accepts:
-                yield _surprise(rule, example, number)
-
-
-def _accepts(rule: CompiledRule, rulebook: CompiledRulebook, trace: Trace) -> bool:
-    """The rule's verdict for the binding that gives every variable its own name."""
-    own = {variable.name: variable.name for variable in rule.variables}
-    columns = Columns(trace.states, rulebook.vocabulary, "state {}".format)
-    return run(rule.machine, columns.word(rule, own, 0, len(trace.states) - 1))[0]
-
-
-def _surprise(rule: Rule, example: Example, number: int) -> Diagnostic:
-    name = f"`{example.label}`" if example.label else f"number {number}"
+def surprise(outcome: Outcome) -> Diagnostic:
+    """The warning (R0406) about an example that comes out otherwise than it says."""
+    rule, example = outcome.rule, outcome.example
+    name = f"`{example.label}`" if example.label else f"number {outcome.number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")
+    labels: tuple[Label, ...] = ()
+    notes: tuple[str, ...] = ()
+    if outcome.lost_after is not None:
+        notes = (f"the rule is beyond saving after state {outcome.lost_after}, counted from 0",)
+        if example.state_spans:
+            place = example.state_spans[outcome.lost_after].place
+            labels = (Label(place, "beyond saving after this state"),)
+    elif not outcome.accepted:
+        notes = ("the rule could still be kept, if the last state did not go on for ever",)
     return Diagnostic(
         "R0406",
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
         at(example.span),
         help="either the formula or the example does not say what is meant",
+        labels=labels,
+        notes=notes,
         severity="warning",
     )

@@ -1,0 +1,57 @@
+"""``rulec check``: all that is to say about rulebooks and vocabularies, and nothing written."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from rulec.cli.arguments import complete_sources
+from rulec.cli.exit_status import ExitStatus
+from rulec.report.formats import FORMATS
+
+
+@click.command()
+@click.argument(
+    "sources", nargs=-1, required=True, metavar="FILE|NAME...", shell_complete=complete_sources
+)
+@click.option(
+    "--output-format",
+    type=click.Choice(FORMATS),
+    default="full",
+    show_default=True,
+    help="Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
+)
+@click.option(
+    "--fail-on",
+    type=click.Choice(["error", "warning"]),
+    default="error",
+    show_default=True,
+    help="What makes the exit status 1.",
+)
+def command(sources: tuple[str, ...], output_format: str, fail_on: str) -> int:
+    """Check rulebooks and vocabularies, and write nothing.
+
+    Each is a name, a file, a folder (all .rules files in it), or `-` for standard input.
+
+    Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
+    """
+    from rulec.report.console import print_diagnostics, print_result, wants_color
+    from rulec.report.formats import render
+    from rulec.rulebook.checking import check
+    from rulec.settings import search_path
+    from rulec.syntax import MAX_BYTES
+
+    done = check(sources, lambda: sys.stdin.buffer.read(MAX_BYTES + 1), search_path())
+    color = wants_color(sys.stdout)
+    text = render(done.findings, output_format, color=color, complete=not done.unread)
+    if text:
+        print_result(text)
+    elif output_format == "full" and not done.unread:
+        number = len(done.files)
+        print_result(f"{number:,} {'file' if number == 1 else 'files'} checked, nothing found")
+    print_diagnostics(done.unread)
+    if done.unread:
+        return ExitStatus.NOT_ANSWERED
+    found = any(fail_on in ("warning", one.severity) for one in done.findings)
+    return ExitStatus.FOUND if found else ExitStatus.OK

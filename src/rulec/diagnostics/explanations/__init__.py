@@ -1,0 +1,1 @@
+"""What each code means: registered here, stage by stage, with an example and the mended one."""

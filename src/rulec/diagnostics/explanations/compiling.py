@@ -1,0 +1,73 @@
+"""R04: from rulebooks to automata, and what the machines then show."""
+
+from rulec.diagnostics.explanations.explanation import Explanation
+
+_SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
+_EACH = [f"not s{number}" for number in range(1, 18)]
+
+COMPILING = {
+    "R0401": Explanation(
+        "the automaton of a rule would be too large",
+        "An automaton can be far larger than its formula. A rule may take 5 s of processor time "
+        "and 2 GiB of memory to compile, and read 65,536 different letters (16 signals). Demands "
+        "that are joined by `and` can each have a rule of their own; those automata stand beside "
+        "each other instead of being multiplied.",
+        f"rulebook example\nsignal {_SIGNALS}\nhard rule all_off {{\n"
+        f"  require always ({' and '.join(_EACH[:9])}\n"
+        f"                  and {' and '.join(_EACH[9:])})\n}}\n",
+        f"rulebook example\nsignal {_SIGNALS}\n"
+        f"hard rule these_off {{\n  require always ({' and '.join(_EACH[:9])})\n}}\n"
+        f"hard rule those_off {{\n  require always ({' and '.join(_EACH[9:])})\n}}\n",
+        "compiled",
+    ),
+    "R0402": Explanation(
+        "the compiled automaton failed its check against the formula",
+        "After every compilation the automaton is compared with the formula that it came from. If "
+        "they differ there is a mistake in Spot or in rulec, none in the rulebook. Please report "
+        "the rule.",
+        "",
+        "",
+        "circumstance",
+    ),
+    "R0403": Explanation(
+        "Spot is not installed",
+        "Spot turns formulas into automata. There is a package for Linux on x86-64 (`pip install "
+        "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook "
+        "that was compiled elsewhere runs without Spot.",
+        "",
+        "",
+        "circumstance",
+    ),
+    "R0404": Explanation(
+        "a compiled rulebook is damaged or of another version",
+        "A compiled rulebook is read as a whole and checked before it judges anything. If it was "
+        "cut off, edited, or written by a version of rulec that this one does not understand, "
+        "compile the source again.",
+        "rulec compile esterle2019 -o build > log\n"
+        "head -c 5000 build/esterle2019.json > part.json\n"
+        "rulec maneuvers s2 -r part.json",
+        "rulec compile esterle2019 -o build > log\nrulec maneuvers s2 -r build/esterle2019.json",
+        "command",
+    ),
+    "R0405": Explanation(
+        "a rulebook reads relations of two partitions",
+        "A navigation graph knows where ego is in the relations of one partition: `position` of "
+        "the paper's four regions, or `station` and `lateral` of the fine one. A rulebook that "
+        "reads both can judge traces that supply both, and no graph.",
+        "rulebook example\nuse paper\nlateral(o: obstacle) is one of left_of, same_lane, right_of\n"
+        "hard rule r (v: vehicle) { require always not (f(v) and same_lane(v)) }\n",
+        "rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not f(v) }\n",
+        "maneuvers",
+    ),
+    "R0406": Explanation(
+        "an example comes out otherwise than it says",
+        "An `accept` example is a trace that the rule must allow, a `reject` example one that it "
+        "must forbid. If one comes out otherwise, either the formula or the example does not say "
+        "what is meant. `rulec test` runs them all.",
+        "rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+        "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
+        "rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+        "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
+        "compiled",
+    ),
+}

@@ -1,0 +1,39 @@
+"""R07: files and where they are."""
+
+from rulec.diagnostics.explanations.explanation import Explanation
+
+FILES = {
+    "R0701": Explanation(
+        "a file cannot be read",
+        "There is no such file, it is a folder, or it may not be read; the message says which.",
+        "rulec check ./no_such.rules",
+        "echo 'rulebook a signal p hard rule r { require p }' > such.rules\n"
+        "rulec check ./such.rules",
+        "command",
+    ),
+    "R0702": Explanation(
+        "a file cannot be written",
+        "The folder does not exist and cannot be made, something else has its name, it may not be "
+        "written to, or the disk is full. Nothing is left behind half written.",
+        "echo notes > build\nrulec compile esterle2019 -o build",
+        "echo notes > notes\nrulec compile esterle2019 -o build",
+        "command",
+    ),
+    "R0703": Explanation(
+        "a name was not found on the search path",
+        "A rulebook or a vocabulary with this name is neither beside the file that asks for it "
+        "nor among those that ship with rulec (`rulec list`). A file is given by its path, such "
+        "as `./mine.rules`.",
+        "rulebook example\nuse papr\nhard rule r { require not CONGESTED }\n",
+        "rulebook example\nuse paper\nhard rule r { require not CONGESTED }\n",
+    ),
+    "R0704": Explanation(
+        "a project's settings are wrong",
+        "The nearest `rulec.toml`, in the working folder or above it, is not TOML, has an unknown "
+        "setting, or lists in `search_path` something that is no folder.",
+        "echo 'search_path = [\"no_such\"]' > rulec.toml\nrulec compile esterle2019 -o out",
+        "mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\n"
+        "rulec compile esterle2019 -o out",
+        "command",
+    ),
+}

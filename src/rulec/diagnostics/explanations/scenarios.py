@@ -1,0 +1,84 @@
+"""R06: scenarios, and the graphs made from them."""
+
+from rulec.diagnostics.explanations.explanation import Explanation
+
+_ROAD = "[road]\ns = [0.0, 100.0]\nlanes = [-1.75, 1.75]\n\n"
+_GOOD = f"{_ROAD}[ego]\ns = 10.0\nd = 0.0\n"
+_CAR = '[[obstacle]]\nid = "car"\ntype = "vehicle"\nlength = 5.0\nwidth = 1.8\n'
+
+SCENARIOS = {
+    "R0601": Explanation(
+        "a scenario's name is unknown",
+        "A scenario is one of those built in (`rulec list scenarios`), or a file, given by its "
+        "path.",
+        "rulec maneuvers s9 -r esterle2019",
+        "rulec maneuvers s1 -r esterle2019",
+        "command",
+    ),
+    "R0602": Explanation(
+        "a scenario file is too large or not TOML",
+        "Scenario files are TOML of at most 4 MB. The message tells what TOML's reader met at the "
+        "underlined place.",
+        _GOOD.replace("[0.0, 100.0]", "0.0 to 100.0"),
+        _GOOD,
+        "scenario",
+    ),
+    "R0603": Explanation(
+        "a field of a scenario is missing or unknown",
+        "Road and ego have to be there with their fields. An unknown field is an error, because a "
+        "misspelt one would otherwise be ignored.",
+        _GOOD.replace("d = 0.0", "D = 0.0"),
+        _GOOD,
+        "scenario",
+    ),
+    "R0604": Explanation(
+        "a field's value in a scenario does not fit",
+        "Numbers are finite and in metres, seconds, m/s, m/s² and degrees, without a unit behind "
+        "them; the message says what is expected.",
+        _GOOD.replace("s = 10.0", 's = "10 m"'),
+        _GOOD,
+        "scenario",
+    ),
+    "R0605": Explanation(
+        "parts of a scenario contradict each other",
+        "Each part can be read, and together they cannot be: a place beside the road, an id that "
+        "is given twice, times that run backwards.",
+        _GOOD.replace("s = 10.0", "s = 110.0"),
+        _GOOD,
+        "scenario",
+    ),
+    "R0606": Explanation(
+        "horizon and step do not fit together",
+        "The horizon is cut into steps, so it has to be a whole multiple of the step, and both "
+        "are times above 0.",
+        f"horizon_s = 4.0\nstep_s = 0.3\n\n{_GOOD}",
+        f"horizon_s = 4.2\nstep_s = 0.3\n\n{_GOOD}",
+        "scenario",
+    ),
+    "R0607": Explanation(
+        "ego has no free cell to start from",
+        "An obstacle will be in ego's place within the first step, so no maneuver can begin there: "
+        "ego would be hit. Move one of them, or take a shorter step.",
+        f"{_GOOD}\n{_CAR}s = 0.0\nd = 0.0\nspeed = 20.0\n",
+        f"{_GOOD}\n{_CAR}s = 20.0\nd = 0.0\nspeed = 20.0\n",
+        "scenario",
+    ),
+    "R0608": Explanation(
+        "a partition or an adjacency is unknown",
+        "The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`.",
+        'import rulec\n\nrulec.navigation_graph("s1", partition="papre")\n',
+        'import rulec\n\nrulec.navigation_graph("s1", partition="paper")\n',
+        "python",
+    ),
+    "R0609": Explanation(
+        "a path does not follow the navigation graph",
+        "A path has one cell for each layer, from the first on, and from each to the next there "
+        "is an edge. Paths come from `Maneuvers.cheapest`, or from walking through `successors`.",
+        "import rulec\nfrom rulec.partition import envelope\n\n"
+        'graph = rulec.navigation_graph("s1")\nenvelope(graph, [graph.start, 999])\n',
+        "import rulec\nfrom rulec.partition import envelope\n\n"
+        'graph = rulec.navigation_graph("s1")\n'
+        "envelope(graph, [graph.start, graph.successors[0][graph.start][0]])\n",
+        "python",
+    ),
+}

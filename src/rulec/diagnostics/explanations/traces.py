@@ -1,0 +1,57 @@
+"""R05: traces that cannot be judged."""
+
+from rulec.diagnostics.explanations.explanation import Explanation
+
+_GOOD = '{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "b"}}]}\n'
+
+TRACES = {
+    "R0501": Explanation(
+        "a line is not a trace in JSON",
+        "A file of traces has one JSON object on each line, with a list of `states` at least. The "
+        "message says what in the line is otherwise.",
+        '[{"position": {"v1": "b"}}]\n',
+        _GOOD,
+        "trace",
+    ),
+    "R0502": Explanation(
+        "a state uses a name that the vocabulary does not know",
+        "The keys of a state are names of the rulebook's vocabulary. An unknown one is an error, "
+        "because a misspelt name would otherwise take its default, and be judged.",
+        '{"objects": {"v1": "vehicle"}, "states": [{"postion": {"v1": "b"}}]}\n',
+        _GOOD,
+        "trace",
+    ),
+    "R0503": Explanation(
+        "a state's value does not fit its declaration",
+        "A signal is true or false, an enumeration has one of its values as a text, a quantity is "
+        "a finite number; what is about objects is a map from each object to these.",
+        '{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "behind"}}]}\n',
+        _GOOD,
+        "trace",
+    ),
+    "R0504": Explanation(
+        "a state lacks a value that has no default",
+        "What a state leaves out takes the default of its declaration. Where there is none, the "
+        "value has to be there if a rule reads it: a missing value is never taken for false.",
+        '{"objects": {"v1": "vehicle"}, "states": [{"surface": "R_cw"}]}\n',
+        _GOOD,
+        "trace",
+    ),
+    "R0505": Explanation(
+        "an object is unknown or of an unknown type",
+        "Every object that a state speaks of is listed in `objects`, with a type of the "
+        "vocabulary that fits what is said of it.",
+        '{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "b", "v2": "f"}}]}\n',
+        '{"objects": {"v1": "vehicle", "v2": "vehicle"}, '
+        '"states": [{"position": {"v1": "b", "v2": "f"}}]}\n',
+        "trace",
+    ),
+    "R0506": Explanation(
+        "a trace has no states",
+        "A verdict on a trace is a verdict on its last state, repeated for ever. Without any "
+        "state there is nothing to judge.",
+        '{"objects": {"v1": "vehicle"}, "states": []}\n',
+        _GOOD,
+        "trace",
+    ),
+}

@@ -1,0 +1,123 @@
+"""How examples came out, and what they cover, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import click
+
+from rulec.logic.formula import Atom
+from rulec.report.diagnostics import render_diagnostics
+from rulec.report.excerpt import visible
+from rulec.rulebook.model import ExampleState
+from rulec.runtime.coverage import MissingEdge, RuleCoverage, percent
+from rulec.runtime.examples import ExampleRun, Outcome, surprise
+
+MOST_MISSING = 5
+"""So many missing edges of a rule are shown; JSON has them all."""
+
+
+def render(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    wanted: str,
+    *,
+    color: bool,
+) -> str:
+    """The runs, with the coverage of each unless it is None, as ``full``, ``json`` or ``junit``."""
+    match wanted:
+        case "json":
+            from rulec.report.examples_json import as_json
+
+            return as_json(runs, covered)
+        case "junit":
+            from rulec.report.junit import as_junit
+
+            return as_junit(runs, covered)
+        case _:
+            return as_text(runs, covered, color)
+
+
+def as_text(
+    runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
+) -> str:
+    """A line for each example, what there is to say about those that failed, and the numbers."""
+    lines = [_line(one, run.rulebook.name) for run in runs for one in run.outcomes]
+    failed = [one for run in runs for one in run.outcomes if not one.passed]
+    problems = [replace(surprise(one), severity="error") for one in failed]
+    if problems:
+        lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
+    if covered is not None:
+        for run, rules in zip(runs, covered, strict=True):
+            lines += [f"{run.rulebook.name} {line}" for line in coverage_lines(rules)]
+        together = percent(rule for rules in covered for rule in rules)
+        lines.append(f"coverage {as_percent(together)}")
+    return "\n".join([*lines, _summary(runs)])
+
+
+def shortcomings(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    threshold: float | None,
+    *,
+    fail_on_empty: bool,
+) -> list[str]:
+    """What is less than somebody asked for, in sentences."""
+    found = []
+    if fail_on_empty and not any(run.outcomes for run in runs):
+        found.append("there is no example to run")
+    if covered is not None and threshold is not None:
+        part = percent(rule for rules in covered for rule in rules)
+        if part < threshold:
+            found.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
+    return found
+
+
+def _line(one: Outcome, rulebook: str) -> str:
+    verdict = (
+        click.style("pass", fg="green") if one.passed else click.style("FAIL", fg="red", bold=True)
+    )
+    return f"{verdict}  {visible(f'{rulebook} {one.rule.name}/{one.name}')}"
+
+
+def _summary(runs: Sequence[ExampleRun]) -> str:
+    """The line that ends a run."""
+    outcomes = [one for run in runs for one in run.outcomes]
+    passed = sum(one.passed for one in outcomes)
+    word = "example" if len(outcomes) == 1 else "examples"
+    return f"{len(outcomes):,} {word}: {passed:,} passed, {len(outcomes) - passed:,} failed"
+
+
+def coverage_lines(rules: Sequence[RuleCoverage]) -> Iterator[str]:
+    """A line for each rule with its numbers, and with it, indented, what is missing."""
+    for one in rules:
+        edges = f"{one.n_edges - len(one.missing_edges):,} of {one.n_edges:,} edges"
+        values = f"{one.n_values - len(one.missing_values):,} of {one.n_values:,} values of atoms"
+        lines = [f"{one.rule}: {edges}, {values} ({as_percent(percent([one]))})"]
+        for atom, value in one.missing_values:
+            lines.append(f"`{atom}` is never {'true' if value else 'false'}")
+        lines += [f"missing: {missing_example(edge)}" for edge in one.missing_edges[:MOST_MISSING]]
+        if len(one.missing_edges) > MOST_MISSING:
+            more = len(one.missing_edges) - MOST_MISSING
+            lines.append(f"and {more:,} more; --output-format json has them all")
+        yield "\n  ".join(lines)
+
+
+def as_percent(number: float) -> str:
+    """A percentage that is 100 only if nothing is missing."""
+    return f"{min(number, 99.9) if number < 100 else 100:.1f} %"
+
+
+def missing_example(edge: MissingEdge) -> str:
+    """The example that would take an edge, as it would be written in the rule."""
+    states = "; ".join(" and ".join(_facts(state)) or "true" for state in edge.states)
+    return f"{'accept' if edge.accepted else 'reject'} {{ {states} }}"
+
+
+def _facts(state: ExampleState) -> Iterator[str]:
+    for (name, variables), value in state.items():
+        if isinstance(value, str):
+            yield str(Atom(name, variables, value))
+        else:
+            yield f"{'' if value else 'not '}{Atom(name, variables)}"

@@ -1,0 +1,103 @@
+"""What a code means: as text, as Markdown, as JSON, and the page docs/codes.md."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from textwrap import fill, indent
+
+from rulec.diagnostics.codes import EXPLANATIONS, STAGES
+from rulec.diagnostics.explanations.explanation import Explanation, Kind
+
+_KINDS: dict[Kind, str] = {
+    "rules": "to check",
+    "compiled": "to compile",
+    "maneuvers": "to judge the maneuvers of `s1` by",
+    "trace": "a trace, to judge by `esterle2019`",
+    "scenario": "a scenario, to build the graph of",
+    "command": "in a shell",
+    "python": "from Python",
+    "circumstance": "",
+}
+
+_FENCES: dict[Kind, str] = {
+    "rules": "rulec",
+    "compiled": "rulec",
+    "maneuvers": "rulec",
+    "trace": "json",
+    "scenario": "toml",
+    "command": "sh",
+    "python": "python",
+    "circumstance": "",
+}
+
+_HEAD = """\
+# Codes
+
+Every message of rulec has a code. `rulec explain CODE` shows in the terminal what is said here:
+what the code means, a small example that gets it, and the same example, mended. All of them are run
+by the tests. `rulec explain --all --output-format markdown` writes this page.
+"""
+
+
+def as_text(code: str) -> str:
+    """An explanation for a terminal."""
+    about = EXPLANATIONS[code]
+    parts = [f"{code}: {about.title}", fill(about.why, 80)]
+    for head, example in _examples(about):
+        parts.append(f"{head}:\n\n{indent(example, '    ')}")
+    return "\n\n".join(parts)
+
+
+def as_plain_text(code: str) -> str:
+    """The explanation without its title, for a format that has that elsewhere."""
+    return as_text(code).partition("\n\n")[2]
+
+
+def as_markdown(code: str) -> str:
+    """The explanation without its title, in Markdown."""
+    about = EXPLANATIONS[code]
+    parts = [fill(about.why, 100, break_on_hyphens=False)]
+    for head, example in _examples(about):
+        # What follows the language's name keeps the samples of mistakes from being taken for good.
+        parts.append(
+            f"{head}:\n\n```{_FENCES[about.kind]} {head.split()[0].lower()}\n{example}\n```"
+        )
+    return "\n\n".join(parts)
+
+
+def as_json(codes: Iterable[str]) -> str:
+    """A list with an object for each code."""
+    return json.dumps(
+        [
+            {
+                "code": code,
+                "title": about.title,
+                "why": about.why,
+                "kind": about.kind,
+                "bad": about.bad,
+                "good": about.good,
+            }
+            for code in codes
+            for about in [EXPLANATIONS[code]]
+        ],
+        ensure_ascii=False,
+        indent=2,
+    )
+
+
+def as_page() -> str:
+    """docs/codes.md."""
+    parts = [_HEAD]
+    for number, (stage, codes) in enumerate(STAGES.items(), 1):
+        parts.append(f"## R0{number}: {stage.lower()}\n")
+        parts += [
+            f"### {code}: {about.title}\n\n{as_markdown(code)}\n" for code, about in codes.items()
+        ]
+    return "\n".join(parts).rstrip("\n")
+
+
+def _examples(about: Explanation) -> Iterator[tuple[str, str]]:
+    if about.kind != "circumstance":
+        yield f"Wrong ({_KINDS[about.kind]})", about.bad.rstrip("\n")
+        yield "Mended", about.good.rstrip("\n")

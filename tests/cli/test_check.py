@@ -1,0 +1,160 @@
+"""``rulec check`` as its user meets it."""
+
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rulec.cli.main import main
+
+BAD = Path(__file__).resolve().parents[1] / "programs" / "bad"
+GOOD = "rulebook good\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n"
+WRONG = GOOD.replace("vehicle", "vehicel")
+ODD = GOOD.replace("(v: vehicle)", "(v: vehicle, w: vehicle)")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def check(capsys, *arguments):
+    status = main(["check", *arguments])
+    return status, *capsys.readouterr()
+
+
+def test_what_is_good(folder, capsys):
+    (folder / "good.rules").write_text(GOOD)
+    assert check(capsys, "good.rules") == (0, "1 file checked, nothing found\n", "")
+    assert check(capsys, "esterle2019", "paper") == (0, "2 files checked, nothing found\n", "")
+    assert list(folder.iterdir()) == [folder / "good.rules"]
+
+
+def test_what_is_wrong_is_shown_in_its_place(folder, capsys):
+    (folder / "wrong.rules").write_text(WRONG)
+    status, out, err = check(capsys, "wrong.rules")
+    assert (status, err) == (1, "")
+    assert out == (
+        "error[R0201]: there is no type `vehicel`\n"
+        " --> wrong.rules:3:17\n"
+        "  |\n"
+        "3 | hard rule r (v: vehicel) { require always not r(v) }\n"
+        "  |                 ^^^^^^^ expected a type\n"
+        "  = help: did you mean `vehicle`?\n"
+        "\n"
+        "1 error\n"
+    )
+
+
+def test_warnings_fail_only_if_asked_to(folder, capsys):
+    (folder / "odd.rules").write_text(ODD)
+    status, out, _ = check(capsys, "odd.rules", "--output-format", "concise")
+    assert status == 0
+    assert out == "odd.rules:3:26: R0207 the formula of `r` says nothing about `w`\n"
+    assert check(capsys, "odd.rules", "--fail-on", "warning")[0] == 1
+
+
+def test_a_folder_stands_for_the_files_in_it_and_below(folder, capsys):
+    (folder / "inner" / ".hidden").mkdir(parents=True)
+    for path in ("b.rules", "a.rules", "inner/c.rules", "inner/.hidden/d.rules", "e.txt"):
+        (folder / path).write_text(WRONG)
+    status, out, _ = check(capsys, ".", "a.rules", "--output-format", "concise")
+    assert status == 1
+    files = [line.partition(":")[0] for line in out.splitlines()]
+    assert files == ["a.rules", "b.rules", "inner/c.rules"]
+
+
+def test_a_vocabulary_that_several_use_is_complained_about_once(folder, capsys):
+    (folder / "words.rules").write_text("vocabulary words {\n  signal p q\n}\n")
+    for name in ("first", "second"):
+        text = f"rulebook {name}\nuse words\nhard rule r {{ require p }}\n"
+        (folder / f"{name}.rules").write_text(text)
+    status, out, _ = check(capsys, "first.rules", "second.rules", ".", "--output-format", "concise")
+    assert status == 1
+    assert [line.split()[:2] for line in out.splitlines()] == [["words.rules:2:12:", "R0104"]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["./none.rules"], "no such file"),
+        (["esterle2018"], "did you mean `esterle2019`?"),
+        (["nothing_like_it"], "available: `esterle2019`"),
+        (["empty"], "no rulebook and no vocabulary in this folder"),
+        (["a\0b.rules"], "cannot be read"),
+        ([""], "there is no rulebook"),
+        ([], "Missing argument"),
+        (["esterle2019", "--output-format", "xml"], "'sarif'"),
+    ],
+)
+def test_what_cannot_be_answered(folder, capsys, arguments, words):
+    (folder / "empty").mkdir()
+    status, out, err = check(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+
+
+def test_a_missing_file_does_not_keep_the_others_from_being_checked(folder, capsys):
+    (folder / "wrong.rules").write_text(WRONG)
+    status, out, err = check(capsys, "none.rules", "wrong.rules", "--output-format", "concise")
+    assert status == 2
+    assert out.startswith("wrong.rules:3:17: R0201 ")
+    assert "error[R0701]" in err
+
+
+def test_standard_input_finds_its_vocabulary_in_the_working_directory(folder, capsys, monkeypatch):
+    (folder / "mine.rules").write_text("vocabulary mine { signal p }\n")
+    text = "rulebook a\nuse mine\nhard rule r { require p and q }\n"
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+    status, out, _ = check(capsys, "-", "-", "--output-format", "concise")
+    assert status == 1
+    assert out == "standard input:3:29: R0202 nothing is called `q`\n"
+
+
+@pytest.mark.parametrize("output_format", ["json", "sarif"])
+def test_an_empty_answer_is_an_answer_for_machines(output_format, capsys):
+    status, out, _ = check(capsys, "esterle2019", "--output-format", output_format)
+    assert status == 0
+    found = json.loads(out)
+    assert (found if output_format == "json" else found["runs"][0]["results"]) == []
+
+
+@pytest.mark.parametrize("output_format", ["concise", "github"])
+def test_nothing_is_no_line(output_format, capsys):
+    assert check(capsys, "esterle2019", "--output-format", output_format) == (0, "", "")
+
+
+@pytest.mark.parametrize("output_format", ["full", "concise", "json", "github", "sarif"])
+def test_all_bad_programs_in_every_format(output_format, capsys):
+    status, out, err = check(capsys, str(BAD), "--output-format", output_format)
+    assert (status, err) == (1, "")
+    assert out.count("R0104") > 20
+
+
+@pytest.mark.parametrize("arguments", [["list"], ["list", "codes"], ["explain", "--all"]])
+def test_light_verbs_import_nothing_heavy(arguments):
+    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.runtime", "rulec.automata"]
+    assert imported(arguments).isdisjoint(heavy)
+
+
+def test_check_neither_starts_spot_nor_imports_what_it_does_not_need():
+    found = imported(["check", "esterle2019"])
+    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.runtime", "rulec.automata"]
+    assert found.isdisjoint([*heavy, "subprocess", "msgspec"])
+    assert "lark" in found
+
+
+def imported(arguments):
+    program = (
+        "import sys\nfrom rulec.cli.main import main\n"
+        f"assert main({arguments!r}) == 0\nprint(*sys.modules, file=sys.stderr)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, env=os.environ
+    )
+    return set(done.stderr.split())

@@ -1,0 +1,94 @@
+"""Shell completion: what is offered, and that shells take the scripts."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from click.shell_completion import BashComplete, FishComplete, ZshComplete
+
+from rulec.cli.completion import SHELLS
+from rulec.cli.main import VERBS, main, rulec
+from rulec.diagnostics.codes import CODES
+
+
+def offered(words, incomplete, kind=BashComplete):
+    program = kind(rulec, {}, "rulec", "_RULEC_COMPLETE")
+    return [(one.type, one.value) for one in program.get_completions(words, incomplete)]
+
+
+@pytest.mark.parametrize("kind", [BashComplete, FishComplete, ZshComplete])
+def test_verbs(kind):
+    assert offered([], "", kind) == [("plain", verb) for verb in VERBS]
+    assert offered([], "ch", kind) == [("plain", "check")]
+
+
+FILES = ("file", "")
+
+
+@pytest.mark.parametrize(
+    ("words", "incomplete", "expected"),
+    [
+        (["check"], "est", [FILES, ("plain", "esterle2019")]),
+        (["check", "esterle2019"], "pap", [FILES, ("plain", "paper")]),
+        (["test"], "est", [FILES, ("plain", "esterle2019")]),
+        (["compile"], "est", [FILES, ("plain", "esterle2019")]),
+        (["compile"], "./my", [FILES]),
+        (["verify", "x.jsonl", "-r"], "est", [FILES, ("plain", "esterle2019")]),
+        (["maneuvers"], "s1", [FILES, ("plain", "s1")]),
+        (["traces"], "s2", [FILES, ("plain", "s2")]),
+        (["explain"], "r0201", [("plain", "R0201")]),
+        (["completion"], "f", [("plain", "fish")]),
+        (["list"], "r", [("plain", "rulebooks")]),
+        (["check", "--output-format"], "s", [("plain", "sarif")]),
+    ],
+)
+def test_arguments(words, incomplete, expected):
+    assert offered(words, incomplete) == expected
+
+
+def test_codes_come_with_their_titles():
+    program = ZshComplete(rulec, {}, "rulec", "_RULEC_COMPLETE")
+    (one,) = program.get_completions(["explain"], "R0403")
+    assert one.help == CODES["R0403"]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_the_script(shell, capsys):
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert f"_RULEC_COMPLETE={shell}_complete" in script
+    assert "%(" not in script
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_the_shell_itself_takes_the_script(shell, capsys, tmp_path):
+    if shutil.which(shell) is None:
+        pytest.skip(f"there is no {shell} here")
+    main(["completion", shell])
+    script = tmp_path / "script"
+    script.write_text(capsys.readouterr().out)
+    subprocess.run([shell, "-n", str(script)], check=True)
+
+
+def test_the_program_answers_the_script():
+    done = subprocess.run(
+        [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"],
+        env={
+            **os.environ,
+            "_RULEC_COMPLETE": "bash_complete",
+            "COMP_WORDS": "rulec maneuvers s",
+            "COMP_CWORD": "2",
+        },
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "plain,s1" in done.stdout.splitlines()
+    assert done.stderr == ""
+
+
+def test_another_shell(capsys):
+    assert main(["completion", "csh"]) == 2
+    assert "'bash'" in capsys.readouterr().err

@@ -1,0 +1,98 @@
+"""``rulec explain`` as its user meets it, and the page that it writes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.diagnostics.codes import CODES, EXPLANATIONS
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "codes.md"
+
+
+def explain(capsys, *arguments):
+    status = main(["explain", *arguments])
+    return status, *capsys.readouterr()
+
+
+@pytest.mark.parametrize("code", ["R0305", "r0305"])
+def test_a_code(code, capsys):
+    status, out, err = explain(capsys, code)
+    assert (status, err) == (0, "")
+    assert out == (
+        "R0305: a default is not one of the values\n"
+        "\n"
+        "An enumeration's default is what holds where nothing is said, so it has to be\n"
+        "one of the values.\n"
+        "\n"
+        "Wrong (to check):\n"
+        "\n"
+        "    rulebook example\n"
+        "    light is one of red, green default grean\n"
+        "    hard rule r { require red }\n"
+        "\n"
+        "Mended:\n"
+        "\n"
+        "    rulebook example\n"
+        "    light is one of red, green default green\n"
+        "    hard rule r { require red }\n"
+    )
+
+
+def test_a_code_without_an_example(capsys):
+    status, out, _ = explain(capsys, "R0403")
+    assert status == 0
+    assert "conda-forge" in out
+    assert "Wrong" not in out
+
+
+def test_all_codes(capsys):
+    status, out, _ = explain(capsys, "--all")
+    assert status == 0
+    assert all(f"{code}: {title}\n" in out for code, title in CODES.items())
+
+
+def test_json(capsys):
+    status, out, _ = explain(capsys, "--all", "--output-format", "json")
+    assert status == 0
+    listed = json.loads(out)
+    assert [one["code"] for one in listed] == list(CODES)
+    first = EXPLANATIONS["R0101"]
+    assert listed[0] == {
+        "code": "R0101",
+        "title": first.title,
+        "why": first.why,
+        "kind": "command",
+        "bad": first.bad,
+        "good": first.good,
+    }
+    _, out, _ = explain(capsys, "R0504", "--output-format", "json")
+    assert [one["code"] for one in json.loads(out)] == ["R0504"]
+
+
+def test_markdown_of_one_code(capsys):
+    _, out, _ = explain(capsys, "R0606", "--output-format", "markdown")
+    assert out.startswith("# R0606: horizon and step do not fit together\n\nThe horizon is cut")
+    assert "```toml wrong\nhorizon_s = 4.0\n" in out
+
+
+def test_the_page_is_up_to_date(capsys):
+    status, out, _ = explain(capsys, "--all", "--output-format", "markdown")
+    assert status == 0
+    assert PAGE.read_text(encoding="utf-8") == out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["R0602x"], "there is no code `R0602x`; did you mean `R0602`?"),
+        (["verify"], "`rulec list codes` shows them all"),
+        ([], "give one code, or --all"),
+        (["R0101", "--all"], "give one code, or --all"),
+    ],
+)
+def test_what_cannot_be_answered(arguments, words, capsys):
+    status, out, err = explain(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err

@@ -1,0 +1,68 @@
+"""``rulec list`` as its user meets it."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.diagnostics.codes import CODES
+from rulec.rulebook.catalogue import list_rulebooks, list_vocabularies
+from rulec.scenario import available_scenarios
+
+
+def listed(capsys, *arguments):
+    status = main(["list", *arguments])
+    assert status == 0
+    return capsys.readouterr().out
+
+
+def test_everything_but_codes(capsys):
+    lines = listed(capsys).splitlines()
+    assert [line for line in lines if not line.startswith(" ")] == [
+        "rulebooks",
+        "vocabularies",
+        "scenarios",
+    ]
+    assert "  esterle2019  Traffic rules of Esterle, Aravantinos and Knoll (2019)" in lines
+    assert all(len(line) < 130 for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [
+        ("rulebooks", {"esterle2019"}),
+        ("vocabularies", {"paper", "road"}),
+        ("scenarios", set(available_scenarios())),
+        ("codes", set(CODES)),
+    ],
+)
+def test_one_kind(kind, names, capsys):
+    lines = listed(capsys, kind).splitlines()
+    assert names <= {line.split()[0] for line in lines}
+    assert all(line.split()[1:] for line in lines)
+    document = json.loads(listed(capsys, kind, "--json"))
+    assert list(document) == [kind]
+    assert len(document[kind]) == len(lines)
+    for one in document[kind]:
+        assert set(one) == {"name", "title", "path"}
+        assert one["path"] is None if kind == "codes" else Path(one["path"]).is_file()
+
+
+def test_a_kind_that_there_is_not(capsys):
+    assert main(["list", "rules"]) == 2
+    assert "'rulebooks'" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_read_is_listed_without_a_title(tmp_path):
+    (tmp_path / "good.rules").write_text(
+        'rulebook good\ntitle "A title"\nsignal p\nhard rule r { require p }\n'
+    )
+    (tmp_path / "broken.rules").write_bytes(b'rulebook broken\ntitle "\xff"\n')
+    (tmp_path / "words.rules").write_text(
+        "vocabulary words { type a signal p, q signal r quantity speed in m }\n"
+    )
+    books = {one.name: one.title for one in list_rulebooks([tmp_path])}
+    assert (books["good"], books["broken"]) == ("A title", "")
+    words = {one.name: one.title for one in list_vocabularies([tmp_path])}
+    assert words["words"] == "1 type, 3 signals, 1 quantity"

@@ -1,0 +1,211 @@
+"""``rulec test`` as its user meets it."""
+
+import json
+from xml.etree import ElementTree
+
+import pytest
+
+from rulec.cli.main import main
+
+ODD = """\
+rulebook odd
+use paper
+hard rule A (v: vehicle) {
+  require always not r(v)
+  accept { b(v); l(v) }
+  accept "to <&> right" { b(v);
+     r(v); f(v) }
+  reject { b(v); l(v) }
+}
+hard rule B (v: vehicle) {
+  require eventually f(v)
+  accept "never" { b(v); l(v) }
+}
+"""
+
+
+@pytest.fixture
+def odd(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "odd.rules").write_text(ODD)
+    return "odd.rules"
+
+
+def run(capsys, *arguments):
+    status = main(["test", *arguments])
+    return status, *capsys.readouterr()
+
+
+def test_what_ships_passes(capsys):
+    status, out, err = run(capsys, "esterle2019")
+    assert (status, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == "pass  esterle2019 R1/tau 1"
+    assert lines[-1] == "14 examples: 14 passed, 0 failed"
+    assert len(lines) == 15
+
+
+def test_failing_examples_say_where_and_what(odd, capsys):
+    status, out, err = run(capsys, odd)
+    assert (status, err) == (1, "")
+    assert out == (
+        "pass  odd A/1\n"
+        "FAIL  odd A/to <&> right\n"
+        "FAIL  odd A/3\n"
+        "FAIL  odd B/never\n"
+        "\n"
+        "error[R0406]: example `to <&> right` of rule `A` says `accept`, but the rule rejects it\n"
+        " --> odd.rules:6:3\n"
+        "  |\n"
+        '6 |   accept "to <&> right" { b(v);\n'
+        "  |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
+        "7 |      r(v); f(v) }\n"
+        "  |      ---- beyond saving after this state\n"
+        "  = help: either the formula or the example does not say what is meant\n"
+        "  = note: the rule is beyond saving after state 1, counted from 0\n"
+        "\n"
+        "error[R0406]: example number 3 of rule `A` says `reject`, but the rule accepts it\n"
+        " --> odd.rules:8:3\n"
+        "  |\n"
+        "8 |   reject { b(v); l(v) }\n"
+        "  |   ^^^^^^^^^^^^^^^^^^^^^\n"
+        "  = help: either the formula or the example does not say what is meant\n"
+        "\n"
+        "error[R0406]: example `never` of rule `B` says `accept`, but the rule rejects it\n"
+        "  --> odd.rules:12:3\n"
+        "   |\n"
+        '12 |   accept "never" { b(v); l(v) }\n'
+        "   |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
+        "   = help: either the formula or the example does not say what is meant\n"
+        "   = note: the rule could still be kept, if the last state did not go on for ever\n"
+        "\n"
+        "4 examples: 1 passed, 3 failed\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("pattern", "names"),
+    [
+        ("A", ["A/1", "A/to <&> right", "A/3"]),
+        ("*", ["A/1", "A/to <&> right", "A/3", "B/never"]),
+        ("A/1", ["A/1"]),
+        ("A/[0-9]", ["A/1", "A/3"]),
+        ("?/*e*", ["B/never"]),
+        ("a", []),
+        ("never", []),
+    ],
+)
+def test_patterns(odd, capsys, pattern, names):
+    status, out, _ = run(capsys, odd, "--run", pattern)
+    lines = [line for line in out.splitlines() if line.startswith(("pass", "FAIL"))]
+    assert [line.split(" ", 3)[3] for line in lines] == names
+    assert status == (0 if names in ([], ["A/1"]) else 1)
+
+
+def test_nothing_to_run_fails_only_if_asked_to(odd, capsys):
+    assert run(capsys, odd, "--run", "C") == (0, "0 examples: 0 passed, 0 failed\n", "")
+    status, _, err = run(capsys, odd, "--run", "C", "--fail-on-empty")
+    assert (status, err) == (1, "rulec: there is no example to run\n")
+
+
+def test_json(odd, capsys):
+    status, out, _ = run(capsys, odd, "esterle2019", "--output-format", "json")
+    assert status == 1
+    document = json.loads(out)
+    assert (document["passed"], document["failed"], document["coverage"]) == (15, 3, None)
+    assert {one["rulebook"] for one in document["examples"]} == {"odd", "esterle2019"}
+    assert document["examples"][1] == {
+        "rulebook": "odd",
+        "rule": "A",
+        "label": "to <&> right",
+        "number": 2,
+        "says": "accept",
+        "does": "reject",
+        "passed": False,
+        "lost_after": 1,
+        "place": {"file": "odd.rules", "line": 6, "column": 3, "end_line": 7, "end_column": 18},
+    }
+
+
+def test_junit(odd, capsys):
+    status, out, _ = run(capsys, odd, "--output-format", "junit", "--coverage")
+    assert status == 1
+    root = ElementTree.fromstring(out)
+    (suite,) = root
+    assert (root.tag, suite.tag, suite.get("name")) == ("testsuites", "testsuite", "odd")
+    assert (suite.get("tests"), suite.get("failures")) == ("4", "3")
+    cases = suite.findall("testcase")
+    assert [case.get("classname") for case in cases] == ["odd.A"] * 3 + ["odd.B"]
+    assert [case.get("name") for case in cases] == ["1", "to <&> right", "3", "never"]
+    assert (cases[1].get("file"), cases[1].get("line")) == ("odd.rules", "6")
+    assert [case.find("failure") is not None for case in cases] == [False, True, True, True]
+    failure = cases[1].find("failure")
+    assert failure.get("type") == "R0406"
+    assert "says `accept`, but the rule rejects it" in failure.get("message")
+    assert "7 |      r(v); f(v) }" in failure.text
+    assert suite.find("properties/property").get("name") == "coverage"
+    assert "`f(v)` is never true" in suite.find("system-out").text
+
+
+def test_junit_of_what_xml_cannot_hold(odd, capsys, tmp_path):
+    (tmp_path / "odd.rules").write_text(ODD.replace("never", "a\uffffb\ufffec"), encoding="utf-8")
+    assert run(capsys, odd)[0] == 1
+    _, out, _ = run(capsys, odd, "--output-format", "junit")
+    cases = ElementTree.fromstring(out).findall("*/testcase")
+    assert cases[-1].get("name") == "a\\uffffb\\ufffec"
+
+
+def test_coverage(odd, capsys):
+    _, out, _ = run(capsys, odd, "--coverage", "--run", "B")
+    # B: from the first state, in which f(v) has not been yet, two classes of letters lead on.
+    assert "odd B: 1 of 2 edges, 1 of 2 values of atoms (50.0 %)\n" in out
+    assert "  `f(v)` is never true\n" in out
+    assert "  missing: accept { f(v) }\n" in out
+    assert "\ncoverage 50.0 %\n" in out
+
+
+@pytest.mark.parametrize(("threshold", "status"), [("0", 0), ("66.6", 0), ("66.7", 1), ("100", 1)])
+def test_threshold(odd, capsys, threshold, status, tmp_path):
+    # Each rule has two edges and two values of atoms; A and C show all of them, B none: 8 of 12.
+    (tmp_path / odd).write_text(
+        "rulebook odd\nsignal p, q\n"
+        "hard rule A { require always not p accept { not p } reject { p } }\n"
+        "hard rule B { require always not q }\n"
+        "hard rule C { require always not q accept { not q } reject { q } }\n"
+    )
+    found, out, err = run(capsys, odd, "--threshold", threshold)
+    assert "coverage 66.7 %" in out
+    assert found == status
+    assert ("below the" in err) == bool(status)
+
+
+def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd, capsys):
+    status, out, err = run(capsys, "nope", "esterle2019")
+    assert status == 2
+    assert out.endswith("14 examples: 14 passed, 0 failed\n")
+    assert "error[R0703]: there is no rulebook `nope`" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["build/a.json"], "`build/a.json` is compiled and has no examples"),
+        (["esterle2019", "--threshold", "101"], "--threshold"),
+        (["esterle2019", "--threshold", "nan"], "--threshold"),
+        (["esterle2019", "--output-format", "sarif"], "'junit'"),
+        ([], "Missing argument"),
+    ],
+)
+def test_what_cannot_be_answered(arguments, words, capsys):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+
+
+def test_warnings_are_said_aside(odd, capsys, tmp_path):
+    (tmp_path / odd).write_text(
+        "rulebook odd\nuse paper\nhard rule A (v: vehicle) { require true }"
+    )
+    status, out, err = run(capsys, odd)
+    assert (status, out) == (0, "0 examples: 0 passed, 0 failed\n")
+    assert "warning[R0207]" in err

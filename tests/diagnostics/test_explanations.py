@@ -1,0 +1,144 @@
+"""Every explanation's bad example gets its code and no other; the mended one gets none."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.codes import EXPLANATIONS, STAGES
+from rulec.partition import navigation_graph
+from rulec.rulebook.loader import diagnose, parse_rulebook
+from rulec.runtime.verify import judge
+from rulec.scenario.read import read_scenario
+from rulec.workflow import compile_rulebook, find_maneuvers, read_traces
+
+CODE = re.compile(r"\[(R\d{4})\]")
+
+
+def checked(text, folder):
+    return diagnose("example.rules", text.encode())
+
+
+def compiled(text, folder):
+    path = folder / "example.rules"
+    path.write_text(text, encoding="utf-8")
+    warnings = []
+    compile_rulebook(path, warn=warnings.extend)
+    return warnings
+
+
+def judged_on_a_graph(text, folder):
+    find_maneuvers("s1", parse_rulebook(text))
+    return ()
+
+
+def judged(text, folder):
+    path = folder / "traces.jsonl"
+    path.write_text(text, encoding="utf-8")
+    rules = compile_rulebook("esterle2019")
+    answers = [judge(item, rules) for item in read_traces(path)]
+    return [one for answer in answers for one in getattr(answer, "error", NOTHING).diagnostics]
+
+
+def cut_into_cells(text, folder):
+    path = folder / "example.toml"
+    path.write_text(text, encoding="utf-8")
+    navigation_graph(read_scenario(path))
+    return ()
+
+
+def run_as_python(text, folder):
+    exec(compile(text, "example", "exec"), {})
+    return ()
+
+
+NOTHING = RulecError(())
+RUN = {
+    "rules": checked,
+    "compiled": compiled,
+    "maneuvers": judged_on_a_graph,
+    "trace": judged,
+    "scenario": cut_into_cells,
+    "python": run_as_python,
+}
+
+
+def shell(text, folder):
+    """The codes in what the command lines print, and the last one's exit status."""
+    place = folder / "bin"
+    place.mkdir(exist_ok=True)
+    program = place / "rulec"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rulec "$@"\n')
+    program.chmod(0o755)
+    empty = folder / f"run{len(list(folder.iterdir()))}"
+    empty.mkdir()
+    done = subprocess.run(
+        ["sh", "-c", text],
+        cwd=empty,
+        capture_output=True,
+        check=False,
+        env={
+            **os.environ,
+            "PATH": f"{place}:{os.environ['PATH']}",
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+        },
+    )
+    return CODE.findall((done.stdout + done.stderr).decode()), done.returncode
+
+
+def codes_of(kind, text, folder):
+    if kind == "command":
+        return shell(text, folder)[0]
+    try:
+        found = RUN[kind](text, folder)
+    except RulecError as error:
+        found = error.diagnostics
+    return [one.code for one in found]
+
+
+WITH_EXAMPLES = [code for code, one in EXPLANATIONS.items() if one.kind != "circumstance"]
+
+
+@pytest.mark.parametrize("code", WITH_EXAMPLES)
+def test_the_bad_example_gets_the_code_and_the_mended_one_none(code, tmp_path):
+    about = EXPLANATIONS[code]
+    assert set(codes_of(about.kind, about.bad, tmp_path)) == {code}
+    assert codes_of(about.kind, about.good, tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "code", [code for code, one in EXPLANATIONS.items() if one.kind == "command"]
+)
+def test_commands_end_as_they_should(code, tmp_path):
+    about = EXPLANATIONS[code]
+    assert shell(about.bad, tmp_path)[1] in (1, 2)
+    assert shell(about.good, tmp_path)[1] == 0
+
+
+def test_only_what_no_input_makes_has_no_example():
+    assert [code for code in EXPLANATIONS if code not in WITH_EXAMPLES] == ["R0402", "R0403"]
+
+
+def test_traces_are_lines():
+    for one in EXPLANATIONS.values():
+        if one.kind == "trace":
+            assert [bool(json.loads(text)) for text in (one.bad, one.good)] == [True, True]
+
+
+def test_codes_stand_in_their_stage_and_in_order():
+    for number, codes in enumerate(STAGES.values(), 1):
+        assert all(code.startswith(f"R0{number}") for code in codes)
+    assert list(EXPLANATIONS) == sorted(EXPLANATIONS)
+
+
+@pytest.mark.parametrize("code", EXPLANATIONS)
+def test_an_explanation_is_written_for_people(code):
+    about = EXPLANATIONS[code]
+    assert about.title[0].islower() or about.title.startswith("Spot")
+    assert about.why[0].isupper()
+    assert about.why.endswith(".")
+    assert about.bad != about.good or about.kind == "circumstance"

@@ -1,0 +1,108 @@
+"""Coverage: what it counts, and that the examples it proposes do what it says of them."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.strategies import composite
+
+from rulec.logic.formula import Atom
+from rulec.logic.printing import in_words
+from rulec.report.examples import missing_example
+from rulec.rulebook.loader import parse_rulebook
+from rulec.runtime.coverage import coverage, percent
+from rulec.runtime.examples import run_all
+from rulec.workflow import compile_rulebook
+
+HEAD = """rulebook sample
+type t
+signal p, q default false
+signal near(v: t)
+light(v: t) is one of red, amber, green, off
+only is one of lone
+"""
+
+
+def covered(*rules, pattern=None):
+    rulebook = parse_rulebook(HEAD + "\n".join(rules))
+    return coverage(run_all(rulebook, compile_rulebook(rulebook), pattern=pattern))
+
+
+def test_edges_and_values_are_counted():
+    # Until `p` there are two edges: staying, and leaving for good.
+    (one,) = covered("hard rule A { require eventually p accept { not p; p } reject { not p } }")
+    assert (one.n_edges, one.missing_edges, one.n_values, one.missing_values) == (2, (), 2, ())
+    assert percent([one]) == 100
+
+
+def test_what_is_missing_is_said():
+    (one,) = covered("hard rule A { require eventually p reject { not p; not p } }")
+    (edge,) = one.missing_edges
+    assert (edge.source, edge.accepted) == (0, True)
+    assert edge.target != 0
+    assert missing_example(edge) == "accept { p }"
+    assert one.missing_values == ((Atom("p"), True),)
+    assert (one.total, one.covered, percent([one])) == (4, 2, 50)
+
+
+def test_a_default_is_seen_too():
+    (one,) = covered("hard rule A { require always (p implies q) accept { p and q } }")
+    assert set(one.missing_values) == {(Atom("p"), False), (Atom("q"), False)}
+    (one,) = covered("hard rule A { require always (p implies q) accept { p and q; q } }")
+    assert one.missing_values == ((Atom("q"), False),)
+
+
+def test_a_value_that_can_only_be_true_need_not_be_false():
+    (one,) = covered("hard rule A { require eventually (lone and p) accept { lone and p } }")
+    assert one.n_values == 3
+    assert one.missing_values == ((Atom("p"), False),)
+
+
+def test_an_atom_that_stands_twice_counts_once():
+    (one,) = covered("hard rule A { require p until (q and next p) }")
+    assert one.n_values == 4
+
+
+def test_a_rule_that_is_settled_has_nothing_to_cover():
+    (one,) = covered("hard rule A { require true }")
+    assert (one.total, percent([one]), percent([])) == (0, 100, 100)
+
+
+def test_with_a_pattern_only_rules_that_ran_count():
+    rules = [f"hard rule {name} {{ require p accept {{ p }} }}" for name in "AB"]
+    assert [one.rule for one in covered(*rules)] == ["A", "B"]
+    assert [one.rule for one in covered(*rules, pattern="B")] == ["B"]
+
+
+def test_a_value_that_the_rule_does_not_name_stands_for_the_others():
+    (one,) = covered("hard rule A (v: t) { require always not red(v) }")
+    assert [missing_example(edge) for edge in one.missing_edges] == [
+        "reject { red(v) }",
+        "accept { amber(v) }",
+    ]
+
+
+ATOMS = ["p", "q", "near(v)", "red(v)", "green(v)"]
+
+
+@composite
+def formulas(draw, depth=3):
+    if depth == 0 or draw(st.booleans()):
+        return draw(st.sampled_from(ATOMS))
+    operator = draw(st.sampled_from(["not", "always", "eventually", "next", "until", "and", "or"]))
+    inside = f"({draw(formulas(depth - 1))})"
+    if operator in ("until", "and", "or"):
+        return f"{inside} {operator} ({draw(formulas(depth - 1))})"
+    return f"{operator} {inside}"
+
+
+@given(formulas())
+@settings(max_examples=25)
+def test_with_every_proposed_example_everything_is_covered(formula):
+    rule = f"require {formula}"
+    (before,) = covered(f"hard rule A (v: t) {{ {rule} }}")
+    assert len(before.missing_edges) == before.n_edges
+    examples = "\n".join(missing_example(edge) for edge in before.missing_edges)
+    rulebook = parse_rulebook(f"{HEAD}hard rule A (v: t) {{ {rule}\n{examples} }}")
+    run = run_all(rulebook, compile_rulebook(rulebook))
+    assert all(one.passed for one in run.outcomes), in_words(rulebook.rules[0].formula)
+    (after,) = coverage(run)
+    assert after.missing_edges == ()
