@@ -3,6 +3,7 @@
 import pytest
 import spot
 from hypothesis import example, given
+from past_in_spot import spot_automaton
 from words import VOCABULARY, formulas, letters, words
 
 from rulec.automata.compiled import CompiledRule
@@ -14,6 +15,7 @@ from rulec.logic.formula import (
     Binary,
     BinaryOperator,
     Constant,
+    Formula,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -52,7 +54,7 @@ def by_table(formula, word):
 
 
 def by_spot(formula, word):
-    return spot_membership(spot.translate(in_spot(formula)), formula, letters(word))
+    return spot_membership(spot_automaton(formula), formula, letters(word))
 
 
 def by_hoa(formula, word):
@@ -65,8 +67,13 @@ ENGINES = {"table": by_table, "Spot": by_spot, "HOA file": by_hoa}
 
 P, NEAR, FAR = Atom("p"), Atom("place", ("x",), "near"), Atom("place", ("x",), "far")
 GFP = Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.EVENTUALLY, P))
+PHASES = Binary(BinaryOperator.THEN, NEAR, Binary(BinaryOperator.THEN, FAR, P))
 CAR_NEAR = {"place": {"car1": "near"}, "light": "red", "p": True, "q": False}
 CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
+
+
+def previously(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.PREVIOUSLY, formula)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -76,6 +83,11 @@ CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
 @example(Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, NEAR)), [CAR_FAR, CAR_NEAR])
 @example(Binary(BinaryOperator.AND, NEAR, FAR), [CAR_NEAR])
 @example(Constant(False), [CAR_NEAR])
+@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(P))), [CAR_NEAR])
+@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(NEAR))), [CAR_NEAR, CAR_FAR])
+@example(Unary(UnaryOperator.ONCE, Unary(UnaryOperator.ALWAYS, P)), [CAR_FAR, CAR_NEAR])
+@example(PHASES, [CAR_NEAR, CAR_FAR, CAR_NEAR])
+@example(PHASES, [CAR_NEAR, CAR_NEAR])
 def test_engine_agrees_with_direct_evaluation(engine, formula, word):
     assert ENGINES[engine](formula, word) == holds(formula, letters(word))
 
@@ -132,8 +144,24 @@ def test_machines_are_minimal(formula):
 @given(formulas)
 def test_the_automaton_is_the_formula_under_the_vocabularys_knowledge(formula):
     reads = reads_of(formula, VOCABULARY)
-    meant = f"({in_spot(formula)}) & G({in_spot(knowledge(reads))})"
+    meant = spot_automaton(formula, f"G({in_spot(knowledge(reads))})")
     assert spot.are_equivalent(translate(formula, reads), meant)
+
+
+@given(formulas)
+def test_the_automaton_is_deterministic_and_knows_the_formulas_atoms_alone(formula):
+    automaton = spot.automaton(
+        in_hoa(translate(formula, reads_of(formula, VOCABULARY)), "rule", ())
+    )
+    assert spot.is_deterministic(automaton)
+    assert spot.is_complete(automaton)
+    assert automaton.acc().is_parity()[0]
+    known = {str(atom) for read in reads_of(formula, VOCABULARY) for atom in atoms_about(read)}
+    assert {ap.ap_name() for ap in automaton.ap()} <= known
+
+
+def atoms_about(read):
+    return [Atom(read.name, read.variables, value) for value in read.values or (None,)]
 
 
 @given(formulas, formulas)
@@ -143,3 +171,60 @@ def test_machines_of_equivalent_formulas_are_identical(left, right):
     both = Binary(BinaryOperator.AND, left, right)
     either = Unary(no, Binary(BinaryOperator.OR, Unary(no, left), Unary(no, right)))
     assert machine_of(both) == machine_of(either)
+
+
+LAWS = {
+    "once": (
+        lambda a, _: Unary(UnaryOperator.ONCE, a),
+        lambda a, _: Unary(UnaryOperator.NOT, historically(Unary(UnaryOperator.NOT, a))),
+    ),
+    "previously": (
+        lambda a, _: previously(a),
+        lambda a, _: Unary(
+            UnaryOperator.NOT,
+            Unary(UnaryOperator.WEAK_PREVIOUSLY, Unary(UnaryOperator.NOT, a)),
+        ),
+    ),
+    "since": (
+        lambda a, b: Binary(BinaryOperator.SINCE, a, b),
+        lambda a, b: Binary(
+            BinaryOperator.OR,
+            b,
+            Binary(BinaryOperator.AND, a, previously(Binary(BinaryOperator.SINCE, a, b))),
+        ),
+    ),
+    "never": (
+        lambda a, _: Unary(UnaryOperator.NEVER, a),
+        lambda a, _: Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.NOT, a)),
+    ),
+    "then": (
+        lambda a, b: Binary(BinaryOperator.THEN, a, b),
+        lambda a, b: Binary(
+            BinaryOperator.AND,
+            a,
+            Unary(UnaryOperator.NEXT, Binary(BinaryOperator.UNTIL, a, b)),
+        ),
+    ),
+    "next previously": (
+        lambda a, _: Unary(UnaryOperator.NEXT, previously(a)),
+        lambda a, _: a,
+    ),
+}
+
+
+def historically(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.HISTORICALLY, formula)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@given(formulas, formulas)
+def test_machines_are_identical_by_the_laws_of_the_past(law, left, right):
+    """The same language by another formula, with other memories.
+
+    Both sides are asked of everything at once, so that they read the same."""
+    one, other = LAWS[law]
+    reading = Binary(BinaryOperator.OR, Unary(UnaryOperator.NOT, left), left)
+    reading = Binary(BinaryOperator.AND, reading, Binary(BinaryOperator.IMPLIES, right, right))
+    assert machine_of(Binary(BinaryOperator.AND, reading, one(left, right))) == machine_of(
+        Binary(BinaryOperator.AND, reading, other(left, right))
+    )

@@ -44,6 +44,7 @@ CODES: dict[str, str] = {
     "R0308": "a parameter's type is left out where it is not clear",
     "R0309": "a name can be read in two ways",
     "R0310": "a state denies a value instead of naming one",
+    "R0311": "an operator speaks of a phase before `then`, not of the sequence",
     # 4: compiling
     "R0401": "the automaton of a rule would be too large",
     "R0402": "the compiled automaton failed its check against the formula",
