@@ -193,6 +193,22 @@ def test_what_was_before_takes_as_many_states_as_there_are_pasts():
     assert len(compiled.machine.following) == 2**3 + 1
 
 
+def test_a_past_as_deep_as_a_formula_may_be():
+    deep = reduce(lambda inner, _: Unary(UnaryOperator.ONCE, inner), range(198), P)
+    (deepest, plain) = compile_rulebook(
+        book(rule("A", always(implies(Q, deep))), rule("B", always(implies(Q, ONCE))))
+    ).rules
+    assert deepest.machine == plain.machine
+
+
+def test_phases_in_phases_that_explode_are_an_error():
+    """On the left a sequence is said twice, and what stands in it four times."""
+    deep = reduce(lambda inner, _: Binary(BinaryOperator.THEN, inner, Q), range(99), P)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", deep)), cpu_limit_s=1)
+    assert [one.code for one in caught.value.diagnostics] == ["R0401"]
+
+
 def test_a_past_that_explodes_is_an_error():
     """Which of 14 signals there have been, told apart at every instant."""
     pasts = [Unary(UnaryOperator.ONCE, Atom(f"s{i}")) for i in range(14)]
