@@ -93,12 +93,16 @@ def _with_memory(automaton: Any, memories: Sequence[Memory]) -> Any:
         for one in memories
     ]
     product = spot.make_twa_graph(propositions)
-    product.copy_ap_of(automaton)
+    fresh = {one.atom.name for one in memories}
+    for proposition in automaton.ap():
+        if proposition.ap_name() not in fresh:
+            product.register_ap(proposition)
     product.copy_acceptance_of(automaton)
     product.set_init_state(product.new_state())
     first = (automaton.get_init_state_number(), tuple(one.at_first for one in memories))
     numbers = {first: 0}
-    for state, values in (waiting := [first]):
+    reached = [first]
+    for state, values in reached:
         source = numbers[state, values]
         register = buddy.bddtrue
         for bit, value in zip(stored, values, strict=True):
@@ -112,12 +116,10 @@ def _with_memory(automaton: Any, memories: Sequence[Memory]) -> Any:
                 target = (edge.dst, later)
                 if target not in numbers:
                     numbers[target] = product.new_state()
-                    waiting.append(target)
+                    reached.append(target)
                 product.new_edge(source, numbers[target], both, edge.acc)
     product.merge_edges()
-    product = spot.postprocess(product, *_SHAPE)
-    product.remove_unused_ap()
-    return product
+    return spot.postprocess(product, *_SHAPE)
 
 
 def _choices(formulas: Sequence[Any]) -> list[tuple[Any, tuple[bool, ...]]]:
