@@ -12,7 +12,9 @@ from words import formulas
 from rulec.automata import compiler
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.logic.formula import Atom, Binary, BinaryOperator
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.logic.past import remembered
+from rulec.logic.printing import in_spot, in_words
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
@@ -142,6 +144,83 @@ def test_an_automaton_that_fails_its_check_is_refused():
             spot_bridge._check(automaton, spot.formula("p"))
     with pytest.raises(spot_bridge.CheckError):
         spot_bridge._check(spot.translate("FG p", "BA"), spot.formula("FG p"))
+
+
+MEMORY = '"memory 0"'
+ONCE = Unary(UnaryOperator.ONCE, P)
+
+
+@pytest.mark.parametrize(
+    ("automaton", "why"),
+    [
+        (f"G(q -> (p | {MEMORY}))", "the memory is still a proposition"),
+        ("G(q -> p)", "what was is forgotten"),
+        ("G(q -> (p | XF p))", "what comes is taken for what was"),
+        ("1", "nothing is asked for"),
+    ],
+)
+def test_an_automaton_that_forgets_fails_its_check(automaton, why):
+    """`always (q implies once p)` is `p R (p | !q)`, and nothing else passes for it."""
+    import spot
+
+    from rulec.automata import spot_bridge
+
+    present, memories = remembered(always(implies(Q, ONCE)))
+    assert len(memories) == 1
+    language = spot.formula(in_spot(present))
+    right = spot.translate("p R (p | !q)", "parity", "det", "complete")
+    spot_bridge._check(right, language, memories)
+    wrong = spot.translate(automaton, "parity", "det", "complete")
+    with pytest.raises(spot_bridge.CheckError):
+        spot_bridge._check(wrong, language, memories)
+
+
+def test_a_rule_about_the_past_becomes_its_smallest_table():
+    # always (q implies once near): not near yet, near once and safe, or lost.
+    formula = always(implies(Q, Unary(UnaryOperator.ONCE, near("x"))))
+    (compiled,) = compile_rulebook(book(rule("A", formula, "x: thing"))).rules
+    machine = compiled.machine
+    assert len(machine.following) == 3
+    assert None not in (machine.dead, machine.safe)
+    near_at_once = machine.letters[0]  # digit 0 is `near`, q is false
+    assert machine.following[0][near_at_once] == machine.safe
+    assert 'AP: 2 "q" "near(x)"' in compiled.hoa or 'AP: 2 "near(x)" "q"' in compiled.hoa
+    assert "memory" not in compiled.hoa
+    assert "\nStates: 3\n" in compiled.hoa
+    assert in_words(compiled.formula) == "always (q implies once near(x))"
+
+
+def test_what_was_before_takes_as_many_states_as_there_are_pasts():
+    # always (q implies p three instants ago): the last three p, and lost. In the first three
+    # instants there is no such p, as if it had been false.
+    ago = reduce(lambda inner, _: Unary(UnaryOperator.PREVIOUSLY, inner), range(3), P)
+    (compiled,) = compile_rulebook(book(rule("A", always(implies(Q, ago))))).rules
+    assert len(compiled.machine.following) == 2**3 + 1
+
+
+def test_a_past_as_deep_as_a_formula_may_be():
+    deep = reduce(lambda inner, _: Unary(UnaryOperator.ONCE, inner), range(198), P)
+    (deepest, plain) = compile_rulebook(
+        book(rule("A", always(implies(Q, deep))), rule("B", always(implies(Q, ONCE))))
+    ).rules
+    assert deepest.machine == plain.machine
+
+
+def test_phases_in_phases_that_explode_are_an_error():
+    """On the left a sequence is said twice, and what stands in it four times."""
+    deep = reduce(lambda inner, _: Binary(BinaryOperator.THEN, inner, Q), range(99), P)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", deep)), cpu_limit_s=1)
+    assert [one.code for one in caught.value.diagnostics] == ["R0401"]
+
+
+def test_a_past_that_explodes_is_an_error():
+    """Which of 14 signals there have been, told apart at every instant."""
+    pasts = [Unary(UnaryOperator.ONCE, Atom(f"s{i}")) for i in range(14)]
+    rules = (Rule("Boom", "hard", (), always(chain(BinaryOperator.XOR, pasts))),)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(Rulebook("test", signals(14), rules), cpu_limit_s=1)
+    assert [one.code for one in caught.value.diagnostics] == ["R0401"]
 
 
 def test_a_failed_check_is_an_error_of_its_own(monkeypatch):

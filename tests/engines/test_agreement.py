@@ -3,6 +3,7 @@
 import pytest
 import spot
 from hypothesis import example, given
+from past_in_spot import spot_automaton
 from words import VOCABULARY, formulas, letters, words
 
 from rulec.automata.compiled import CompiledRule
@@ -14,6 +15,7 @@ from rulec.logic.formula import (
     Binary,
     BinaryOperator,
     Constant,
+    Formula,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -52,7 +54,7 @@ def by_table(formula, word):
 
 
 def by_spot(formula, word):
-    return spot_membership(spot.translate(in_spot(formula)), formula, letters(word))
+    return spot_membership(spot_automaton(formula), formula, letters(word))
 
 
 def by_hoa(formula, word):
@@ -67,6 +69,7 @@ ENGINES = {"table": by_table, "Spot": by_spot, "HOA file": by_hoa}
 
 P, NEAR, FAR = Atom("p"), Atom("place", ("x",), "near"), Atom("place", ("x",), "far")
 GFP = Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.EVENTUALLY, P))
+PHASES = Binary(BinaryOperator.THEN, NEAR, Binary(BinaryOperator.THEN, FAR, P))
 CAR_NEAR = {"place": {"car1": "near"}, "light": "red", "p": True, "q": False}
 # Its machine has a state that some letters keep and others leave: no trap.
 P_ONCE_THEN_NOT = Unary(
@@ -74,6 +77,10 @@ P_ONCE_THEN_NOT = Unary(
     Binary(BinaryOperator.AND, P, Unary(UnaryOperator.NEXT, Unary(UnaryOperator.NOT, P))),
 )
 CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
+
+
+def previously(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.PREVIOUSLY, formula)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -84,6 +91,11 @@ CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
 @example(Binary(BinaryOperator.AND, NEAR, FAR), [CAR_NEAR])
 @example(Constant(False), [CAR_NEAR])
 @example(P_ONCE_THEN_NOT, [CAR_FAR, CAR_NEAR, CAR_FAR])
+@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(P))), [CAR_NEAR])
+@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(NEAR))), [CAR_NEAR, CAR_FAR])
+@example(Unary(UnaryOperator.ONCE, Unary(UnaryOperator.ALWAYS, P)), [CAR_FAR, CAR_NEAR])
+@example(PHASES, [CAR_NEAR, CAR_FAR, CAR_NEAR])
+@example(PHASES, [CAR_NEAR, CAR_NEAR])
 def test_engine_agrees_with_direct_evaluation(engine, formula, word):
     assert ENGINES[engine](formula, word) == holds(formula, letters(word))
 
@@ -141,15 +153,14 @@ def test_machines_are_minimal(formula):
 @given(formulas)
 def test_the_automaton_is_the_formula_under_the_vocabularys_knowledge(formula):
     reads = reads_of(formula, VOCABULARY)
-    meant = f"({in_spot(formula)}) & G({EXCLUSIVE})"
+    meant = spot_automaton(formula, f"G({EXCLUSIVE})")
     automaton = translate(formula, reads)
     # Values that the formula does not mention are nowhere in the automaton: any of them will do.
     unused = [ap for ap in VALUES if ap not in {str(atom) for atom in atoms_of(formula)}]
-    projected = spot.translate(meant, "small")
-    spot_unused = spot.remove_ap()
+    any_value = spot.remove_ap()
     for ap in unused:
-        spot_unused.add_ap(f'"{ap}"')
-    assert spot.are_equivalent(automaton, spot_unused.strip(projected))
+        any_value.add_ap(f'"{ap}"')
+    assert spot.are_equivalent(automaton, any_value.strip(meant))
 
 
 VALUES = ["near(x)", "far(x)", "gone(x)", "red", "green"]
@@ -185,6 +196,22 @@ def test_dead_and_safe_states():
                 assert set(machine.accepting[trap]) == {verdict}
 
 
+@given(formulas)
+def test_the_automaton_is_deterministic_and_knows_the_formulas_atoms_alone(formula):
+    automaton = spot.automaton(
+        in_hoa(translate(formula, reads_of(formula, VOCABULARY)), "rule", ())
+    )
+    assert spot.is_deterministic(automaton)
+    assert spot.is_complete(automaton)
+    assert automaton.acc().is_parity()[0]
+    known = {str(atom) for read in reads_of(formula, VOCABULARY) for atom in atoms_about(read)}
+    assert {ap.ap_name() for ap in automaton.ap()} <= known
+
+
+def atoms_about(read):
+    return [Atom(read.name, read.variables, value) for value in read.values or (None,)]
+
+
 @given(formulas, formulas)
 def test_machines_of_equivalent_formulas_are_identical(left, right):
     """De Morgan: the same language by another formula, through another automaton."""
@@ -192,3 +219,60 @@ def test_machines_of_equivalent_formulas_are_identical(left, right):
     both = Binary(BinaryOperator.AND, left, right)
     either = Unary(no, Binary(BinaryOperator.OR, Unary(no, left), Unary(no, right)))
     assert machine_of(both) == machine_of(either)
+
+
+LAWS = {
+    "once": (
+        lambda a, _: Unary(UnaryOperator.ONCE, a),
+        lambda a, _: Unary(UnaryOperator.NOT, historically(Unary(UnaryOperator.NOT, a))),
+    ),
+    "previously": (
+        lambda a, _: previously(a),
+        lambda a, _: Unary(
+            UnaryOperator.NOT,
+            Unary(UnaryOperator.WEAK_PREVIOUSLY, Unary(UnaryOperator.NOT, a)),
+        ),
+    ),
+    "since": (
+        lambda a, b: Binary(BinaryOperator.SINCE, a, b),
+        lambda a, b: Binary(
+            BinaryOperator.OR,
+            b,
+            Binary(BinaryOperator.AND, a, previously(Binary(BinaryOperator.SINCE, a, b))),
+        ),
+    ),
+    "never": (
+        lambda a, _: Unary(UnaryOperator.NEVER, a),
+        lambda a, _: Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.NOT, a)),
+    ),
+    "then": (
+        lambda a, b: Binary(BinaryOperator.THEN, a, b),
+        lambda a, b: Binary(
+            BinaryOperator.AND,
+            a,
+            Unary(UnaryOperator.NEXT, Binary(BinaryOperator.UNTIL, a, b)),
+        ),
+    ),
+    "next previously": (
+        lambda a, _: Unary(UnaryOperator.NEXT, previously(a)),
+        lambda a, _: a,
+    ),
+}
+
+
+def historically(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.HISTORICALLY, formula)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@given(formulas, formulas)
+def test_machines_are_identical_by_the_laws_of_the_past(law, left, right):
+    """The same language by another formula, with other memories.
+
+    Both sides are asked of everything at once, so that they read the same."""
+    one, other = LAWS[law]
+    reading = Binary(BinaryOperator.OR, Unary(UnaryOperator.NOT, left), left)
+    reading = Binary(BinaryOperator.AND, reading, Binary(BinaryOperator.IMPLIES, right, right))
+    assert machine_of(Binary(BinaryOperator.AND, reading, one(left, right))) == machine_of(
+        Binary(BinaryOperator.AND, reading, other(left, right))
+    )

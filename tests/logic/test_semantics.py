@@ -5,7 +5,9 @@ from hypothesis import given
 from words import formulas, letters, words
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
+from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds, truth_values
+from rulec.rulebook.loader import parse_rulebook
 
 X, Y = Atom("x"), Atom("y")
 
@@ -33,21 +35,111 @@ def test_the_last_letter_goes_on_for_ever():
     ]
 
 
+# Worked out by hand: x = T F F T F T, y = F F T F T F.
+PAST_WORD = [frozenset(one) for one in ({X}, {}, {Y}, {X}, {Y}, {X})]
+PAST = {
+    "previously x": (Unary(UnaryOperator.PREVIOUSLY, X), "FTFFTF"),
+    "weak previously x": (Unary(UnaryOperator.WEAK_PREVIOUSLY, X), "TTFFTF"),
+    "once y": (Unary(UnaryOperator.ONCE, Y), "FFTTTT"),
+    "historically x": (Unary(UnaryOperator.HISTORICALLY, X), "TFFFFF"),
+    "x since y": (Binary(BinaryOperator.SINCE, X, Y), "FFTTTT"),
+    "y since x": (Binary(BinaryOperator.SINCE, Y, X), "TFFTTT"),
+    "never y": (Unary(UnaryOperator.NEVER, Y), "FFFFFT"),
+    "x then y": (Binary(BinaryOperator.THEN, X, Y), "FFFTFF"),
+}
+
+
+@pytest.mark.parametrize("row", PAST)
+def test_the_past_by_hand(row):
+    formula, expected = PAST[row]
+    assert truth_values(formula, PAST_WORD) == [value == "T" for value in expected]
+
+
+def test_the_past_of_an_instant_that_repeats_the_last_letter():
+    """The word x stands for x x x …: in its second instant there was an x before."""
+    twice = Unary(UnaryOperator.PREVIOUSLY, Unary(UnaryOperator.PREVIOUSLY, X))
+    thrice = Unary(UnaryOperator.PREVIOUSLY, twice)
+    for formula in (twice, thrice):
+        assert not holds(formula, [{X}])
+        assert holds(Unary(UnaryOperator.EVENTUALLY, formula), [{X}])
+        at_last = Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, formula))
+        assert holds(at_last, [{}, {X}])
+        assert not holds(at_last, [{X}, {}])
+
+
+THEN = BinaryOperator.THEN
+A, B, C = Atom("a"), Atom("b"), Atom("c")
+PHASES = [
+    ("abc", True),
+    ("aabbccaa", True),
+    ("ab", False),
+    ("ac", False),  # the middle phase lasts at least one instant
+    ("xabc", False),  # the first phase begins now
+    ("axbc", False),  # no break
+    ("abxc", False),
+    ("abac", False),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), PHASES)
+def test_phases_follow_one_another_without_a_break(text, expected):
+    formula = Binary(THEN, A, Binary(THEN, B, C))
+    assert holds(formula, [{Atom(one)} for one in text]) == expected
+
+
+def test_phases_share_no_instant():
+    both = frozenset({A, B})
+    assert not holds(Binary(THEN, A, B), [both, frozenset()])
+    assert holds(Binary(THEN, A, B), [both, both, frozenset()])
+    assert holds(Binary(THEN, A, B), [both])  # for it goes on
+
+
+def test_the_papers_sequence_lets_the_middle_phase_be_empty():
+    later = Unary(UnaryOperator.NEXT, Binary(BinaryOperator.UNTIL, B, C))
+    paper = Binary(BinaryOperator.AND, A, later)
+    assert holds(paper, [{A}, {C}])
+    assert not holds(Binary(THEN, A, Binary(THEN, B, C)), [{A}, {C}])
+
+
 def test_an_empty_word_has_no_meaning():
     with pytest.raises(ValueError, match="empty"):
         holds(X, [])
 
 
-def fixpoint(formula, word):
+def expanded(formula, word):
     """An evaluation that shares nothing with the one under test: unfold each operator by its
-    expansion law, and iterate over the instants until nothing changes any more."""
+    expansion law, and iterate over the instants until nothing changes any more. The last letter is
+    repeated once for every operator, more often than any of them can look back."""
+    return fixpoint(formula, [*word, *[word[-1]] * size(formula)])[: len(word)]
+
+
+def size(formula):
+    match formula:
+        case Unary(_, operand):
+            return 1 + size(operand)
+        case Binary(_, left, right):
+            return 1 + size(left) + size(right)
+    return 0
+
+
+def fixpoint(formula, word):
     n = len(word)
     following = [min(i + 1, n - 1) for i in range(n)]
 
     def solve(start, update):
+        """For updates by the value that follows."""
+        return solve_in_place(start, lambda i, values: update(i, values[following[i]]))
+
+    def look_back(at_first, update):
+        """For updates by the value before, which there is none of at the first instant."""
+        return solve_in_place(
+            False, lambda i, values: update(i, values[i - 1]) if i else at_first(0)
+        )
+
+    def solve_in_place(start, update):
         values = [start] * n
         while True:
-            renewed = [update(i, values[following[i]]) for i in range(n)]
+            renewed = [update(i, values) for i in range(n)]
             if renewed == values:
                 return values
             values = renewed
@@ -64,23 +156,79 @@ def fixpoint(formula, word):
                 "next": lambda: [a[following[i]] for i in range(n)],
                 "weak next": lambda: [a[following[i]] for i in range(n)],
                 "always": lambda: solve(True, lambda i, later: a[i] and later),
+                "never": lambda: solve(True, lambda i, later: not a[i] and later),
                 "eventually": lambda: solve(False, lambda i, later: a[i] or later),
+                "previously": lambda: [i > 0 and a[i - 1] for i in range(n)],
+                "weak previously": lambda: [i == 0 or a[i - 1] for i in range(n)],
+                "once": lambda: look_back(lambda i: a[i], lambda i, before: a[i] or before),
+                "historically": lambda: look_back(
+                    lambda i: a[i], lambda i, before: a[i] and before
+                ),
             }[operator.value]()
         case Binary(operator, left, right):
             a, b = fixpoint(left, word), fixpoint(right, word)
+
+            def until():
+                return solve(False, lambda i, later: b[i] or (a[i] and later))
+
             return {
                 "and": lambda: [a[i] and b[i] for i in range(n)],
                 "or": lambda: [a[i] or b[i] for i in range(n)],
                 "implies": lambda: [b[i] if a[i] else True for i in range(n)],
                 "iff": lambda: [a[i] is b[i] for i in range(n)],
                 "xor": lambda: [a[i] is not b[i] for i in range(n)],
-                "until": lambda: solve(False, lambda i, later: b[i] or (a[i] and later)),
+                "until": until,
                 "weak until": lambda: solve(True, lambda i, later: b[i] or (a[i] and later)),
                 "release": lambda: solve(True, lambda i, later: b[i] and (a[i] or later)),
                 "strong release": lambda: solve(False, lambda i, later: b[i] and (a[i] or later)),
+                "then": lambda: [a[i] and until()[following[i]] for i in range(n)],
+                "since": lambda: look_back(
+                    lambda i: b[i], lambda i, before: b[i] or (a[i] and before)
+                ),
             }[operator.value]()
 
 
 @given(formulas, words)
 def test_evaluation_agrees_with_the_expansion_laws(formula, word):
-    assert truth_values(formula, letters(word)) == fixpoint(formula, letters(word))
+    assert truth_values(formula, letters(word)) == expanded(formula, letters(word))
+
+
+@given(formulas, formulas, words)
+def test_looking_back_is_looking_ahead_in_a_mirror(left, right, word):
+    """Where operands speak of the present alone, `since` is `until` on the word read backwards."""
+    a, b = (frozen(one, "pq"[n], letters(word)) for n, one in enumerate((left, right)))
+    both = [frozenset({*one, *other}) for one, other in zip(a, b, strict=True)]
+    p, q = Atom("p"), Atom("q")
+    since = truth_values(Binary(BinaryOperator.SINCE, p, q), both)
+    until = truth_values(Binary(BinaryOperator.UNTIL, p, q), both[::-1])
+    assert since == until[::-1]
+
+
+def frozen(formula, name, word):
+    """A word in which the atom ``name`` is true where the formula is in ``word``."""
+    return [{Atom(name)} if value else set() for value in truth_values(formula, word)]
+
+
+DECLARED = """rulebook printed
+type thing
+place(o: thing) is one of near, far, gone
+light is one of red, green
+signal p, q
+hard rule r (x: thing) {{ require {} }}
+"""
+
+
+@given(formulas, words)
+def test_a_formula_in_words_is_read_with_its_meaning(formula, word):
+    """Chains may be read from the other side, which makes no difference."""
+    text = in_words(formula)
+    (rule,) = parse_rulebook(DECLARED.format(text)).rules
+    assert in_words(rule.formula) == text
+    assert truth_values(rule.formula, letters(word)) == truth_values(formula, letters(word))
+
+
+def test_a_chain_of_phases_needs_no_parentheses():
+    right = Binary(THEN, A, Binary(THEN, Binary(BinaryOperator.AND, B, C), A))
+    assert in_words(right) == "a then b and c then a"
+    assert in_words(Binary(THEN, Binary(THEN, A, B), C)) == "(a then b) then c"
+    assert in_words(Unary(UnaryOperator.NEVER, right)) == "never (a then b and c then a)"

@@ -11,9 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.diagnostics import render_diagnostics
 from rulec.rulebook.loader import read_rulebook
+from rulec.runtime.examples import run_all
 from rulec.syntax import decode, parse, print_file
 
 HERE = Path(__file__).parent
@@ -39,6 +41,15 @@ def test_a_good_file_has_no_mistakes_and_prints_as_itself(path: Path) -> None:
         loaded = read_rulebook(path)
         assert loaded.warnings == ()
         assert loaded.rulebook.name == path.stem
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_a_good_rulebooks_examples_come_out_as_they_say(path: Path) -> None:
+    tree, _ = parse(decode(path.name, path.read_bytes()))
+    if tree.kind == "rulebook":
+        rulebook = read_rulebook(path).rulebook
+        outcomes = run_all(rulebook, compile_rulebook(rulebook)).outcomes
+        assert [one for one in outcomes if not one.passed] == []
 
 
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)

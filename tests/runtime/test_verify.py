@@ -6,7 +6,7 @@ from words import VOCABULARY
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
-from rulec.logic.formula import Atom
+from rulec.logic.formula import Atom, Unary, UnaryOperator
 from rulec.rulebook.model import Rulebook
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.runtime.verify import judge, verify
@@ -120,6 +120,21 @@ def test_the_last_state_of_the_stretch_goes_on_for_ever():
     assert violations(comes_near, trace("fgg", "ngg", "gng", present=present)) == [
         (("car1",), None)
     ]
+
+
+def test_the_past_begins_with_the_stretch():
+    """Near from one state to the next: not for car1, which was not there in state 0."""
+    before = Unary(UnaryOperator.PREVIOUSLY, near("x"))
+    not_twice = rule("A", always(no(both(near("x"), before))), "x: car")
+    states = ("ngg", "ngg", "fgg")
+    assert violations(not_twice, trace(*states)) == [(("car1",), 1)]
+    assert violations(not_twice, trace(*states, present={"car1": (1, 2)})) == []
+
+
+def test_the_past_of_the_last_state_is_what_it_repeats():
+    before = Unary(UnaryOperator.PREVIOUSLY, near("x"))
+    not_twice = rule("A", always(no(both(near("x"), before))), "x: car")
+    assert violations(not_twice, trace("fgg", "ngg")) == [(("car1",), None)]
 
 
 def test_objects_that_never_meet_are_no_binding():

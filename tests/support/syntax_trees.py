@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from rulec.syntax import tree
 from rulec.syntax.keywords import PRECEDENCE, RESERVED, UNARY_OPERATORS
 
-letters = st.sampled_from("abpqrvxyzGFXURWM_éß車Ω09")
+letters = st.sampled_from("abpqrvxyzGFXURWMOHYS_éß車Ω09")
 names = (
     st.text(letters, min_size=1, max_size=5)
     .filter(lambda text: text not in RESERVED and not text[0].isdigit())

@@ -7,6 +7,7 @@ from rulec.syntax import parse, parse_formula
 
 COMPARED = "formulas are compared by `iff`; a value is an atom itself, such as `crossing`"
 NAMES = "names are made of letters, digits and `_`, and begin with a letter"
+BOUNDS = "bounds of time cannot be written; `next` goes one step ahead, `previously` one back"
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
     ("p → q", "→", "write `implies` or `->`"),
@@ -28,13 +29,25 @@ FORMULAS = [
     ("○ p", "○", "write `next` or `X`"),
     ("p OR q", "OR", "write `or` or `|`"),
     ("p Until q", "Until", "write `until` or `U`"),
-    ("never p", "p", "write `always not …`"),
-    ("once p", "p", "this language speaks of the present and the future, not of the past"),
-    ("p since q", "since", "this language speaks of the present and the future, not of the past"),
-    ("always[<= 3 s] p", "[", "bounds of time cannot be written; `next` goes one step ahead"),
+    ("nevr p", "p", "did you mean `never`?"),
+    ("onse p", "p", "did you mean `once`?"),
+    ("p sinc q", "sinc", "did you mean `since`?"),
+    ("p than q", "than", "did you mean `then`?"),
+    ("p and then q", "then", "`then` stands alone between two phases: write `p then q`"),
+    ("if not p then q", "not", "write `p implies q` for `if p then q`"),
+    ("⧫ p", "⧫", "write `once` or `O`"),
+    ("Previously p", "p", "did you mean `previously`?"),
+    ("GHp p", "p", ""),
+    ("OH p", "p", "`OH` is read as one name; write `O H`"),
+    ("always[<= 3 s] p", "[", BOUNDS),
+    ("O[<= 3 s] p", "[", BOUNDS),
+    ("p since[<= 3 s] q", "[", BOUNDS),
+    ("p U[<= 3 s] q", "[", BOUNDS),
+    ("p and [ q", "[", "write `always` or `G`"),
     ("speed < 50", "<", "formulas are about signals and values; numbers cannot be compared"),
     ("gap >= 2", ">=", "formulas are about signals and values; numbers cannot be compared"),
-    ("weak p", "weak", "`weak` stands before `until` or before `next`"),
+    ("weak p", "weak", "`weak` stands before `until`, `next` or `previously`"),
+    ("p weak since q", "weak", "`weak` stands before `until`, `next` or `previously`"),
     ("p strong until q", "strong", "`strong` stands before `release`"),
     ("(p & q))", ")", "delete the `)`, or open it before"),
     ("p;", ";", "delete the `;`"),
@@ -103,6 +116,16 @@ LINES = [
     (
         "hard rule a { require p accept { p; X q } }",
         "X",
+        "a state holds atoms and `not` before a signal; no other operator",
+    ),
+    (
+        "hard rule a { require p accept { p then q } }",
+        "then",
+        "a state holds atoms and `not` before a signal; no other operator",
+    ),
+    (
+        "hard rule a { require p accept { p; O q } }",
+        "O",
         "a state holds atoms and `not` before a signal; no other operator",
     ),
     (

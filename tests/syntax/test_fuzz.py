@@ -19,6 +19,7 @@ FRAGMENTS = st.sampled_from(
     [
         *("rulebook x", "vocabulary x {", "hard rule r (v: vehicle) {", "require ", "use paper\n"),
         *("accept {", "reject ", '"', "}", "{", "(", ")", ";", ",", "\n", "#", "\\", "'", "\0"),
+        *("never ", " then ", "once ", " since ", " S ", "O "),
         *("not ", "weak ", " U ", "->", "is one of", "default", "as of 2020-01-01", "p", "b_v"),
         *("title", "law", "type", "signal", "quantity x in ", "\ud800", "\u202e", "\ufeff", "é"),
     ]

@@ -19,11 +19,23 @@ SAME = [
     ("G a U b", "(G a) U b"),
     ("weak next a and b", "(weak next a) and b"),
     ("not always p implies q", "(not (always p)) implies q"),
+    ("never p until q", "(never p) until q"),
+    ("once p and historically not q", "(once p) and (historically (not q))"),
+    ("weak previously p since q", "(weak previously p) since q"),
+    ("O H Y p", "O(H(Y p))"),
     # Until and its family are one level and associate to the right.
-    ("a U b R c W d M e", "a U (b R (c W (d M e)))"),
-    # From until outward: and, or, xor, implies, iff.
-    ("a U b & c | d ^ e -> f <-> g", "(((((a U b) & c) | d) ^ e) -> f) <-> g"),
-    ("a <-> b -> c ^ d | e & f U g", "a <-> (b -> (c ^ (d | (e & (f U g)))))"),
+    ("a U b R c W d M e S f", "a U (b R (c W (d M (e S f))))"),
+    # From until outward: and, or, xor, then, implies, iff.
+    ("a U b & c | d ^ e then f -> g <-> h", "((((((a U b) & c) | d) ^ e) then f) -> g) <-> h"),
+    ("a <-> b -> c then d ^ e | f & g U h", "a <-> (b -> (c then (d ^ (e | (f & (g U h))))))"),
+    # Phases: what stands between two `then` is one phase, and they come from left to right.
+    ("a then b then c then d", "a then (b then (c then d))"),
+    (
+        "behind(v) then beside(v) and left_of(v) then in_front_of(v)",
+        "behind(v) then (beside(v) and left_of(v)) then in_front_of(v)",
+    ),
+    ("a then b or c then d", "a then (b or c) then d"),
+    ("p implies a then b", "p implies (a then b)"),
     # Implies associates to the right, the other Boolean operators to the left.
     ("a -> b -> c", "a -> (b -> c)"),
     ("a <-> b <-> c", "(a <-> b) <-> c"),
@@ -44,6 +56,11 @@ SAME = [
     ("a iff b", "a <-> b"),
     ("a implies b", "a -> b"),
     ("not p", "!p"),
+    ("once p", "O p"),
+    ("historically p", "H p"),
+    ("previously p", "Y p"),
+    ("a since b", "a S b"),
+    ("weak\npreviously p", "weak previously p"),
     # Names that only begin like a word or an operator.
     ("untilx U Gp", "(untilx) U (Gp)"),
     ("a\n  U # comment\n b", "a U b"),
@@ -58,6 +75,9 @@ def test_reads_as(text, meaning):
 DIFFERENT = [
     ("!a U b", "!(a U b)"),
     ("a U b U c", "(a U b) U c"),
+    ("a then b then c", "(a then b) then c"),
+    ("never a then b", "never (a then b)"),
+    ("previously p", "weak previously p"),
     ("a -> b -> c", "(a -> b) -> c"),
     ("a & (b & c)", "a & b & c"),
     ("Gp", "G p"),
@@ -73,4 +93,11 @@ def test_the_paper_s_rule_prints_as_the_paper_has_it():
     text = "!CONGESTED -> G !(b_v & X (b_v U r_v U f_v))"
     assert print_formula(parse_formula(text), "symbols") == text
     words = "not CONGESTED implies always not (b_v and next (b_v until r_v until f_v))"
+    assert print_formula(parse_formula(text)) == words
+
+
+def test_operators_without_a_symbol_keep_their_words():
+    text = "never (O p then weak previously q S weak next p)"
+    assert print_formula(parse_formula(text), "symbols") == text
+    words = "never (once p then weak previously q since weak next p)"
     assert print_formula(parse_formula(text)) == words

@@ -6,6 +6,7 @@ So this module is only ever loaded in a process of its own, see ``spot_worker``.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import spot
@@ -15,7 +16,16 @@ import buddy  # isort: skip - only once spot has been imported
 from rulec.automata.letters import count_letters, knowledge, letters_with
 from rulec.automata.machine import Read
 from rulec.automata.tables import DeterministicAutomaton, Edge
-from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.logic.past import Memory, definition, remembered
 from rulec.logic.printing import in_spot
 
 VERSION: str = spot.version()
@@ -29,26 +39,116 @@ def translate(formula: Formula, reads: tuple[Read, ...]) -> Any:
     """The ``twa_graph`` of ``formula`` over the letters that the vocabulary allows.
 
     Deterministic and complete, with parity acceptance; its language is that of the formula and of
-    ``knowledge(reads)`` holding at every instant. Raises CheckError where Spot got it wrong.
+    ``knowledge(reads)`` holding at every instant, its propositions are the formula's atoms.
+    Raises CheckError where Spot got it wrong.
     """
+    present, memories = remembered(formula)
     facts = knowledge(reads)
-    meant = formula
+    meant = present
     if facts != Constant(True):
         always = Unary(UnaryOperator.ALWAYS, facts)
-        meant = Binary(BinaryOperator.AND, formula, always)
+        meant = Binary(BinaryOperator.AND, present, always)
     language = spot.formula(in_spot(meant))
-    automaton = spot.translate(language, "parity", "det", "complete")
-    _check(automaton, language)
+    unsettled = [memory for memory in memories if not memory.settled]
+    settled = [memory for memory in memories if memory.settled]
+    automaton = _guessed(language, unsettled) if unsettled else spot.translate(language, *_SHAPE)
+    if settled:
+        automaton = _with_memory(automaton, settled)
+    _check(automaton, language, memories)
     return automaton
 
 
-def _check(automaton: Any, language: Any) -> None:
-    """The automaton meets no word outside the language, and its complement none inside."""
-    outside = spot.translate(spot.formula.Not(language), "BA", "low")
-    inside = spot.translate(language, "BA", "low")
+_SHAPE = ("parity", "det", "complete")
+
+
+def _defined(memories: Iterable[Memory]) -> Any:
+    return spot.formula.And([spot.formula(in_spot(definition(one))) for one in memories])
+
+
+def _guessed(language: Any, memories: Sequence[Memory]) -> Any:
+    """The language's automaton without these memories, which the future has a say in.
+
+    What they are is guessed and projected away, which takes a determinisation.
+    """
+    guessing = spot.translate(spot.formula.And([language, _defined(memories)]), "small")
+    projection = spot.remove_ap()
+    for memory in memories:
+        projection.add_ap(memory.atom.name)
+    return spot.postprocess(projection.strip(guessing), *_SHAPE)
+
+
+def _with_memory(automaton: Any, memories: Sequence[Memory]) -> Any:
+    """The automaton beside a register that holds the memories, which are no propositions any more.
+
+    A state is one of the automaton and the memories' values. These and a letter decide both the
+    automaton's edge and the next values: so it stays deterministic and complete.
+    """
+    propositions = automaton.get_dict()
+    for one in memories:
+        for atom in atoms_of(one.formula):
+            automaton.register_ap(str(atom))
+    stored = [buddy.bdd_ithvar(automaton.register_ap(one.atom.name)) for one in memories]
+    kept = [
+        spot.formula_to_bdd(spot.formula(in_spot(one.formula)), propositions, automaton)
+        for one in memories
+    ]
+    product = spot.make_twa_graph(propositions)
+    fresh = {one.atom.name for one in memories}
+    for proposition in automaton.ap():
+        if proposition.ap_name() not in fresh:
+            product.register_ap(proposition)
+    product.copy_acceptance_of(automaton)
+    product.set_init_state(product.new_state())
+    first = (automaton.get_init_state_number(), tuple(one.at_first for one in memories))
+    numbers = {first: 0}
+    reached = [first]
+    for state, values in reached:
+        source = numbers[state, values]
+        register = buddy.bddtrue
+        for bit, value in zip(stored, values, strict=True):
+            register &= bit if value else -bit
+        following = _choices([buddy.bdd_restrict(formula, register) for formula in kept])
+        for edge in automaton.out(state):
+            letters = buddy.bdd_restrict(edge.cond, register)
+            for condition, later in following:
+                if (both := letters & condition) == buddy.bddfalse:
+                    continue
+                target = (edge.dst, later)
+                if target not in numbers:
+                    numbers[target] = product.new_state()
+                    reached.append(target)
+                product.new_edge(source, numbers[target], both, edge.acc)
+    product.merge_edges()
+    return spot.postprocess(product, *_SHAPE)
+
+
+def _choices(formulas: Sequence[Any]) -> list[tuple[Any, tuple[bool, ...]]]:
+    """The values that formulas can have together, each with the condition for it."""
+    found: list[tuple[Any, tuple[bool, ...]]] = [(buddy.bddtrue, ())]
+    for formula in formulas:
+        found = [
+            (both, (*values, value))
+            for condition, values in found
+            for value in (False, True)
+            if (both := condition & (formula if value else -formula)) != buddy.bddfalse
+        ]
+    return found
+
+
+def _check(automaton: Any, language: Any, memories: Sequence[Memory] = ()) -> None:
+    """The automaton meets no word outside the language, and its complement none inside.
+
+    ``language`` may speak of ``memories``, the automaton must not. Every word has one way to choose
+    them as they are defined: it is inside if so completed it is in ``language``, else outside.
+    """
+    fresh = {memory.atom.name for memory in memories}
+    defined = _defined(memories)
+    outside = spot.translate(spot.formula.And([spot.formula.Not(language), defined]), "BA", "low")
+    inside = spot.translate(spot.formula.And([language, defined]), "BA", "low")
     deterministic = bool(spot.is_deterministic(automaton)) and bool(spot.is_complete(automaton))
     if (
         not deterministic
+        or not fresh.isdisjoint(ap.ap_name() for ap in automaton.ap())
         or automaton.intersects(outside)
         or spot.dualize(automaton).intersects(inside)
     ):

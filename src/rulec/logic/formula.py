@@ -12,9 +12,14 @@ class UnaryOperator(Enum):
 
     NOT = "not"
     ALWAYS = "always"
+    NEVER = "never"
     EVENTUALLY = "eventually"
     NEXT = "next"
     WEAK_NEXT = "weak next"
+    ONCE = "once"
+    HISTORICALLY = "historically"
+    PREVIOUSLY = "previously"
+    WEAK_PREVIOUSLY = "weak previously"
 
 
 class BinaryOperator(Enum):
@@ -25,10 +30,12 @@ class BinaryOperator(Enum):
     IMPLIES = "implies"
     IFF = "iff"
     XOR = "xor"
+    THEN = "then"
     UNTIL = "until"
     RELEASE = "release"
     WEAK_UNTIL = "weak until"
     STRONG_RELEASE = "strong release"
+    SINCE = "since"
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,13 +16,15 @@ from rulec.logic.formula import (
 _BINDING = {
     BinaryOperator.IFF: 1,
     BinaryOperator.IMPLIES: 2,
-    BinaryOperator.XOR: 3,
-    BinaryOperator.OR: 4,
-    BinaryOperator.AND: 5,
-    BinaryOperator.UNTIL: 6,
-    BinaryOperator.RELEASE: 6,
-    BinaryOperator.WEAK_UNTIL: 6,
-    BinaryOperator.STRONG_RELEASE: 6,
+    BinaryOperator.THEN: 3,
+    BinaryOperator.XOR: 4,
+    BinaryOperator.OR: 5,
+    BinaryOperator.AND: 6,
+    BinaryOperator.UNTIL: 7,
+    BinaryOperator.RELEASE: 7,
+    BinaryOperator.WEAK_UNTIL: 7,
+    BinaryOperator.STRONG_RELEASE: 7,
+    BinaryOperator.SINCE: 7,
 }
 
 _SPOT = {
@@ -55,27 +57,36 @@ def in_words(formula: Formula) -> str:
             inner = in_words(operand)
             return f"{operator.value} {f'({inner})' if isinstance(operand, Binary) else inner}"
         case Binary(operator, left, right):
-            chain = operator in (BinaryOperator.AND, BinaryOperator.OR)
-            before = _side(operator, left, chain=chain)
-            return f"{before} {operator.value} {_side(operator, right)}"
+            # Printed as it is read: chains of `and` and `or` to the left, phases to the right.
+            to_the_left = operator in (BinaryOperator.AND, BinaryOperator.OR)
+            first = _side(operator, left, chain=to_the_left)
+            second = _side(operator, right, chain=operator is BinaryOperator.THEN)
+            return f"{first} {operator.value} {second}"
 
 
-def _side(operator: BinaryOperator, formula: Formula, *, chain: bool = False) -> str:
+def _side(operator: BinaryOperator, formula: Formula, *, chain: bool) -> str:
     text = in_words(formula)
     if not isinstance(formula, Binary):
         return text
-    chained = chain and operator is formula.operator
     tighter = _BINDING[formula.operator] > _BINDING[operator]
-    return text if chained or tighter else f"({text})"
+    return text if tighter or (chain and formula.operator is operator) else f"({text})"
 
 
 def in_spot(formula: Formula) -> str:
-    """The formula in Spot's syntax, every atom quoted, every operation in parentheses."""
+    """The formula in Spot's syntax, every atom quoted, every operation in parentheses.
+
+    Spot has no operators of the past: KeyError for them; ``logic.past`` puts atoms in their place.
+    """
     match formula:
         case Atom():
             return f'"{formula}"'
         case Constant(value):
             return "1" if value else "0"
+        case Unary(UnaryOperator.NEVER, operand):
+            return f"G(!({in_spot(operand)}))"
+        case Binary(BinaryOperator.THEN, left, right):
+            first = in_spot(left)
+            return f"({first} & X({first} U {in_spot(right)}))"
         case Unary(operator, operand):
             return f"{_SPOT[operator]}({in_spot(operand)})"
         case Binary(operator, left, right):

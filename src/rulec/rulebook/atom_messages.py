@@ -8,11 +8,12 @@ from collections.abc import Sequence
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
 from rulec.rulebook.declared import Declared
 from rulec.syntax import tree
+from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
 
 _ATOM = "expected a signal or a value"
-_GLUED = re.compile(r"([GFX]+)(\w+)")
-_GLUED_BINARY = re.compile(r"(\w+?)([URWM])(\w+)")
+_GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
+_GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
 
 
 def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> Diagnostic:
@@ -62,7 +63,9 @@ def _unknown(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) ->
     name = use.name.text
     atoms = _atoms(declared)
     glued = _glued(name, set(atoms))
-    if glued:
+    if name == "if":
+        way_out = "write `p implies q` for `if p then q`"
+    elif glued:
         way_out = f"write `{glued}`"
     else:
         way_out = (

@@ -74,9 +74,24 @@ def _formula(node: tree.Formula, scope: Scope) -> Formula | None:
             return None if operand is None else Unary(UnaryOperator(operator), operand)
         case tree.Infix(operator, first, second):
             left, right = _formula(first, scope), _formula(second, scope)
+            if operator == "then" and isinstance(first, tree.Prefix):
+                scope.mistakes += _endless_phase(first)
             if left is None or right is None:
                 return None
             return Binary(BinaryOperator(operator), left, right)
+
+
+def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
+    """Who writes ``never p then q`` means ``never (p then q)``: ``never p`` has no end."""
+    if phase.operator in ("always", "never", "eventually"):
+        yield Diagnostic(
+            "R0311",
+            f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
+            phase.span.place,
+            expected=f"`{phase.operator}` binds tighter than `then`",
+            help=f"write `{phase.operator} (… then …)` to speak of the sequence",
+            severity="warning",
+        )
 
 
 def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:

@@ -13,11 +13,14 @@ CLAUSE_WORDS: Final = frozenset(("cite", "says", "require", "accept", "reject"))
 
 OPERATOR_WORDS: Final = frozenset(
     (
-        *("not", "and", "or", "implies", "iff", "xor"),
-        *("always", "eventually", "next", "until", "release", "weak", "strong"),
+        *("not", "and", "or", "implies", "iff", "xor", "then"),
+        *("always", "never", "eventually", "next", "until", "release", "weak", "strong"),
+        *("once", "historically", "previously", "since"),
     )
 )
-OPERATOR_LETTERS: Final = frozenset("GFXURWM")
+PREFIX_LETTERS: Final = "GFXOHY"
+INFIX_LETTERS: Final = "URWMS"
+OPERATOR_LETTERS: Final = frozenset(PREFIX_LETTERS + INFIX_LETTERS)
 
 RESERVED: Final = (
     ITEM_WORDS
@@ -35,7 +38,9 @@ SYMBOLS: Final = {
     "implies": "->",
     "iff": "<->",
     "xor": "^",
+    "then": "then",
     "always": "G",
+    "never": "never",
     "eventually": "F",
     "next": "X",
     "weak next": "weak next",
@@ -43,28 +48,38 @@ SYMBOLS: Final = {
     "release": "R",
     "weak until": "W",
     "strong release": "M",
+    "once": "O",
+    "historically": "H",
+    "previously": "Y",
+    "weak previously": "weak previously",
+    "since": "S",
 }
-"""Operator in words -> in symbols; ``weak next`` has no symbol."""
+"""Operator in words -> in symbols; those that have no symbol keep their words."""
 
-UNARY_OPERATORS: Final = ("not", "always", "eventually", "next", "weak next")
+UNARY_OPERATORS: Final = (
+    *("not", "always", "never", "eventually", "next", "weak next"),
+    *("once", "historically", "previously", "weak previously"),
+)
 
 PRECEDENCE: Final = {
     "iff": 1,
     "implies": 2,
-    "xor": 3,
-    "or": 4,
-    "and": 5,
-    "until": 6,
-    "release": 6,
-    "weak until": 6,
-    "strong release": 6,
+    "then": 3,
+    "xor": 4,
+    "or": 5,
+    "and": 6,
+    "until": 7,
+    "release": 7,
+    "weak until": 7,
+    "strong release": 7,
+    "since": 7,
 }
 """Binary operator -> how tightly it binds; every unary operator binds tighter."""
 
-UNARY_PRECEDENCE: Final = 7
+UNARY_PRECEDENCE: Final = 8
 
 RIGHT_ASSOCIATIVE: Final = frozenset(
-    ("implies", "until", "release", "weak until", "strong release")
+    ("implies", "then", "until", "release", "weak until", "strong release", "since")
 )
 """The others associate to the left, which for them makes no difference to the meaning."""
 

@@ -20,7 +20,7 @@ Style = Literal["words", "symbols"]
 
 
 def print_formula(node: tree.Formula, style: Style = "words") -> str:
-    """A formula on one line, its operators in words or in symbols (``weak next`` has none)."""
+    """A formula on one line, its operators in words or in symbols, where it has one."""
     match node:
         case tree.AtomUse():
             return _atom(node)

@@ -87,4 +87,11 @@ MEANING = {
         "rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
         "  require always not r(v)\n  accept { l(v) }\n}\n",
     ),
+    "R0311": Explanation(
+        "an operator speaks of a phase before `then`, not of the sequence",
+        "Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
+        "phase without `a`, then `b`. A whole sequence stands in parentheses.",
+        "rulebook example\nsignal a, b\nhard rule r { require never a then b }\n",
+        "rulebook example\nsignal a, b\nhard rule r { require never (a then b) }\n",
+    ),
 }

@@ -6,7 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rulec.diagnostics import did_you_mean
-from rulec.syntax.keywords import OPERATOR_WORDS, RESERVED, SYMBOLS, UNARY_OPERATORS
+from rulec.syntax.keywords import (
+    OPERATOR_LETTERS,
+    OPERATOR_WORDS,
+    PREFIX_LETTERS,
+    RESERVED,
+    SYMBOLS,
+    UNARY_OPERATORS,
+)
 from rulec.syntax.messages.expectations import wants_operand, wants_operator
 from rulec.syntax.scanner import Token
 
@@ -32,6 +39,10 @@ _OTHER_SPELLINGS = {
     "eventually": ("◇", "◊", "⋄", "<", "finally"),
     "next": ("○", "◯", "@"),
     "until": ("𝒰",),
+    "once": ("◆", "⧫"),
+    "historically": ("■", "◼"),
+    "previously": ("●",),
+    "since": ("𝒮",),
 }
 _MEANT = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
 _FORMS = {
@@ -40,7 +51,7 @@ _FORMS = {
     "signal": "a signal is declared by `signal NAME`",
     "quantity": "a quantity is declared by `quantity NAME in UNIT default NUMBER`",
 }
-_PAST_WORDS = frozenset(("once", "historically", "since", "previously", "O", "H", "S", "Y"))
+_TEMPORAL = OPERATOR_LETTERS | OPERATOR_WORDS - {"not", "and", "or", "implies", "iff", "xor"}
 
 
 def advise(scene: Scene) -> str:
@@ -133,7 +144,7 @@ def _state(scene: Scene) -> str:
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):
         return "a state says what holds; for another possibility write another example"
-    if text in OPERATOR_WORDS or text in ("G", "F", "X"):
+    if text in OPERATOR_WORDS | OPERATOR_LETTERS:
         return "a state holds atoms and `not` before a signal; no other operator"
     if scene.found is None and "NAME" in scene.accepted:
         return "say what holds in this state; a `;` stands only between two states"
@@ -148,25 +159,23 @@ def _operators(scene: Scene) -> str:
     operand, operator = wants_operand(scene.accepted), wants_operator(scene.accepted)
     if not (operand or operator or "AND" in scene.accepted):
         return ""
-    if operator and len(before) > 1 and set(before) <= set("GFX"):
+    if operator and len(before) > 1 and set(before) <= set(PREFIX_LETTERS):
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
-    if before == "never":
-        return "write `always not …`"
-    if before == "if" or text in ("if", "then"):
+    if before == "if" or text == "if":
         return "write `p implies q` for `if p then q`"
+    if text == "then" and before == "and":
+        return "`then` stands alone between two phases: write `p then q`"
     if text in ("=", "=="):
         return "formulas are compared by `iff`; a value is an atom itself, such as `crossing`"
-    if text in _PAST_WORDS or (before in _PAST_WORDS and operator):
-        return "this language speaks of the present and the future, not of the past"
-    if text == "[" and before in ("always", "eventually", "next", "G", "F", "X"):
-        return "bounds of time cannot be written; `next` goes one step ahead"
+    if text == "[" and before in _TEMPORAL:
+        return "bounds of time cannot be written; `next` goes one step ahead, `previously` one back"
     word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
     fits = operand if word in UNARY_OPERATORS else "AND" in scene.accepted
     if word is not None and text != word and fits:
-        symbol = SYMBOLS.get(word)
-        return f"write `{word}` or `{symbol}`" if symbol else f"write `{word}`"
+        symbol = SYMBOLS.get(word, word)
+        return f"write `{word}` or `{symbol}`" if symbol != word else f"write `{word}`"
     if before == "weak" or text == "weak":
-        return "`weak` stands before `until` or before `next`"
+        return "`weak` stands before `until`, `next` or `previously`"
     if before == "strong" or text == "strong":
         return "`strong` stands before `release`"
     if text in ("<", ">", "<=", ">=", "!="):
