@@ -21,6 +21,7 @@ VERBS = {
     "explain": "Explain a code of a message.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
+    "new": "Write a rulebook to start from.",
     "test": "Run the examples of rulebooks.",
     "traces": "Write all maneuvers of a scenario as traces.",
     "verify": "Judge traces by a rulebook.",

@@ -1,0 +1,41 @@
+"""``rulec new``: a rulebook to start from."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("name")
+@click.option(
+    "-o",
+    "--output",
+    default=".",
+    metavar="DIR",
+    show_default="the working folder",
+    help="The folder for NAME.rules, made if need be.",
+)
+def command(name: str, output: str) -> None:
+    """Write NAME.rules, a rulebook that checks and tests, to be changed into your own.
+
+    An existing file is left alone.
+    """
+    from rulec.diagnostics import Diagnostic, Place, RulecError
+    from rulec.files import make_folder, written_whole
+    from rulec.report.console import print_result
+    from rulec.rulebook.template import new_rulebook
+
+    text = new_rulebook(name, datetime.now().astimezone().date())
+    path = Path(output) / f"{name}.rules"
+    if path.exists() or path.is_symlink():
+        way_out = "give another name, or another folder with --output"
+        raise RulecError(
+            Diagnostic("R0702", "the file is there already", Place(str(path)), help=way_out)
+        )
+    make_folder(path.parent)
+    with written_whole(path) as stream:
+        stream.write(text.encode())
+    print_result(f"wrote {path}; next: rulec test {path if '/' in str(path) else f'./{path}'}")

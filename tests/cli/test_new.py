@@ -1,0 +1,45 @@
+"""``rulec new`` as its user meets it."""
+
+import re
+from datetime import date
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.rulebook.template import new_rulebook
+
+
+def test_what_it_writes_checks_tests_and_compiles(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "atlantis"]) == 0
+    assert capsys.readouterr().out == "wrote atlantis.rules; next: rulec test ./atlantis.rules\n"
+    assert main(["check", "./atlantis.rules", "--fail-on", "warning"]) == 0
+    assert main(["test", "./atlantis.rules"]) == 0
+    assert "3 examples: 3 passed, 0 failed" in capsys.readouterr().out
+    assert main(["compile", "./atlantis.rules", "-o", "out"]) == 0
+    assert main(["maneuvers", "s1", "--rulebook", "./atlantis.rules"]) == 0
+
+
+def test_a_folder_is_made(tmp_path, capsys):
+    assert main(["new", "atlantis", "-o", str(tmp_path / "law" / "at")]) == 0
+    assert (tmp_path / "law" / "at" / "atlantis.rules").exists()
+    assert f"rulec test {tmp_path}/law/at/atlantis.rules" in capsys.readouterr().out
+
+
+def test_a_file_that_is_there_stays(tmp_path, capsys):
+    file = tmp_path / "atlantis.rules"
+    file.write_text("mine")
+    assert main(["new", "atlantis", "-o", str(tmp_path)]) == 2
+    assert "the file is there already" in capsys.readouterr().err
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["until", "two words", "1st", "", "../up", "a-b", "x\ny"])
+def test_a_name_that_no_rulebook_can_have(name, tmp_path, capsys):
+    assert main(["new", name, "-o", str(tmp_path / "out")]) == 2
+    assert re.search(r"error\[R01\d\d\]", capsys.readouterr().err)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_law_is_that_of_today():
+    assert "as of 2026-11-20" in new_rulebook("a", date(2026, 11, 20))
