@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+from terminal_signals import as_from_a_terminal
 
 RULEC = [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"]
 MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]
@@ -70,7 +71,9 @@ def test_traces_from_a_pipe_with_a_name(tmp_path):
 
 def started(arguments, folder):
     """A running command that has begun to write into the folder."""
-    process = subprocess.Popen([*RULEC, *arguments], stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [*RULEC, *arguments], stderr=subprocess.PIPE, preexec_fn=as_from_a_terminal
+    )
     while not any(part.stat().st_size for part in folder.iterdir()):
         assert process.poll() is None
         time.sleep(0.01)
@@ -95,6 +98,7 @@ def test_files_that_exist_survive_what_goes_wrong(tmp_path):
     process = subprocess.Popen(
         [*RULEC, "traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", str(file)],
         stderr=subprocess.PIPE,
+        preexec_fn=as_from_a_terminal,
     )
     while len(list(tmp_path.iterdir())) < 2:
         assert process.poll() is None
