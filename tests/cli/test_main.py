@@ -61,12 +61,13 @@ def test_a_bug_is_status_70_with_a_line_to_report(monkeypatch, capsys):
 def on_terminal(arguments, environment):
     """What the program shows on a terminal."""
     ours, theirs = pty.openpty()
+    inherited = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
     process = subprocess.Popen(
         [*RULEC, *arguments],
         stdin=theirs,
         stdout=theirs,
         stderr=theirs,
-        env={**os.environ, "TERM": "xterm-256color", "COLUMNS": "100", **environment},
+        env={**inherited, "TERM": "xterm-256color", "COLUMNS": "100", **environment},
     )
     os.close(theirs)
     shown = b""
