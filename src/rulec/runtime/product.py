@@ -19,6 +19,9 @@ from rulec.trace import TraceGraph
 JointState = tuple[int, ...]
 """The state of each instance's machine; all zero at the end, where only verdicts are left."""
 
+LOST = -1
+"""In place of a state: the rule is lost."""
+
 ProductNode = tuple[int, JointState]
 """A node's index in its layer, and the joint state behind it."""
 
@@ -100,20 +103,21 @@ def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
 
 def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:
     """Build the product forward from the graph's start, dropping every path that loses a rule."""
-    entered = _enter(rules, 0, graph.start, (0,) * len(rules))
-    counts: list[dict[ProductNode, int]] = [{} if entered is None else {(graph.start, entered): 1}]
+    first = _enter(_effects(rules, 0, graph.start), (0,) * len(rules))
+    counts: list[dict[ProductNode, int]] = [{} if first is None else {(graph.start, first): 1}]
     steps: list[dict[ProductNode, list[ProductNode]]] = []
-    for layer, successors in enumerate(graph.successors):
+    for layer, successors in enumerate(graph.successors, 1):
         following: dict[ProductNode, int] = {}
         onward: dict[ProductNode, list[ProductNode]] = {}
         known: dict[ProductNode, ProductNode | None] = {}
+        effects = [_effects(rules, layer, node) for node in range(len(graph.states[layer]))]
         for origin, count in counts[-1].items():
             node, joint = origin
             reached = []
             for target in successors[node]:
                 key = (target, joint)
                 if key not in known:
-                    entered = _enter(rules, layer + 1, target, joint)
+                    entered = _enter(effects[target], joint)
                     known[key] = None if entered is None else (target, entered)
                 step = known[key]
                 if step is not None:
@@ -125,28 +129,27 @@ def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:
     return Product(graph, tuple(counts), tuple(steps))
 
 
-def _enter(
-    rules: Sequence[Instance], layer: int, node: int, joint: JointState
-) -> JointState | None:
-    """The joint state after a node; None if a rule is lost there.
+def _enter(effects: Sequence[Sequence[int]], joint: JointState) -> JointState | None:
+    """The joint state after a node with these effects; None if a rule is lost there."""
+    after = tuple([effect[state] for effect, state in zip(effects, joint, strict=True)])
+    return None if LOST in after else after
+
+
+def _effects(rules: Sequence[Instance], layer: int, node: int) -> list[tuple[int, ...]]:
+    """For each instance the state that each of its machine's states becomes in a node, or LOST.
 
     A machine waits in state 0 until its objects are there. With their last layer it gives its
     verdict and returns to state 0, so that paths with nothing left to decide count together.
     """
-    after = []
-    for instance, state in zip(rules, joint, strict=True):
-        if not instance.first <= layer <= instance.last:
-            after.append(0)
-            continue
-        machine = instance.machine
-        symbol = instance.letters[layer - instance.first][node]
-        if layer == instance.last:
-            if not machine.accepting[state][symbol]:
-                return None
-            after.append(0)
-            continue
-        state = machine.following[state][symbol]
-        if state == machine.dead:
-            return None
-        after.append(state)
-    return tuple(after)
+    return [_effect(instance, layer, node) for instance in rules]
+
+
+def _effect(instance: Instance, layer: int, node: int) -> tuple[int, ...]:
+    machine = instance.machine
+    if not instance.first <= layer <= instance.last:
+        return (0,) * len(machine.following)
+    symbol = instance.letters[layer - instance.first][node]
+    if layer == instance.last:
+        return tuple([0 if row[symbol] else LOST for row in machine.accepting])
+    targets = (row[symbol] for row in machine.following)
+    return tuple([LOST if state == machine.dead else state for state in targets])
