@@ -22,6 +22,9 @@ JointState = tuple[int, ...]
 LOST = -1
 """In place of a state: the rule is lost."""
 
+Effect = tuple[int, ...]
+"""What a node does to a machine: for each of its states the one after, or LOST."""
+
 ProductNode = tuple[int, JointState]
 """A node's index in its layer, and the joint state behind it."""
 
@@ -103,21 +106,22 @@ def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
 
 def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:
     """Build the product forward from the graph's start, dropping every path that loses a rule."""
-    first = _enter(_effects(rules, 0, graph.start), (0,) * len(rules))
+    effects = _effects(graph, rules)
+    waiting = (0,) * len(effects[0][graph.start])
+    first = _enter(effects[0][graph.start], waiting)
     counts: list[dict[ProductNode, int]] = [{} if first is None else {(graph.start, first): 1}]
     steps: list[dict[ProductNode, list[ProductNode]]] = []
     for layer, successors in enumerate(graph.successors, 1):
         following: dict[ProductNode, int] = {}
         onward: dict[ProductNode, list[ProductNode]] = {}
         known: dict[ProductNode, ProductNode | None] = {}
-        effects = [_effects(rules, layer, node) for node in range(len(graph.states[layer]))]
         for origin, count in counts[-1].items():
             node, joint = origin
             reached = []
             for target in successors[node]:
                 key = (target, joint)
                 if key not in known:
-                    entered = _enter(effects[target], joint)
+                    entered = _enter(effects[layer][target], joint)
                     known[key] = None if entered is None else (target, entered)
                 step = known[key]
                 if step is not None:
@@ -129,27 +133,69 @@ def explore(graph: TraceGraph, rules: Sequence[Instance]) -> Product:
     return Product(graph, tuple(counts), tuple(steps))
 
 
-def _enter(effects: Sequence[Sequence[int]], joint: JointState) -> JointState | None:
+def _enter(effects: Sequence[Effect], joint: JointState) -> JointState | None:
     """The joint state after a node with these effects; None if a rule is lost there."""
     after = tuple([effect[state] for effect, state in zip(effects, joint, strict=True)])
     return None if LOST in after else after
 
 
-def _effects(rules: Sequence[Instance], layer: int, node: int) -> list[tuple[int, ...]]:
-    """For each instance the state that each of its machine's states becomes in a node, or LOST.
+def _effects(graph: TraceGraph, rules: Sequence[Instance]) -> list[list[list[Effect]]]:
+    """For every layer and node the effects on the machines of all instances that ever matter."""
+    every = [
+        _merged(graph, [_layer(instance, p, graph) for p in range(len(graph.states))])
+        for instance in rules
+    ]
+    mattering = [one for one in every if one is not None]
+    return [
+        [[one[layer][node] for one in mattering] for node in range(len(states))]
+        for layer, states in enumerate(graph.states)
+    ]
+
+
+def _layer(instance: Instance, layer: int, graph: TraceGraph) -> list[Effect]:
+    """The effect of each node of a layer.
 
     A machine waits in state 0 until its objects are there. With their last layer it gives its
-    verdict and returns to state 0, so that paths with nothing left to decide count together.
+    verdict and returns to state 0.
     """
-    return [_effect(instance, layer, node) for instance in rules]
-
-
-def _effect(instance: Instance, layer: int, node: int) -> tuple[int, ...]:
     machine = instance.machine
     if not instance.first <= layer <= instance.last:
-        return (0,) * len(machine.following)
-    symbol = instance.letters[layer - instance.first][node]
+        return [(0,) * len(machine.following)] * len(graph.states[layer])
+    symbols = instance.letters[layer - instance.first]
     if layer == instance.last:
-        return tuple([0 if row[symbol] else LOST for row in machine.accepting])
-    targets = (row[symbol] for row in machine.following)
-    return tuple([LOST if state == machine.dead else state for state in targets])
+        return [tuple([0 if row[s] else LOST for row in machine.accepting]) for s in symbols]
+    return [
+        tuple([LOST if row[s] == machine.dead else row[s] for row in machine.following])
+        for s in symbols
+    ]
+
+
+def _merged(graph: TraceGraph, effects: list[list[Effect]]) -> list[list[Effect]] | None:
+    """The same effects with states made one that no path onward from a node tells apart.
+
+    What a machine remembers of an object often has no bearing any more on what can still happen in
+    this graph; then paths that differ in it alone count together. A state from which every path is
+    lost is LOST at once. None if nothing is ever lost: then the instance does not matter at all.
+    """
+    for layer in reversed(range(len(graph.successors))):
+        later = effects[layer + 1]
+        here = []
+        for node, effect in enumerate(effects[layer]):
+            onward = graph.successors[layer][node]
+            futures = list(zip(*[later[target] for target in onward], strict=True))
+            here.append(_with_futures(effect, futures) if onward else effect)
+        effects[layer] = here
+    lost = any(LOST in effect for layer in effects for effect in layer)
+    return effects if lost else None
+
+
+def _with_futures(effect: Effect, futures: Sequence[tuple[int, ...]]) -> Effect:
+    """``futures[state]``: what the followers of a node make of a state."""
+    representative: dict[tuple[int, ...], int] = {}
+    merged = []
+    for state, future in enumerate(futures):
+        if all(after == LOST for after in future):
+            merged.append(LOST)
+        else:
+            merged.append(representative.setdefault(future, state))
+    return tuple([LOST if state == LOST else merged[state] for state in effect])
