@@ -4,13 +4,23 @@ from books import Q, always, book, compile_here, eventually, far, implies, near,
 from hypothesis import assume, given
 from words import formulas, letters, words
 
-from rulec.logic.formula import atoms_of
+from rulec.logic.formula import Binary, Unary, atoms_of
 from rulec.logic.semantics import truth_values
 from rulec.runtime.explanation import MOST_STATES, explain
 from rulec.runtime.verify import verify
 from rulec.trace import Trace
 
 CARS = {"car1": "car", "car2": "car"}
+
+
+def parts_of(formula):
+    yield formula
+    match formula:
+        case Unary(_, operand):
+            yield from parts_of(operand)
+        case Binary(_, left, right):
+            yield from parts_of(left)
+            yield from parts_of(right)
 
 
 def trace_of(word):
@@ -28,7 +38,8 @@ def test_the_formulas_values_are_those_of_direct_evaluation(formula, word):
     assert explained.states == tuple(range(len(word)))
     assert list(explained.parts[0].values) == truth_values(formula, letters(word))
     assert not explained.parts[0].values[0]
-    assert all(len(part.values) == len(word) for part in explained.parts)
+    expected = [truth_values(part, letters(word)) for part in parts_of(formula)]
+    assert [list(part.values) for part in explained.parts] == expected
     assert {fact.text for fact in explained.facts} == {
         f"{atom.name}(car1)" if atom.arguments else atom.name for atom in atoms_of(formula)
     }

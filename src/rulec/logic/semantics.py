@@ -32,10 +32,17 @@ def holds(formula: Formula, word: Sequence[Letter]) -> bool:
 
 def truth_values(formula: Formula, word: Sequence[Letter]) -> list[bool]:
     """The formula's truth value at each of the word's instants. ValueError for an empty word."""
+    return values_of_parts(formula, word)[formula]
+
+
+def values_of_parts(formula: Formula, word: Sequence[Letter]) -> dict[Formula, list[bool]]:
+    """The same for the formula and every part of it. ValueError for an empty word."""
     if not word:
         raise ValueError("an empty word has no last letter to repeat")
     settling = [word[-1]] * _steps_to_settle(formula)
-    return _values(formula, [*word, *settling])[: len(word)]
+    known: dict[Formula, list[bool]] = {}
+    _evaluate(formula, [*word, *settling], known)
+    return {part: values[: len(word)] for part, values in known.items()}
 
 
 def _steps_to_settle(formula: Formula) -> int:
@@ -55,17 +62,23 @@ def _steps_to_settle(formula: Formula) -> int:
             return 0
 
 
-def _values(formula: Formula, word: Sequence[Letter]) -> list[bool]:
+def _evaluate(
+    formula: Formula, word: Sequence[Letter], known: dict[Formula, list[bool]]
+) -> list[bool]:
     """Truth values on a word from whose last instant on they are the same for ever."""
-    match formula:
-        case Atom():
-            return [formula in letter for letter in word]
-        case Constant(value):
-            return [value] * len(word)
-        case Unary(operator, operand):
-            return _unary(operator, _values(operand, word))
-        case Binary(operator, left, right):
-            return _binary(operator, _values(left, word), _values(right, word))
+    if formula not in known:
+        match formula:
+            case Atom():
+                values = [formula in letter for letter in word]
+            case Constant(value):
+                values = [value] * len(word)
+            case Unary(operator, operand):
+                values = _unary(operator, _evaluate(operand, word, known))
+            case Binary(operator, left, right):
+                first, second = _evaluate(left, word, known), _evaluate(right, word, known)
+                values = _binary(operator, first, second)
+        known[formula] = values
+    return known[formula]
 
 
 def _unary(operator: UnaryOperator, values: list[bool]) -> list[bool]:

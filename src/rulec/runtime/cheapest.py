@@ -47,11 +47,11 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
         for step in product.steps[layer][here]:
             rest = to_come[layer + 1].get(step)
             if rest is not None:
-                cost = spent + weight(graph, layer, here[0], step[0])
+                cost = spent + _weight(graph, layer, here[0], step[0])
                 heappush(queue, (cost + rest, (*path, step[0]), cost, step))
 
 
-def weight(graph: TraceGraph, layer: int, node: int, target: int) -> int:
+def _weight(graph: TraceGraph, layer: int, node: int, target: int) -> int:
     """The cost of the edge from ``node`` of ``layer`` to ``target``, in the graph's unit."""
     return graph.weights[layer][node][graph.successors[layer][node].index(target)]
 
@@ -65,7 +65,7 @@ def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
         here: dict[ProductNode, int] = {}
         for node, steps in product.steps[layer].items():
             onward = [
-                costs[-1][step] + weight(graph, layer, node[0], step[0])
+                costs[-1][step] + _weight(graph, layer, node[0], step[0])
                 for step in steps
                 if step in costs[-1]
             ]

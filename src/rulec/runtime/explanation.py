@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.logic.formula import Atom, Binary, Formula, Unary, atoms_of
 from rulec.logic.printing import in_words
-from rulec.logic.semantics import truth_values
+from rulec.logic.semantics import values_of_parts
 from rulec.runtime.binding import Binding, bindings
 from rulec.runtime.letters import value_in
 from rulec.runtime.verdict import Violation
@@ -75,7 +75,7 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
         states,
         decisive,
         tuple(_facts(values, binding, columns)),
-        tuple(_parts(rule.formula, word, columns, 0)),
+        tuple(_parts(rule.formula, values_of_parts(rule.formula, word), columns, 0)),
     )
 
 
@@ -117,15 +117,14 @@ def _facts(
 
 
 def _parts(
-    formula: Formula, word: Sequence[frozenset[Atom]], columns: Sequence[int], depth: int
+    formula: Formula, holds: Mapping[Formula, list[bool]], columns: Sequence[int], depth: int
 ) -> Iterator[Part]:
-    holds = truth_values(formula, word)
-    yield Part(in_words(formula), depth, tuple(holds[n] for n in columns))
+    yield Part(in_words(formula), depth, tuple(holds[formula][n] for n in columns))
     match formula:
         case Unary(_, operand):
-            yield from _parts(operand, word, columns, depth + 1)
+            yield from _parts(operand, holds, columns, depth + 1)
         case Binary(_, left, right):
-            yield from _parts(left, word, columns, depth + 1)
-            yield from _parts(right, word, columns, depth + 1)
+            yield from _parts(left, holds, columns, depth + 1)
+            yield from _parts(right, holds, columns, depth + 1)
         case _:
             return
