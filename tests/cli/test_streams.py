@@ -14,6 +14,12 @@ MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]
 TRACES = ["traces", "s2", "--step", "0.5", "-o", "-"]
 
 
+@pytest.fixture(autouse=True)
+def _buffered(monkeypatch):
+    """As for most users: what a stream has not yet taken waits until the program ends."""
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)
+
+
 def run(arguments, **streams):
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
     return subprocess.run([*RULEC, *arguments], check=False, **streams)

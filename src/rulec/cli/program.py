@@ -7,6 +7,7 @@ import signal
 import sys
 from io import TextIOWrapper
 from types import FrameType
+from typing import TextIO
 
 
 def run() -> int:
@@ -18,6 +19,9 @@ def run() -> int:
         return main()
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
+    finally:
+        for stream in (sys.stdout, sys.stderr):
+            _let_go_of(stream)
 
 
 def _prepare() -> None:
@@ -36,6 +40,14 @@ def _prepare() -> None:
     if hasattr(sys, "set_int_max_str_digits"):
         # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
         sys.set_int_max_str_digits(100_000)
+
+
+def _let_go_of(stream: TextIO) -> None:
+    """What cannot be written Python would try again when it exits, with a status of its own."""
+    try:
+        stream.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _leave(number: int, _: FrameType | None) -> None:
