@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from rulec.automata.machine import Machine
 from rulec.logic.formula import Formula
-from rulec.rulebook.model import SourceFile, Strength, Variable
+from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledRule:
-    """A rule with its machine; ``hoa`` is its automaton in HOA v1."""
+    """A rule with its machine; ``hoa`` is its automaton in HOA v1.
+
+    ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
+    because the formula has no bounds in seconds.
+    """
 
     name: str
     strength: Strength
@@ -22,6 +27,12 @@ class CompiledRule:
     formula: Formula
     machine: Machine
     hoa: str
+    step_s: Fraction | None = None
+    level: str = ""
+    weight: Fraction = Fraction(1)
+    source: str = ""
+    certainty: Certainty = ""
+    book: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,3 +51,8 @@ class CompiledRulebook:
     sources: tuple[SourceFile, ...]
     rulec: str
     spot: str
+    semantics: Semantics = "stutter"
+    levels: tuple[str, ...] = ()
+    priorities: frozenset[tuple[str, str]] = frozenset()
+    extends: tuple[str, ...] = ()
+    at: str = ""

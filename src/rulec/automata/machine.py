@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.logic.formula import Term
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,18 +36,54 @@ class Read:
 
 
 @dataclass(frozen=True, slots=True)
+class Threshold:
+    """A place on the number line that a rule distinguishes the sides of.
+
+    Passed by numbers above ``limit``; if ``inclusive``, by the limit itself, too.
+    """
+
+    limit: Fraction
+    inclusive: bool
+
+
+@dataclass(frozen=True, slots=True)
+class NumberRead:
+    """A number that a rule reads of every state: a sum of coefficients times terms.
+
+    ``terms`` are those of ``Comparison``. The digit of a number is how many of the ``thresholds``
+    it passes; they are in ascending order (where limits are equal, the inclusive one first).
+    """
+
+    terms: tuple[tuple[Fraction, Term], ...]
+    thresholds: tuple[Threshold, ...]
+
+    @property
+    def size(self) -> int:
+        """How many different digits this read contributes to a letter."""
+        return len(self.thresholds) + 1
+
+    def digit(self, value: Fraction) -> int:
+        """The digit of a number."""
+        return sum(
+            value >= one.limit if one.inclusive else value > one.limit for one in self.thresholds
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Machine:
-    """A deterministic machine that judges a finite word under stutter semantics.
+    """A deterministic machine that judges a finite word.
+
+    The verdict is that of its rulebook's semantics: on the word with its last letter repeated for
+    ever (stutter), or on the word as it is (finite).
 
     A letter is a number in mixed radix: the digit of ``reads[0]`` counts ones, that of ``reads[1]``
     counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class do
     the same everywhere. ``following[state][class]`` is the next state; ``accepting[state][class]``
-    is the verdict on a word that ends with such a letter read in that state, which is the verdict
-    on repeating it for ever. Runs start in state 0. From state ``dead`` no word is accepted, from
+    is the verdict on a word that ends with such a letter read in that state. Runs start in state 0. From state ``dead`` no word is accepted, from
     state ``safe`` every word is; None where there is no such state. The machine is minimal.
     """
 
-    reads: tuple[Read, ...]
+    reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]
     following: tuple[tuple[int, ...], ...]
     accepting: tuple[tuple[bool, ...], ...]

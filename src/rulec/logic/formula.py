@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+from fractions import Fraction
+from typing import Literal
 
 
 class UnaryOperator(Enum):
@@ -56,6 +58,63 @@ class Atom:
 
 
 @dataclass(frozen=True, slots=True)
+class Quantity:
+    """``name(arguments)``: a number that every state gives, in the unit of its declaration."""
+
+    name: str
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many objects of the moment, of type ``type``, there are of which ``body`` holds.
+
+    The objects of the moment are those present in the state; ``variable`` stands for each of them
+    in turn, also for those that other variables name. ``body`` speaks of one state alone: it has no
+    temporal operator.
+    """
+
+    variable: str
+    type: str
+    body: Formula
+
+
+Term = Quantity | Count
+
+Relation = Literal["<", "<=", "=", "!=", ">=", ">"]
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``sum of coefficient * term`` stands in ``relation`` to ``limit``.
+
+    The terms are distinct, sorted by their text, no coefficient is 0 and the first one is 1; so
+    comparisons of the same numbers have the same ``terms``. A quantity counts in the unit of its
+    declaration; units have been converted into the coefficients and the limit, exactly. ``text`` is
+    how a rulebook would say it, with units; it does not take part in comparison.
+    """
+
+    terms: tuple[tuple[Fraction, Term], ...]
+    relation: Relation
+    limit: Fraction
+    text: str = field(default="", compare=False)
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Same:
+    """Do two variables name the same object? Only in the body of a ``Count``."""
+
+    left: str
+    right: str
+
+    def __str__(self) -> str:
+        return f"{self.left} = {self.right}"
+
+
+@dataclass(frozen=True, slots=True)
 class Constant:
     """``true`` or ``false``."""
 
@@ -63,34 +122,52 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
+class Bound:
+    """How far ahead or back a temporal operator looks: from ``low`` to ``high``, both inclusive.
+
+    In seconds or in steps of the trace; ``high`` is None where there is no end. For ``next`` and
+    ``previously`` both are the distance.
+    """
+
+    low: Fraction
+    high: Fraction | None
+    unit: Literal["s", "steps"]
+
+
+@dataclass(frozen=True, slots=True)
 class Unary:
-    """An operator on one formula."""
+    """An operator on one formula. Only a temporal operator has a ``bound``."""
 
     operator: UnaryOperator
     operand: Formula
+    bound: Bound | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """An operator between two formulas."""
+    """An operator between two formulas. Only a temporal operator has a ``bound``."""
 
     operator: BinaryOperator
     left: Formula
     right: Formula
+    bound: Bound | None = None
 
 
-Formula = Atom | Constant | Unary | Binary
+Formula = Atom | Comparison | Same | Constant | Unary | Binary
+
+Proposition = Atom | Comparison
+"""What is true or false of one state, and has no parts that a rule's automaton knows of."""
 
 
-def atoms_of(formula: Formula) -> Iterator[Atom]:
-    """The formula's atoms from left to right, with repetitions."""
+def atoms_of(formula: Formula) -> Iterator[Proposition]:
+    """The formula's atoms and comparisons from left to right, with repetitions."""
     match formula:
-        case Atom():
+        case Atom() | Comparison():
             yield formula
         case Unary(_, operand):
             yield from atoms_of(operand)
         case Binary(_, left, right):
             yield from atoms_of(left)
             yield from atoms_of(right)
-        case Constant():
+        case Constant() | Same():
             return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Literal
 
 from rulec.diagnostics import Span
@@ -21,7 +22,12 @@ class Variable:
     type: str
 
 
-ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str]
+Semantics = Literal["stutter", "finite"]
+"""How a finite trace ends: its last state goes on for ever, or nothing comes after it."""
+
+Certainty = Literal["", "verified", "secondary", "unverified"]
+
+ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
 """(declaration, variables) -> value: what one state of an example mentions."""
 
 
@@ -32,6 +38,8 @@ class Example:
     accepts: bool
     states: tuple[ExampleState, ...]
     label: str = ""
+    objects: tuple[Variable, ...] = ()
+    """Objects that are there besides those that the rule's variables name."""
     span: Span | None = field(default=None, compare=False, repr=False)
     state_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     """Where each state is written; empty for an example that was not read from a text."""
@@ -39,7 +47,12 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One rule. Without variables it speaks of ego and the world alone."""
+    """One rule. Without variables it speaks of ego and the world alone.
+
+    ``formula`` is all of it, exceptions included; its bounds may be in seconds. ``level`` is its
+    place in the rulebook's priorities, empty if it has none. ``book`` is the rulebook that it is
+    written in. The states of its examples are ``step_s`` seconds apart.
+    """
 
     name: str
     strength: Strength
@@ -49,6 +62,14 @@ class Rule:
     says: str = ""
     examples: tuple[Example, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
+    level: str = ""
+    weight: Fraction = Fraction(1)
+    source: str = ""
+    certainty: Certainty = ""
+    in_force_from: str = ""
+    in_force_until: str = ""
+    book: str = ""
+    step_s: Fraction = Fraction(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +80,23 @@ class SourceFile:
     sha256: str
 
 
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A rule that was dropped, or a topic that the rulebook is silent on, and why."""
+
+    name: str
+    because: str
+    kind: Literal["dropped", "silent", "softened"]
+
+
 @dataclass(frozen=True)
 class Rulebook:
-    """A jurisdiction's rules over one vocabulary."""
+    """A jurisdiction's rules over one vocabulary.
+
+    ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; levels that are
+    equal stand in both orders. ``extends`` are the rulebooks that it builds upon, nearest first.
+    ``at`` is the day (ISO) whose law it is: what was not in force then has been left out.
+    """
 
     name: str
     vocabulary: Vocabulary
@@ -70,3 +105,10 @@ class Rulebook:
     law: str = ""
     as_of: str = ""
     sources: tuple[SourceFile, ...] = ()
+    semantics: Semantics = "stutter"
+    traffic: Literal["", "left", "right"] = ""
+    extends: tuple[str, ...] = ()
+    levels: tuple[str, ...] = ()
+    priorities: frozenset[tuple[str, str]] = frozenset()
+    remarks: tuple[Remark, ...] = ()
+    at: str = ""
