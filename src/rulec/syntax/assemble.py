@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final
+from typing import Final, Literal, TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.build import RuleHead
+from rulec.syntax.build import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 
-Clause = tuple[str, tree.Text | tree.Formula | None, Span]
+Said = tuple[str, Clause | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
 
 HOW_TO_BEGIN: Final = (
@@ -19,20 +19,16 @@ HOW_TO_BEGIN: Final = (
 )
 """What a diagnostic about a file's beginning expects, and its help."""
 
-Item = (
-    tree.FileLine
-    | tree.TitleLine
-    | tree.LawLine
-    | tree.UseLine
-    | tree.Declaration
-    | tree.RuleItem
-    | tree.BrokenItem
-)
+Part = tree.FileLine | tree.HeaderLine | tree.Item
+"""What stands at the top level of a file."""
+
+
+_Kind = TypeVar("_Kind")
 
 
 def assemble_rule(
     head: RuleHead,
-    parts: Sequence[Clause | tree.Example | None],
+    parts: Sequence[Said | tree.Example | None],
     span: Span,
     head_span: Span,
     *,
@@ -40,37 +36,55 @@ def assemble_rule(
 ) -> tuple[tree.RuleItem, list[Diagnostic]]:
     """The rule of a head and its clauses in any order; None stands for an unreadable example."""
     mistakes: list[Diagnostic] = []
-    said: dict[str, Clause] = {}
+    said: dict[str, Said] = {}
     for part in parts:
         if isinstance(part, tuple):
             first = said.setdefault(part[0], part)
-            if first is not part:
+            if first is not part and part[0] != "unless":
                 mistakes.append(_twice(f"`{part[0]}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
-    if "require" not in said and complete:
+    if "require" not in said and complete and not head.override:
         mistakes.append(_no_require(head, head_span))
         complete = False
 
-    def value(word: str) -> tree.Text | tree.Formula | None:
-        return said[word][1] if word in said else None
+    def value(word: str, kind: type[_Kind]) -> _Kind | None:
+        found = said[word][1] if word in said else None
+        return found if isinstance(found, kind) else None
 
-    cite, says, require = value("cite"), value("says"), value("require")
+    def formula(word: str) -> tree.Formula | None:
+        found = said[word][1] if word in said else None
+        clauses = tree.Text | tree.Unless | tree.InForce | str
+        return None if isinstance(found, clauses) else found
+
+    certainty = value("certainty", str)
     rule = tree.RuleItem(
-        "hard" if head.strength == "hard" else "soft",
+        head.strength,
         head.name,
         head.variables,
-        None if isinstance(require, tree.Text) else require,
-        cite if isinstance(cite, tree.Text) else None,
-        says if isinstance(says, tree.Text) else None,
+        formula("require"),
+        value("cite", tree.Text),
+        value("says", tree.Text),
         tuple(part for part in parts if isinstance(part, tree.Example)),
         complete,
         span,
+        head.level,
+        head.weight,
+        head.override,
+        tuple(
+            part[1]
+            for part in parts
+            if isinstance(part, tuple) and isinstance(part[1], tree.Unless)
+        ),
+        formula("when"),
+        value("source", tree.Text),
+        cast('Literal["", "verified", "secondary", "unverified"]', certainty or ""),
+        value("in", tree.InForce),
     )
     return rule, mistakes
 
 
-def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, list[Diagnostic]]:
+def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, list[Diagnostic]]:
     """The file of its header lines and items."""
     mistakes: list[Diagnostic] = []
     first = parts[0]
@@ -78,13 +92,14 @@ def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, lis
     kind = file_line.kind if file_line is not None else "rulebook"
     if file_line is None and not isinstance(first, tree.BrokenItem):
         mistakes.append(_no_file_line(first))
-    titles = [part for part in parts if isinstance(part, tree.TitleLine)]
-    laws = [part for part in parts if isinstance(part, tree.LawLine)]
+    once = {
+        word: [part for part in parts if isinstance(part, line)] for word, line in _ONCE.items()
+    }
     if kind == "vocabulary":
         mistakes += _not_for_a_vocabulary(parts)
     else:
-        for lines, word in ((titles, "`title`"), (laws, "`law`")):
-            mistakes += [_twice(word, line.span, lines[0].span) for line in lines[1:]]
+        for word, lines in once.items():
+            mistakes += [_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]]
         mistakes += _used_twice(parts)
         said = {one.place for one in mistakes}
         mistakes += [one for one in _misplaced(parts) if one.place not in said]
@@ -92,17 +107,35 @@ def assemble_file(source: Source, parts: Sequence[Item]) -> tuple[tree.File, lis
     file = tree.File(
         kind,
         None if file_line is None else file_line.name,
-        titles[0] if titles else None,
-        laws[0] if laws else None,
+        _first(parts, tree.TitleLine),
+        _first(parts, tree.LawLine),
         tuple(part for part in parts if isinstance(part, tree.UseLine)),
         tuple(part for part in parts if not isinstance(part, _Header)),
         not any(isinstance(part, tree.BrokenItem) and _may_use(part) for part in parts),
         Span(source, 0, len(source.text)),
+        _first(parts, tree.ExtendsLine),
+        _first(parts, tree.TrafficLine),
+        _first(parts, tree.SemanticsLine),
+        _first(parts, tree.StepLine),
+        tuple(part for part in parts if isinstance(part, tree.PriorityLine)),
     )
     return file, mistakes
 
 
-_Header = tree.FileLine | tree.TitleLine | tree.LawLine | tree.UseLine
+_Header = tree.FileLine | tree.HeaderLine
+
+_ONCE: Final = {
+    "title": tree.TitleLine,
+    "law": tree.LawLine,
+    "extends": tree.ExtendsLine,
+    "traffic": tree.TrafficLine,
+    "semantics": tree.SemanticsLine,
+    "step": tree.StepLine,
+}
+
+
+def _first(parts: Sequence[Part], kind: type[_Kind]) -> _Kind | None:
+    return next((part for part in parts if isinstance(part, kind)), None)
 
 
 def _may_use(item: tree.BrokenItem) -> bool:
@@ -113,7 +146,7 @@ def _may_use(item: tree.BrokenItem) -> bool:
     return near == "use" or (near is None and len(item.names) == 2)
 
 
-def _used_twice(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     first: dict[str, Span] = {}
     for part in parts:
         if isinstance(part, tree.UseLine):
@@ -123,9 +156,9 @@ def _used_twice(parts: Sequence[Item]) -> Iterable[Diagnostic]:
             first.setdefault(name, part.span)
 
 
-def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     """Header lines behind the first item, and a second ``rulebook`` line."""
-    item: Item | None = None
+    item: Part | None = None
     for part in parts[1:]:
         if isinstance(part, tree.FileLine):
             yield Diagnostic(
@@ -148,8 +181,9 @@ def _misplaced(parts: Sequence[Item]) -> Iterable[Diagnostic]:
             )
 
 
-def _no_rule(parts: Sequence[Item]) -> Iterable[Diagnostic]:
-    if not any(isinstance(part, tree.RuleItem | tree.BrokenItem) for part in parts):
+def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
+    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine
+    if not any(isinstance(part, enough) for part in parts):
         yield Diagnostic(
             "R0114",
             "the rulebook has no rule",
@@ -158,9 +192,9 @@ def _no_rule(parts: Sequence[Item]) -> Iterable[Diagnostic]:
         )
 
 
-def _not_for_a_vocabulary(parts: Sequence[Item]) -> Iterable[Diagnostic]:
+def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
-        if isinstance(part, tree.RuleItem | _Header):
+        if isinstance(part, tree.RuleItem | tree.Provision | _Header):
             yield Diagnostic(
                 "R0115",
                 "a vocabulary holds declarations only",
@@ -191,7 +225,7 @@ def _no_require(head: RuleHead, span: Span) -> Diagnostic:
     )
 
 
-def _no_file_line(first: Item) -> Diagnostic:
+def _no_file_line(first: Part) -> Diagnostic:
     return Diagnostic(
         "R0114",
         "the file does not say what it is",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
@@ -15,21 +16,55 @@ from rulec.syntax.literals import misleads, why_not_a_day
 _OPERATORS = {token_kind(words): words for words in SYMBOLS}
 
 
+_PROVISIONS = ("option", "param", "set", "define", "drop", "soften", "silent")
+
+_SCOPES: dict[str, tree.Scope] = {
+    "INITIALLY": "initially",
+    "AT_START": "at start",
+    "THROUGHOUT": "throughout",
+    "AT_SOME_POINT": "at some point",
+    "AT_END": "at end",
+}
+
+_AGGREGATES: dict[str, Literal["some", "every", "count"]] = {
+    "SOME": "some",
+    "EVERY": "every",
+    "COUNT": "count",
+}
+
+_RELATIONS = {
+    "LESS": "<",
+    "AT_MOST": "<=",
+    "EQUALS": "=",
+    "NOT_EQUAL": "!=",
+    "AT_LEAST": ">=",
+    "GREATER": ">",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class RuleHead:
-    """``hard rule NAME (variables)``."""
+    """``hard rule NAME (variables) in level weight number``, or ``override rule NAME …``."""
 
-    strength: str
+    strength: Literal["hard", "soft"] | None
     name: tree.Name
     variables: tuple[tree.Parameter, ...]
+    level: tree.Name | None
+    weight: tree.Number | None
+    override: bool
 
 
 @dataclass(frozen=True, slots=True)
 class ExampleHead:
-    """``accept "label"`` or ``reject "label"``."""
+    """``accept "label" (objects)`` or ``reject …``."""
 
     accepts: bool
     label: str
+    objects: tuple[tree.Parameter, ...]
+
+
+Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
+"""What a clause says; a text for ``certainty``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,20 +89,66 @@ class Builder:
     # Formulas
 
     def formula(self, node: Branch) -> tree.Formula:
-        """A formula; as deep as the parser lets it be."""
+        """A formula or an expression; as deep as the parser lets it be."""
         span = self.span(node)
         match node:
-            case Branch("infix", (Branch() as left, Leaf(kind=operator), Branch() as right)):
-                word = _OPERATORS[operator]
-                return tree.Infix(word, self.formula(left), self.formula(right), span)
-            case Branch("prefix", (Leaf(kind=operator), Branch() as operand)):
-                return tree.Prefix(_OPERATORS[operator], self.formula(operand), span)
+            case Branch("infix", (Branch() as left, Leaf() as sign, *bound, Branch() as right)):
+                word = _OPERATORS[sign.kind]
+                sides = self.formula(left), self.formula(right)
+                return tree.Infix(word, *sides, self._bound(bound), span, sign.text)
+            case Branch("prefix", (Leaf() as sign, *bound, Branch() as operand)):
+                word = _OPERATORS[sign.kind]
+                inside = self.formula(operand)
+                return tree.Prefix(word, inside, self._bound(bound), span, sign.text)
+            case Branch("compare", (Branch() as left, Leaf(kind=kind), Branch() as right)):
+                sides = self.formula(left), self.formula(right)
+                return tree.Compare(_RELATIONS[kind], *sides, span)
+            case Branch("arithmetic", (Branch() as left, Leaf() as sign, Branch() as right)):
+                return tree.Arithmetic(sign.text, self.formula(left), self.formula(right), span)
+            case Branch("minus", (_, Branch() as operand)):
+                return tree.Minus(self.formula(operand), span)
+            case Branch(
+                "conditional", (Branch() as value, _, Branch() as test, _, Branch() as other)
+            ):
+                parts = self.formula(value), self.formula(test), self.formula(other)
+                return tree.Conditional(*parts, span)
             case Branch("group", (_, Branch() as inner, _)):
-                return self.formula(inner)
+                return _grouped(self.formula(inner))
+            case Branch(
+                "aggregate", (Leaf() as kind, Branch() as variable, _, Branch() as body, _)
+            ):
+                word = _AGGREGATES[kind.kind]
+                return tree.Aggregate(word, self._parameter(variable), self.formula(body), span)
             case Branch("truth", (Leaf(kind=kind),)):
                 return tree.Truth(kind == "TRUE", span)
+            case Branch("number"):
+                return self.amount(node)
             case _:
                 return self.atom(node)
+
+    def amount(self, node: Branch) -> tree.Number:
+        """A number with its unit, if any."""
+        number = _leaf(node, "NUMBER")
+        self.number(number)
+        units = _leaves(node, "UNIT")
+        return tree.Number(number.text, units[0].text if units else "", self.span(node))
+
+    def _bound(self, nodes: Sequence[Branch | Leaf]) -> tree.Bound | None:
+        if not nodes:
+            return None
+        (node,) = nodes
+        assert isinstance(node, Branch), "a bound is no token"
+        first, *others = (
+            self.atom(one) if one.kind == "atom" else self.amount(one)
+            for one in node.children
+            if isinstance(one, Branch)
+        )
+        span = self.span(node)
+        if _leaves(node, "AT_MOST"):
+            return tree.Bound(None, first, span=span)
+        if _leaves(node, "AT_LEAST"):
+            return tree.Bound(first, None, span=span)
+        return tree.Bound(first, others[0] if others else first, not others, span)
 
     def atom(self, node: Branch) -> tree.AtomUse:
         """An atom with its arguments."""
@@ -78,8 +159,8 @@ class Builder:
 
     def item(
         self, node: Branch
-    ) -> tree.FileLine | tree.TitleLine | tree.LawLine | tree.UseLine | tree.Declaration:
-        """A header line or a declaration."""
+    ) -> tree.FileLine | tree.HeaderLine | tree.Declaration | tree.Provision:
+        """A header line, a declaration or a provision."""
         span = self.span(node)
         match node.kind:
             case "rulebook_line":
@@ -93,8 +174,80 @@ class Builder:
                 return tree.LawLine(self.text(node), self.date(dates[0]) if dates else "", span)
             case "use_line":
                 return tree.UseLine(self.name(_leaf(node, "NAME")), span)
+            case "extends_line":
+                return tree.ExtendsLine(self.name(_leaf(node, "NAME")), span)
+            case "traffic_line":
+                return tree.TrafficLine("left" if _leaves(node, "LEFT") else "right", span)
+            case "semantics_line":
+                return tree.SemanticsLine("finite" if _leaves(node, "FINITE") else "stutter", span)
+            case "step_line":
+                (amount,) = _branches(node, "number")
+                return tree.StepLine(self.amount(amount), span)
+            case "priority_line":
+                signs = [leaf for leaf in node.children if isinstance(leaf, Leaf)]
+                relations: list[Literal[">", "="]] = [
+                    ">" if sign.kind == "GREATER" else "="
+                    for sign in signs
+                    if sign.kind in ("GREATER", "EQUALS")
+                ]
+                return tree.PriorityLine(self.names(node), tuple(relations), span)
+            case kind if kind.removesuffix("_item") in _PROVISIONS:
+                return self.provision(node)
             case _:
                 return self.declaration(node)
+
+    def provision(self, node: Branch) -> tree.Provision:
+        """An option, a parameter, a definition, or what is done to an inherited one."""
+        span = self.span(node)
+        name, *others = self.names(node)
+        match node.kind:
+            case "option_item":
+                return tree.OptionItem(name, bool(_leaves(node, "ON")), span)
+            case "param_item":
+                dimension = others[0] if others else None
+                return tree.ParamItem(name, dimension, self._value(node), self._dates(node), span)
+            case "set_item":
+                value = bool(_leaves(node, "ON"))
+                if _leaves(node, "ON") or _leaves(node, "OFF"):
+                    return tree.SetItem(name, value, None, span)
+                return tree.SetItem(name, self._value(node), self._dates(node), span)
+            case "define_item":
+                body, again = self._value(node), bool(_leaves(node, "REDEFINE"))
+                return tree.DefineItem(name, self.parameters(node), body, again, span)
+            case "drop_item":
+                return tree.DropItem(name, self.text(node), span)
+            case "soften_item":
+                because = self.text(node) if _leaves(node, "STRING") else None
+                level = others[0] if others else None
+                return tree.SoftenItem(name, level, self._weight(node), because, span)
+            case _:
+                return tree.SilentItem(name, self.text(node), span)
+
+    def _value(self, node: Branch) -> tree.Formula:
+        """The one formula or expression directly below a node."""
+        (value,) = (
+            child
+            for child in node.children
+            if isinstance(child, Branch) and child.kind not in ("parameters", "in_force")
+        )
+        return self.formula(value)
+
+    def _dates(self, node: Branch) -> tree.InForce | None:
+        found = _branches(node, "in_force")
+        return self.in_force(found[0]) if found else None
+
+    def in_force(self, node: Branch) -> tree.InForce:
+        """``in force from DATE until DATE``."""
+        dates = [self.date(leaf) for leaf in _leaves(node, "DATE")]
+        since = dates.pop(0) if _leaves(node, "FROM") else ""
+        return tree.InForce(since, dates[0] if dates else "", self.span(node))
+
+    def _weight(self, node: Branch) -> tree.Number | None:
+        numbers = _leaves(node, "NUMBER")
+        if not numbers:
+            return None
+        self.number(numbers[0])
+        return tree.Number(numbers[0].text, "", self.span(numbers[0]))
 
     def declaration(self, node: Branch) -> tree.Declaration:
         """A declaration."""
@@ -111,8 +264,12 @@ class Builder:
             case "quantity_item":
                 numbers = _leaves(node, "NUMBER")
                 number = self.number(numbers[0]) if numbers else None
+                if number is not None and _leaves(node, "MINUS"):
+                    number = -number
                 unit = _leaf(node, "UNIT").text
                 return tree.QuantityItem(names[0], self.parameters(node), unit, number, span)
+            case "fact_item":
+                return tree.FactItem(self._value(node), span)
             case _:
                 signals = tuple(
                     tree.SignalHead(self.names(head)[0], self.parameters(head), self.span(head))
@@ -122,35 +279,70 @@ class Builder:
                 return tree.SignalItem(signals, bool(true) if true or false else None, span)
 
     def parameters(self, node: Branch) -> tuple[tree.Parameter, ...]:
-        """A declaration's parameters, or a rule's variables."""
+        """A declaration's or definition's parameters, or a rule's variables."""
         return tuple(
-            tree.Parameter(names[0], names[1] if len(names) > 1 else None, self.span(one))
+            self._parameter(one)
             for group in (*_branches(node, "parameters"), *_branches(node, "variables"))
             for one in (*_branches(group, "parameter"), *_branches(group, "variable"))
-            for names in [self.names(one)]
         )
+
+    def _parameter(self, node: Branch) -> tree.Parameter:
+        names = self.names(node)
+        return tree.Parameter(names[0], names[1] if len(names) > 1 else None, self.span(node))
 
     # Rules
 
     def rule_head(self, node: Branch) -> RuleHead:
         """A rule's head."""
-        strength = "hard" if _leaves(node, "HARD") else "soft"
-        return RuleHead(strength, self.names(node)[0], self.parameters(node))
+        name, *level = self.names(node)
+        hard, soft = _leaves(node, "HARD"), _leaves(node, "SOFT")
+        return RuleHead(
+            "hard" if hard else "soft" if soft else None,
+            name,
+            self.parameters(node),
+            level[0] if level else None,
+            self._weight(node),
+            bool(_leaves(node, "OVERRIDE")),
+        )
+
+    def clause(self, node: Branch) -> Clause:
+        """What a clause says."""
+        match node.kind:
+            case "require_clause" | "when_clause":
+                return self._value(node)
+            case "unless_clause":
+                *_, last = node.children
+                scope = None
+                if isinstance(last, Leaf):
+                    scope = _SCOPES[last.kind]
+                return tree.Unless(self._value(node), scope, self.span(node))
+            case "certainty_clause":
+                return node.children[1].text if isinstance(node.children[1], Leaf) else ""
+            case "in_force":
+                return self.in_force(node)
+            case _:
+                return self.text(node)
 
     def example_head(self, node: Branch) -> ExampleHead:
         """An example's head."""
         label = self.text(node).value if _leaves(node, "STRING") else ""
-        return ExampleHead(bool(_leaves(node, "ACCEPT")), label)
+        return ExampleHead(bool(_leaves(node, "ACCEPT")), label, self.parameters(node))
 
     def state(self, node: Branch) -> tree.ExampleState:
         """A state of an example."""
-        literals = tuple(
-            tree.StateLiteral(
-                self.atom(_branches(one, "atom")[0]), bool(_leaves(one, "NOT")), self.span(one)
-            )
-            for one in _branches(node, "literal")
-        )
+        literals = tuple(self._literal(one) for one in _branches(node, "literal"))
         return tree.ExampleState(literals, self.span(node))
+
+    def _literal(self, node: Branch) -> tree.StateLiteral:
+        (atom,) = _branches(node, "atom")
+        value: tree.Number | tree.Minus | None = None
+        for number in _branches(node, "number"):
+            value = self.amount(number)
+            if _leaves(node, "MINUS"):
+                value = tree.Minus(value, value.span)
+        return tree.StateLiteral(
+            self.atom(atom), bool(_leaves(node, "NOT")), value, self.span(node)
+        )
 
     # Values
 
@@ -196,6 +388,17 @@ class Builder:
         }
         place = Span(self.source, position, position + length).place
         self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))
+
+
+_GROUPS = (
+    *(tree.Prefix, tree.Infix, tree.Compare),
+    *(tree.Arithmetic, tree.Minus, tree.Conditional),
+)
+
+
+def _grouped(formula: tree.Formula) -> tree.Formula:
+    """Parentheses around what needs none are not worth remembering."""
+    return replace(formula, grouped=True) if isinstance(formula, _GROUPS) else formula
 
 
 def _leaves(node: Branch, kind: str) -> list[Leaf]:

@@ -19,7 +19,12 @@ STARTS: tuple[Start, ...] = ("item", "rule_head", "clause", "example_head", "sta
 MAX_DEPTH = 200
 """Operators and parentheses inside one another: far above any law, far below Python's stack."""
 
-_LEVELS = ("infix", "prefix", "group")
+_LEVELS = frozenset(
+    (
+        *("infix", "prefix", "group", "compare"),
+        *("arithmetic", "minus", "conditional", "aggregate"),
+    )
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,11 +5,26 @@ from __future__ import annotations
 from typing import Final
 
 FILE_WORDS: Final = ("rulebook", "vocabulary")
-HEADER_WORDS: Final = (*FILE_WORDS, "title", "law", "use")
-DECLARATION_WORDS: Final = ("type", "signal", "quantity")
+HEADER_WORDS: Final = (
+    *FILE_WORDS,
+    *("title", "law", "use", "extends", "traffic", "semantics", "step", "priority"),
+)
+DECLARATION_WORDS: Final = ("type", "signal", "quantity", "fact")
+PROVISION_WORDS: Final = (
+    *("option", "param", "set", "define", "redefine"),
+    *("drop", "soften", "silent"),
+)
 RULE_WORDS: Final = ("hard", "soft")
-ITEM_WORDS: Final = frozenset((*HEADER_WORDS, *DECLARATION_WORDS, *RULE_WORDS, "rule"))
-CLAUSE_WORDS: Final = frozenset(("cite", "says", "require", "accept", "reject"))
+ITEM_WORDS: Final = frozenset(
+    (*HEADER_WORDS, *DECLARATION_WORDS, *PROVISION_WORDS, *RULE_WORDS, "rule", "override")
+)
+CLAUSE_WORDS: Final = frozenset(
+    (
+        *("cite", "says", "source", "certainty"),
+        *("require", "unless", "when", "accept", "reject"),
+    )
+)
+"""The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
 
 OPERATOR_WORDS: Final = frozenset(
     (
@@ -28,6 +43,8 @@ RESERVED: Final = (
     | OPERATOR_WORDS
     | OPERATOR_LETTERS
     | frozenset(("as", "of", "is", "one", "in", "default", "true", "false"))
+    | frozenset(("some", "every", "count", "if", "else"))
+    | frozenset(("at", "initially", "throughout", "because"))
 )
 """What cannot be a name."""
 
@@ -77,6 +94,9 @@ PRECEDENCE: Final = {
 """Binary operator -> how tightly it binds; every unary operator binds tighter."""
 
 UNARY_PRECEDENCE: Final = 8
+COMPARISON_PRECEDENCE: Final = 9
+ARITHMETIC_PRECEDENCE: Final = {"+": 10, "-": 10, "*": 11, "/": 11}
+MINUS_PRECEDENCE: Final = 12
 
 RIGHT_ASSOCIATIVE: Final = frozenset(
     ("implies", "then", "until", "release", "weak until", "strong release", "since")

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, RESERVED, RULE_WORDS
 from rulec.syntax.scanner import Token
 
-_COMPLETE_WORDS = frozenset(("true", "false"))
+_COMPLETE_WORDS = frozenset(("true", "false", "throughout", "initially"))
 _OPEN_SYMBOLS = frozenset(
-    ("(", ",", ":", ";", "{", "!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>", "=", "=>")
+    (
+        *("(", ",", ":", ";", "{", "[", ".."),
+        *("!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>"),
+        *("=", "=>", "<", "<=", "!=", ">=", ">", "+", "-", "*", "/"),
+    )
 )
 
 _TEXTS = ("string", "quoted", "unterminated")
@@ -55,8 +59,8 @@ class Landmarks:
         return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
 
     def begins_rule(self, index: int) -> bool:
-        """``hard``, ``soft``, ``rule``, or a misspelt word before ``rule``."""
-        if self.is_word(index, *RULE_WORDS, "rule"):
+        """``hard``, ``soft``, ``override``, ``rule``, or a misspelt word before ``rule``."""
+        if self.is_word(index, *RULE_WORDS, "override", "rule"):
             return True
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
@@ -67,7 +71,9 @@ class Landmarks:
             return False
         follows_on = self.wants_more(index - 1) and not token.first
         if token.text in ITEM_WORDS:
-            if token.text == "rule" and (not token.first or self.is_word(index - 1, *RULE_WORDS)):
+            if token.text == "rule" and (not token.first or self._heads_a_rule(index - 1)):
+                return False
+            if token.text in RULE_WORDS and self.is_word(index - 1, "override"):
                 return False
             return not follows_on
         if token.text in RESERVED:
@@ -88,13 +94,16 @@ class Landmarks:
         token = self.tokens[index]
         if token.kind != "word":
             return False
-        if self.is_word(index + 1, "rule") and (self.is_word(index, *RULE_WORDS) or token.first):
-            return True
-        if not token.first or self.is_word(index - 1, *RULE_WORDS):
+        if self.is_word(index + 1, "rule") and (self._heads_a_rule(index) or token.first):
+            return not self.is_word(index - 1, "override")
+        if not token.first or self._heads_a_rule(index - 1):
             return False
         if token.text in ITEM_WORDS:
             return not self.wants_more(index - 1) or self.is_name(index + 1)
         return self._begins_enumeration(index)
+
+    def _heads_a_rule(self, index: int) -> bool:
+        return self.is_word(index, *RULE_WORDS, "override", "drop", "soften")
 
     def begins_misspelt(self, index: int) -> bool:
         """A name on a line of its own before a brace or a text: a misspelt word of the language."""
@@ -107,10 +116,14 @@ class Landmarks:
         """A clause's word on a line of its own, or where the text before is complete."""
         token = self.tokens[index]
         if token.kind != "word" or token.text not in CLAUSE_WORDS:
-            return False
+            return token.first and self._begins_in_force(index)
         if token.first or not self.wants_more(index - 1):
             return True
         return self.is_symbol(index - 1, "{") and not self._stands_alone(index)
+
+    def _begins_in_force(self, index: int) -> bool:
+        """``in force`` on a line of its own."""
+        return self.is_word(index, "in") and self.is_word(index + 1, "force")
 
     def _stands_alone(self, index: int) -> bool:
         """``{ accept; …`` or ``{ accept }``: a clause's word where an atom should be."""

@@ -8,8 +8,8 @@ from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.assemble import HOW_TO_BEGIN, Item, assemble_file, assemble_rule
-from rulec.syntax.build import Builder
+from rulec.syntax.assemble import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
+from rulec.syntax.build import Builder, Clause
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
 from rulec.syntax.messages.mismatch import explain, too_deep, too_long, unknown_clause
@@ -70,7 +70,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     return formula
 
 
-def _is_something_else(parts: Sequence[Item]) -> bool:
+def _is_something_else(parts: Sequence[Part]) -> bool:
     """Does the file neither begin like a rulebook, nor hold more to be read than not?"""
     first = parts[0]
     if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
@@ -125,7 +125,7 @@ class _Reader:
         token = self.tokens[piece.first]
         return Span(self.source, token.start, token.end)
 
-    def item(self, piece: Piece) -> Item:
+    def item(self, piece: Piece) -> Part:
         return self.read("item", piece, Builder.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:
@@ -153,13 +153,13 @@ class _Reader:
         self.mistakes.extend(mistakes)
         return rule
 
-    def _clause(self, piece: Piece) -> tuple[str, tree.Text | tree.Formula | None, Span]:
+    def _clause(self, piece: Piece) -> tuple[str, Clause | None, Span]:
         keyword = self.tokens[piece.first].text
         span = self._first_token(piece)
         if piece.kind == "junk":
             self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
-        return keyword, self.read("clause", piece, _build_clause), span
+        return keyword, self.read("clause", piece, Builder.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.Example | None:
         head = self.read("example_head", pieces.head, Builder.example_head)
@@ -168,11 +168,4 @@ class _Reader:
             return None
         span = span_of(self.source, self.tokens, pieces)
         good = cast("list[tree.ExampleState]", states)
-        return tree.Example(head.accepts, tuple(good), head.label, span)
-
-
-def _build_clause(builder: Builder, branch: Branch) -> tree.Text | tree.Formula:
-    if branch.kind == "require_clause":
-        (formula,) = (child for child in branch.children if isinstance(child, Branch))
-        return builder.formula(formula)
-    return builder.text(branch)
+        return tree.Example(head.accepts, tuple(good), head.label, head.objects, span)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source
+from rulec.syntax.keywords import CLAUSE_WORDS
 from rulec.syntax.landmarks import Landmarks
 from rulec.syntax.messages.structure import StructureMessages
 from rulec.syntax.pieces import Piece, RulePieces
@@ -90,7 +91,7 @@ class FileSplitter:
                 break
             if self.marks.begins_item(end):
                 break
-            if self.tokens[end].first and self.marks.begins_clause(end):
+            if self.tokens[end].first and self.marks.is_word(end, *CLAUSE_WORDS):
                 break
             end += 1
         return end

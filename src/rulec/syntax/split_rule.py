@@ -47,7 +47,7 @@ class RuleSplitter:
                 if ended:
                     return RulePieces(head, tuple(body), first, index)
             else:
-                known = self.marks.is_word(index, *CLAUSE_WORDS)
+                known = self.marks.is_word(index, *CLAUSE_WORDS, "in")
                 end = self._end_of_clause(index)
                 body.append(Piece("clause" if known else "junk", index, end))
                 index = end

@@ -7,8 +7,13 @@ from collections.abc import Iterable
 from rulec.diagnostics import any_of
 from rulec.syntax.keywords import PRECEDENCE, UNARY_OPERATORS, token_kind
 
-_OPERANDS = frozenset(map(token_kind, UNARY_OPERATORS)) | {"LPAR", "TRUE", "FALSE", "NAME"}
+_OPERANDS = frozenset(map(token_kind, UNARY_OPERATORS)) | {
+    *("LPAR", "TRUE", "FALSE", "NAME"),
+    *("SOME", "EVERY", "COUNT", "NUMBER", "MINUS"),
+}
 _OPERATORS = frozenset(map(token_kind, PRECEDENCE))
+_COMPARISONS = frozenset(("LESS", "AT_MOST", "EQUALS", "NOT_EQUAL", "AT_LEAST", "GREATER"))
+_ARITHMETIC = frozenset(("PLUS", "MINUS", "TIMES", "OVER"))
 _WORDS = {
     "NAME": "a name",
     "STRING": "a text in double quotes",
@@ -36,7 +41,7 @@ def in_words(accepted: Iterable[str]) -> str:
         rest -= _OPERANDS
     if rest >= _OPERATORS:
         behind = ["an operator such as `and`"]
-        rest -= _OPERATORS | {"LPAR"}
+        rest -= _OPERATORS | _COMPARISONS | _ARITHMETIC | {"LPAR", "UNIT"}
     rest.discard("$END" if before or behind or len(rest) > 1 else "")
     ranked = sorted(rest, key=lambda kind: (_rank(kind), kind))
     parts = [*before, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked), *behind]
