@@ -23,7 +23,7 @@ _Time = tuple[Fraction, Literal["s", "steps"]]
 
 def bound_of(
     node: tree.Prefix | tree.Infix, bound: tree.Bound | None, scope: Scope, evaluate: Evaluate
-) -> Bound | None | Literal[False]:
+) -> Bound | Literal[False] | None:
     """The bound as meant; False if it has a mistake, which is then reported.
 
     ``evaluate`` gives the number that a parameter stands for.

@@ -17,7 +17,7 @@ MOST_USES = 2_000
 
 
 def put_in(
-    use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning | None]
+    use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning]
 ) -> _Meaning | None:
     """What a use of a definition means; None if it has a mistake, which is then reported."""
     name = use.name.text
@@ -74,9 +74,6 @@ def _relation(argument: tree.Name, scope: Scope) -> str | Anything | None:
         return scope.relations[name]
     if name in scope.variables:
         return None
-    if name in scope.provisions.definitions:
-        scope.provisions.used.add(name)
-        return name
     if scope.behind(name) is not None or name in SIDES or scope.provisions.overlay.kind_of(name):
         return name
     return None

@@ -101,7 +101,9 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
     at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
     everywhere = all_of(denied.get("at some point", []))
     if len(phases) == 2:
-        return _border(phases, all_of([at_start, everywhere]), all_of([at_end, everywhere]), throughout)
+        return _border(
+            phases, all_of([at_start, everywhere]), all_of([at_end, everywhere]), throughout
+        )
     return _Inner(phases, at_start, at_end, everywhere).whole(frozenset(throughout))
 
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic
 from rulec.logic.formula import (
-    Atom,
     Binary,
     BinaryOperator,
     Comparison,
@@ -16,7 +15,6 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Quantity,
-    Relation,
     Same,
     Unary,
     UnaryOperator,
@@ -164,8 +162,6 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         scope.used.add(name)
         return Object(scope.variables[name].actual)
     kind = scope.provisions.overlay.kind_of(name)
-    if kind:
-        scope.provisions.used.add(name)
     if kind and node.arguments and kind != "definition":
         scope.report(say.takes_no_object(node, kind, scope))
         return None
@@ -238,11 +234,7 @@ def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
         return None
     if not _fit(node, first, second, scope):
         return None
-    relation: Relation = _RELATIONS[node.relation]
-    return compared(first, relation, second)
-
-
-_RELATIONS: dict[str, Relation] = {one: one for one in ("<", "<=", "=", "!=", ">=", ">")}  # type: ignore[misc]
+    return compared(first, node.relation, second)
 
 
 def _as_number(

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
-from rulec.logic.formula import Comparison, Formula
+from rulec.logic.formula import Formula
+from rulec.rulebook.declaration_messages import unit_help
 from rulec.rulebook.numbers import Number
 from rulec.rulebook.overlay import Value
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
-from rulec.vocabulary.units import Dimension, known_unit_names
+from rulec.vocabulary.units import Dimension, unit_refusal
 
 if TYPE_CHECKING:
     from rulec.rulebook.scope import Scope
@@ -151,9 +152,7 @@ def _unit_help(node: tree.Formula, other: tree.Formula, scope: Scope) -> str:
     return ""
 
 
-def two_kinds(
-    node: tree.Conditional, value: object, otherwise: object, scope: Scope
-) -> Diagnostic:
+def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
     """``number if condition else truth``."""
     return Diagnostic(
         "R0313",
@@ -167,7 +166,16 @@ def two_kinds(
 
 
 def unknown_unit(node: tree.Number) -> Diagnostic:
-    """A unit that nobody knows."""
+    """A unit that nobody knows, or that cannot be converted exactly."""
+    refusal = unit_refusal(node.unit)
+    if refusal is not None:
+        message = f"the unit `{node.unit}` cannot be used: {refusal.why}"
+        return Diagnostic(
+            "R0209",
+            message,
+            node.span.place,
+            help=f"write {refusal.instead}" if refusal.instead else "",
+        )
     return Diagnostic(
         "R0209",
         f"there is no unit `{node.unit}`",
@@ -175,14 +183,6 @@ def unknown_unit(node: tree.Number) -> Diagnostic:
         expected="expected a unit of measure",
         help=unit_help(node.unit),
     )
-
-
-def unit_help(unit: str) -> str:
-    """The way out of an unknown unit."""
-    if unit in ("step", "steps"):
-        return "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
-    near = did_you_mean(unit, known_unit_names())
-    return near or "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`"
 
 
 def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
@@ -203,8 +203,9 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
         "R0314",
         f"`{_short(node)}`: two numbers that change from state to state cannot be {verb}",
         node.span.place,
-        expected="expected a fixed number on one side" if node.operator == "*" else
-        "expected a fixed number behind `/`",
+        expected="expected a fixed number on one side"
+        if node.operator == "*"
+        else "expected a fixed number behind `/`",
         help="multiply and divide by fixed numbers and parameters only",
     )
 
@@ -460,5 +461,3 @@ def too_many_exceptions(unless: tree.Unless, limit: int) -> Diagnostic:
         unless.span.place,
         help="join some of them by `or` in one `unless`, if one of them may follow the other",
     )
-
-

@@ -96,9 +96,7 @@ def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> N
     return Number((((), Linear({term: factor}, Fraction(0), dimension, text)),))
 
 
-def combined(
-    left: Number, right: Number, combine: Callable[[Linear, Linear], Linear]
-) -> Number:
+def combined(left: Number, right: Number, combine: Callable[[Linear, Linear], Linear]) -> Number:
     """An operation case by case. Raises TooManyCasesError."""
     if len(left.cases) * len(right.cases) > MOST_CASES:
         raise TooManyCasesError

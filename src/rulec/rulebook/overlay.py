@@ -6,7 +6,7 @@ definitions of the rulebook that inherits it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Span
@@ -119,7 +119,9 @@ class _Layer:
             case tree.SoftenItem():
                 self._soften(item)
             case tree.SilentItem(name, because):
-                self.result.rules.pop(name.text, None)
+                own = self.result.rules.pop(name.text, None)
+                if own is not None and own.book is self.file:
+                    self.result.mistakes.append(say.own_rule(name, "be silent on", own.item))
                 self.result.remarks.append(Remark(name.text, because.value, "silent"))
             case tree.BrokenItem(names):
                 self.result.suspects |= names
@@ -200,13 +202,14 @@ class _Layer:
             self._nothing(name, "rule", verb, self.result.rules)
         return False
 
-    def _nothing(self, name: tree.Name, kind: str, verb: str, known: Sequence[str] | object) -> None:
+    def _nothing(
+        self, name: tree.Name, kind: str, verb: str, known: Iterable[str]
+    ) -> None:
         if self.result.unsure or name.text in self.result.suspects:
             return
-        names = list(known) if isinstance(known, list | dict) else []
         base = self.file.extends
         extends = None if base is None else base.name.text
-        self.result.mistakes.append(say.nothing_to(verb, kind, name, names, extends))
+        self.result.mistakes.append(say.nothing_to(verb, kind, name, list(known), extends))
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:

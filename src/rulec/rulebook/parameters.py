@@ -44,9 +44,7 @@ def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
     return candidates[0]
 
 
-def _evaluated(
-    use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
-) -> Number | None:
+def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate) -> Number | None:
     name, item = use.name.text, value.item
     assert not isinstance(item.value, bool), "only an option is on or off"
     inner = replace(
@@ -84,13 +82,10 @@ def _dimension(name: str, scope: Scope) -> Dimension | None:
     return None
 
 
-def _first_value(
-    name: str, value: Value, scope: Scope, evaluate: Evaluate
-) -> Dimension | None:
+def _first_value(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> Dimension | None:
     """Where the declaration names no dimension, its own value has it."""
     first = scope.provisions.overlay.parameters[name][0]
     if first is value or isinstance(first.item.value, bool):
         return None
     found = evaluate(first.item.value, replace(scope, mistakes=[]))
     return None if found is None else found.dimension
-

@@ -1,4 +1,4 @@
-"""Levels of priority: a pre-order from the ``priority`` lines of a rulebook and those it extends."""
+"""Levels of priority: a pre-order from the ``priority`` lines of rulebooks."""
 
 from __future__ import annotations
 

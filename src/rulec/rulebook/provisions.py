@@ -16,14 +16,13 @@ class Provisions:
     """What formulas may speak of besides the vocabulary, on the day ``at`` (ISO).
 
     ``numbers`` are the parameters' values, None for one that has none or a wrong one, filled as
-    they are asked for; ``used`` are the names that were asked for.
+    they are asked for.
     """
 
     overlay: Overlay
     at: str
     traffic: Literal["", "left", "right"] = ""
     numbers: dict[str, Number | None] = field(default_factory=dict)
-    used: set[str] = field(default_factory=set)
     expansions: int = 0
     """How many definitions have been put into the formula at hand."""
 

@@ -32,7 +32,7 @@ _AGGREGATES: dict[str, Literal["some", "every", "count"]] = {
     "COUNT": "count",
 }
 
-_RELATIONS = {
+_RELATIONS: dict[str, Literal["<", "<=", "=", "!=", ">=", ">"]] = {
     "LESS": "<",
     "AT_MOST": "<=",
     "EQUALS": "=",

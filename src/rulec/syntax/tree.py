@@ -114,7 +114,7 @@ class Infix:
 class Compare:
     """``left < right``; ``relation`` is one of ``< <= = != >= >``."""
 
-    relation: str
+    relation: Literal["<", "<=", "=", "!=", ">=", ">"]
     left: Formula
     right: Formula
     span: Span = field(default=NOWHERE, compare=False, repr=False)
