@@ -46,7 +46,7 @@ def to_data(formula: Formula) -> Any:
             return {"name": name, "variables": list(arguments), "value": value}
         case Comparison(terms, relation, limit, text):
             return {
-                "terms": [[str(coefficient), _term(term)] for coefficient, term in terms],
+                "terms": terms_to_data(terms),
                 "relation": relation,
                 "limit": str(limit),
                 "text": text,
@@ -59,6 +59,11 @@ def to_data(formula: Formula) -> Any:
             return [operator.value, to_data(operand), *_bound(bound)]
         case Binary(operator, left, right, bound):
             return [operator.value, to_data(left), to_data(right), *_bound(bound)]
+
+
+def terms_to_data(terms: tuple[tuple[Fraction, Term], ...]) -> list[list[Any]]:
+    """What a comparison compares: pairs of a coefficient and a term."""
+    return [[str(coefficient), _term(term)] for coefficient, term in terms]
 
 
 def _term(term: Term) -> dict[str, Any]:
@@ -88,15 +93,13 @@ def from_data(data: Any, depth: int = 0) -> Formula:
         ):
             return Atom(name, _names(variables), value)
         case {
-            "terms": list(terms),
+            "terms": terms,
             "relation": str(relation),
             "limit": limit,
             "text": str(text),
         } if len(data) == 4 and relation in _RELATIONS:
-            read = []
-            for term in terms:  # no comprehension: each level of nesting takes two frames, no more
-                read.append(_read_term(term, depth + 1))  # noqa: PERF401
-            return Comparison(tuple(read), _RELATIONS[relation], _number(limit), text)
+            read = terms_from_data(terms, depth + 1)
+            return Comparison(read, _RELATIONS[relation], number_from_data(limit), text)
         case {"same": [str(left), str(right)]} if len(data) == 1:
             return Same(left, right)
         case [str(operator), *rest] if operator in _OPERATORS:
@@ -121,8 +124,8 @@ def _operation(
 def _read_bound(operator: UnaryOperator | BinaryOperator, data: Any) -> Bound:
     match data:
         case {"from": low_text, "to": high_text, "unit": "s" | "steps" as unit} if len(data) == 3:
-            low = _number(low_text)
-            high = None if high_text is None else _number(high_text)
+            low = number_from_data(low_text)
+            high = None if high_text is None else number_from_data(high_text)
             fits = low >= 0 and (high is None or low <= high)
             if operator in DISTANCE:
                 fits = fits and low == high
@@ -133,17 +136,27 @@ def _read_bound(operator: UnaryOperator | BinaryOperator, data: Any) -> Bound:
     raise ValueError(f"`{operator.value}` has a bound that is none")
 
 
+def terms_from_data(data: Any, depth: int = 0) -> tuple[tuple[Fraction, Term], ...]:
+    """The terms that ``terms_to_data`` made this of. ValueError if there are none."""
+    if not isinstance(data, list):
+        raise ValueError("the terms of a comparison are no list")
+    read = []
+    for term in data:  # no comprehension: each level of nesting takes three frames, no more
+        read.append(_read_term(term, depth))  # noqa: PERF401
+    return tuple(read)
+
+
 def _read_term(data: Any, depth: int) -> tuple[Fraction, Term]:
     match data:
         case [coefficient, {"quantity": str(name), "variables": variables} as term] if (
             len(term) == 2
         ):
-            return _number(coefficient), Quantity(name, _names(variables))
+            return number_from_data(coefficient), Quantity(name, _names(variables))
         case [
             coefficient,
             {"count": str(variable), "type": str(type_name), "body": body} as term,
         ] if len(term) == 3:
-            return _number(coefficient), Count(variable, type_name, from_data(body, depth))
+            return number_from_data(coefficient), Count(variable, type_name, from_data(body, depth + 1))
     raise ValueError("a term of a comparison is neither a quantity nor a count")
 
 
@@ -153,7 +166,8 @@ def _names(data: Any) -> tuple[str, ...]:
     raise ValueError("a list of variables is none")
 
 
-def _number(data: Any) -> Fraction:
+def number_from_data(data: Any) -> Fraction:
+    """The fraction that this is the text of. ValueError if there is none."""
     if isinstance(data, str) and len(data) <= LONGEST and _FRACTION.fullmatch(data):
         number = Fraction(data)
         if str(number) == data:
