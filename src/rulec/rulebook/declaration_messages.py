@@ -69,7 +69,7 @@ def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
             "R0209",
             message,
             item.span.place,
-            help=f"write {refusal.instead}" if refusal.instead else "",
+            help=refusal.instead,
         )
     return Diagnostic(
         "R0209",

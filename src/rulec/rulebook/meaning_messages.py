@@ -174,7 +174,7 @@ def unknown_unit(node: tree.Number) -> Diagnostic:
             "R0209",
             message,
             node.span.place,
-            help=f"write {refusal.instead}" if refusal.instead else "",
+            help=refusal.instead,
         )
     return Diagnostic(
         "R0209",

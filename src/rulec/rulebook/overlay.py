@@ -202,9 +202,7 @@ class _Layer:
             self._nothing(name, "rule", verb, self.result.rules)
         return False
 
-    def _nothing(
-        self, name: tree.Name, kind: str, verb: str, known: Iterable[str]
-    ) -> None:
+    def _nothing(self, name: tree.Name, kind: str, verb: str, known: Iterable[str]) -> None:
         if self.result.unsure or name.text in self.result.suspects:
             return
         base = self.file.extends

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
-from rulec.syntax import tree
+from rulec.syntax import building, tree
 from rulec.syntax.assemble import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
-from rulec.syntax.build import Builder, Clause
+from rulec.syntax.building import Clause, Values
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
 from rulec.syntax.messages.mismatch import explain, too_deep, too_long, unknown_clause
@@ -64,7 +64,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     source = checked(Source(name, text))
     tokens = scan(source)
     reader = _Reader(source, tokens)
-    formula = reader.read("formula", Piece("formula", 0, len(tokens)), Builder.formula)
+    formula = reader.read("formula", Piece("formula", 0, len(tokens)), building.formula)
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula
@@ -97,9 +97,9 @@ class _Reader:
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def read(
-        self, start: Start, piece: Piece, build: Callable[[Builder, Branch], _Built]
+        self, start: Start, piece: Piece, make: Callable[[Values, Branch], _Built]
     ) -> _Built | None:
-        """What ``build`` makes of a piece that matches ``start``."""
+        """What ``make`` makes of a piece that matches ``start``."""
         if piece.reported:
             return None
         span = span_of(self.source, self.tokens, piece)
@@ -114,11 +114,11 @@ class _Reader:
                 self.mistakes.append(too_deep(self._first_token(piece)))
                 return None
             case branch:
-                builder = Builder(self.source)
-                built = build(builder, branch)
+                values = Values(self.source)
+                built = make(values, branch)
         if piece.then is not None:
             self.mistakes.append(piece.then)
-        self.mistakes.extend(builder.mistakes)
+        self.mistakes.extend(values.mistakes)
         return built
 
     def _first_token(self, piece: Piece) -> Span:
@@ -126,7 +126,7 @@ class _Reader:
         return Span(self.source, token.start, token.end)
 
     def item(self, piece: Piece) -> Part:
-        return self.read("item", piece, Builder.item) or self._broken(piece)
+        return self.read("item", piece, building.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:
         words = self.tokens[piece.first : piece.last]
@@ -137,7 +137,7 @@ class _Reader:
         return tree.BrokenItem(frozenset(names), span, first, nameless)
 
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
-        head = self.read("rule_head", pieces.head, Builder.rule_head)
+        head = self.read("rule_head", pieces.head, building.rule_head)
         parts = [
             self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
             for part in pieces.body
@@ -159,11 +159,11 @@ class _Reader:
         if piece.kind == "junk":
             self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
-        return keyword, self.read("clause", piece, Builder.clause), span
+        return keyword, self.read("clause", piece, building.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.Example | None:
-        head = self.read("example_head", pieces.head, Builder.example_head)
-        states = [self.read("state", piece, Builder.state) for piece in pieces.states]
+        head = self.read("example_head", pieces.head, building.example_head)
+        states = [self.read("state", piece, building.state) for piece in pieces.states]
         if head is None or not states or None in states:
             return None
         span = span_of(self.source, self.tokens, pieces)
