@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -40,7 +40,7 @@ class AnyStep:
                 self._answers.clear()
                 self._machines.clear()
             try:
-                self._answers[step_s] = self._compiled((one, step_s) for one in self.rulebook.rules)
+                self._answers[step_s] = self._compiled(self.rulebook.rules, step_s)
             except RulecError as error:
                 self._answers[step_s] = error
         answer = self._answers[step_s]
@@ -48,31 +48,27 @@ class AnyStep:
             raise answer
         return answer
 
-    def at_own_steps(self, rules: Iterable[Rule] | None = None) -> CompiledRulebook:
+    def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
         """Rules, or all of them, each for the step of its examples. Raises RulecError."""
-        chosen = self.rulebook.rules if rules is None else rules
-        return self._compiled((one, one.step_s) for one in chosen)
+        return self._compiled(self.rulebook.rules if rules is None else rules, None)
 
     def depends(self) -> bool:
         """Does the step make a difference?"""
         return any(speaks_of_seconds(one.formula) for one in self.rulebook.rules)
 
-    def _compiled(self, wanted: Iterable[tuple[Rule, Fraction]]) -> CompiledRulebook:
-        steps = [(rule, step if speaks_of_seconds(rule.formula) else None) for rule, step in wanted]
-        missing: dict[Fraction | None, list[Rule]] = {}
-        for rule, step in steps:
-            if (rule.name, step) not in self._machines:
-                missing.setdefault(step, []).append(rule)
-        # What no step changes is compiled along with something else, by one start of Spot.
-        if len(missing) > 1 and None in missing:
-            anytime = missing.pop(None)
-            missing[next(iter(missing))] += anytime
-        if not missing and self._header is None:
-            missing[None] = []
-        for step, rules in missing.items():
-            part = replace(self.rulebook, rules=tuple(rules))
-            self._header = compile_rulebook(part, step_s=step)
-            self._machines.update({(one.name, one.step_s): one for one in self._header.rules})
-        assert self._header is not None
-        machines = tuple(self._machines[rule.name, step] for rule, step in steps)
-        return replace(self._header, rules=machines)
+    def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
+        keys = [_key(rule, step_s) for rule in rules]
+        machines = self._machines
+        missing = [rule for rule, key in zip(rules, keys, strict=True) if key not in machines]
+        if missing or self._header is None:
+            part = replace(self.rulebook, rules=tuple(missing))
+            self._header = compile_rulebook(part, step_s=step_s)
+            machines.update({(one.name, one.step_s): one for one in self._header.rules})
+        return replace(self._header, rules=tuple(machines[key] for key in keys))
+
+
+def _key(rule: Rule, step_s: Fraction | None) -> tuple[str, Fraction | None]:
+    """A rule's name, and the step that its machine is for."""
+    if not speaks_of_seconds(rule.formula):
+        return rule.name, None
+    return rule.name, rule.step_s if step_s is None else step_s
