@@ -114,11 +114,10 @@ def parameter_is_a_number(item: tree.SetItem) -> Diagnostic:
 def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
     """``soften`` of a soft rule, without a new place or weight."""
     return Diagnostic(
-        "R0216",
+        "R0212",
         f"rule `{item.name.text}` is soft already",
         item.name.span.place,
         expected="nothing changes",
         help="leave the line out",
         labels=(Label(known.name.span.place, "inherited from here"),),
-        severity="warning",
     )
