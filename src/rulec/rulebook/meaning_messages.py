@@ -246,11 +246,10 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
     """A temporal operator in a count's body or a parameter."""
     return Diagnostic(
         "R0319",
-        f"`{node.operator}` cannot stand here: what is counted and what a parameter depends on is "
-        "one state",
+        f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",
         node.span.place,
         expected="expected a formula about one state",
-        help="put the operator around the `some`, `every` or `count`, or give the rule a variable",
+        help="put the operator around it, or give the rule a variable",
     )
 
 

@@ -81,6 +81,15 @@ class SourceFile:
 
 
 @dataclass(frozen=True, slots=True)
+class Fact:
+    """What holds in every state, for distinct objects of the variables' types."""
+
+    variables: tuple[Variable, ...]
+    formula: Formula
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Remark:
     """A rule that was dropped, or a topic that the rulebook is silent on, and why."""
 
@@ -112,3 +121,4 @@ class Rulebook:
     priorities: frozenset[tuple[str, str]] = frozenset()
     remarks: tuple[Remark, ...] = ()
     at: str = ""
+    facts: tuple[Fact, ...] = ()

@@ -8,10 +8,11 @@ from typing import Literal
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import Declared, declare
+from rulec.rulebook.facts import fact_of
 from rulec.rulebook.meaning import number
 from rulec.rulebook.meaning_messages import unknown_dimension
-from rulec.rulebook.model import Rule, Rulebook, SourceFile
-from rulec.rulebook.overlay import overlay
+from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
+from rulec.rulebook.overlay import Overlay, overlay
 from rulec.rulebook.parameters import parameter
 from rulec.rulebook.priorities import pre_order
 from rulec.rulebook.provisions import Provisions, in_force
@@ -55,6 +56,12 @@ def resolve(
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
     mistakes += _provisions(declared, provisions)
+    facts: list[Fact] = []
+    for fact in (item for one in (*vocabularies, *books) for item in one.items):
+        if isinstance(fact, tree.FactItem):
+            known, found = fact_of(fact, declared, provisions)
+            mistakes += found
+            facts += [known] if known is not None else []
     rules: list[Rule | None] = []
     for entry in laid.rules.values():
         rule, found = translate_rule(entry, declared, provisions, levels)
@@ -85,6 +92,7 @@ def resolve(
         priorities,
         tuple(laid.remarks),
         at,
+        tuple(facts),
     )
     return rulebook, tuple(mistakes)
 
@@ -92,8 +100,13 @@ def resolve(
 def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagnostic, ...]]:
     """A vocabulary by itself, and what is wrong with it."""
     declared = declare([file])
-    if file.name is None or declared.mistakes:
-        return None, tuple(declared.mistakes)
+    mistakes = list(declared.mistakes)
+    provisions = Provisions(Overlay(), "")
+    for item in file.items:
+        if isinstance(item, tree.FactItem):
+            mistakes += fact_of(item, declared, provisions)[1]
+    if file.name is None or mistakes:
+        return None, tuple(mistakes)
     return declared.vocabulary(file.name.text), ()
 
 

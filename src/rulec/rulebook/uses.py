@@ -23,35 +23,49 @@ def names_used(item: tree.Item) -> Iterator[str]:
             return
 
 
-def names_in(formula: tree.Formula) -> Iterator[str]:
-    """Every name in a formula, with repetitions."""
+def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
+    """Every name in a formula with its arguments, with repetitions; not those in bounds."""
     match formula:
-        case tree.AtomUse(name, arguments):
-            yield name.text
-            yield from (one.text for one in arguments)
-        case tree.Prefix(operand=operand, bound=bound):
-            yield from names_in(operand)
-            yield from _in_bound(bound)
-        case tree.Infix(left=left, right=right, bound=bound):
-            yield from names_in(left)
-            yield from names_in(right)
-            yield from _in_bound(bound)
-        case tree.Compare(left=left, right=right) | tree.Arithmetic(left=left, right=right):
-            yield from names_in(left)
-            yield from names_in(right)
-        case tree.Minus(operand):
-            yield from names_in(operand)
+        case tree.AtomUse():
+            yield formula
+        case tree.Prefix(operand=operand) | tree.Minus(operand) | tree.Aggregate(body=operand):
+            yield from atoms_in(operand)
+        case (
+            tree.Infix(left=left, right=right)
+            | tree.Compare(left=left, right=right)
+            | tree.Arithmetic(left=left, right=right)
+        ):
+            yield from atoms_in(left)
+            yield from atoms_in(right)
         case tree.Conditional(value, condition, otherwise):
             for part in (value, condition, otherwise):
-                yield from names_in(part)
-        case tree.Aggregate(body=body):
-            yield from names_in(body)
+                yield from atoms_in(part)
         case tree.Truth() | tree.Number():
             return
 
 
-def _in_bound(bound: tree.Bound | None) -> Iterator[str]:
-    if bound is not None:
+def names_in(formula: tree.Formula) -> Iterator[str]:
+    """Every name in a formula, those in bounds included, with repetitions."""
+    for use in atoms_in(formula):
+        yield use.name.text
+        yield from (one.text for one in use.arguments)
+    for bound in _bounds(formula):
         for side in (bound.low, bound.high):
-            if side is not None:
-                yield from names_in(side)
+            if isinstance(side, tree.AtomUse):
+                yield side.name.text
+
+
+def _bounds(formula: tree.Formula) -> Iterator[tree.Bound]:
+    match formula:
+        case tree.Prefix(operand=operand, bound=bound):
+            if bound is not None:
+                yield bound
+            yield from _bounds(operand)
+        case tree.Infix(left=left, right=right, bound=bound):
+            if bound is not None:
+                yield bound
+            yield from _bounds(left)
+            yield from _bounds(right)
+        case _:
+            # In anything else there is no temporal operator.
+            return

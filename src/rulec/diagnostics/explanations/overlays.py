@@ -71,7 +71,7 @@ OVERLAY_NAMES = {
         "A rule's place, such as `in legal`, is one of the levels that the `priority` lines of the "
         "rulebook, or of those that it extends, put in order.",
         "rulebook example\npriority safety > legal\nsignal wet\n"
-        "hard rule r in law { require not wet }\n",
+        "hard rule r in lawful { require not wet }\n",
         "rulebook example\npriority safety > legal\nsignal wet\n"
         "hard rule r in legal { require not wet }\n",
     ),
@@ -134,7 +134,7 @@ OVERLAY_MEANING = {
         "hard rule r { require eventually wet unless fog initially }\n",
     ),
     "R0319": Explanation(
-        "a temporal operator stands in a count or a parameter",
+        "a temporal operator stands in a count, a parameter or a fact",
         "The words `some`, `every` and `count` go over the objects of one moment, and a "
         "parameter is a number "
         "of one moment. What happens to one object over time is said by a variable of the rule.",
