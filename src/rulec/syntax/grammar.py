@@ -7,8 +7,7 @@ from functools import cache
 from typing import Literal
 
 from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
-from lark.parsers.lalr_interactive_parser import InteractiveParser
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rulec.resources import grammar_file
 
@@ -69,7 +68,8 @@ def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Misma
         # quadratic time in all.
         tree = _lark().parse(text[begin:end], start=start)
     except UnexpectedInput as error:
-        return Mismatch(begin + _position(error, end - begin), _accepted(error))
+        position = begin + _position(error, end - begin)
+        return Mismatch(position, _accepted(start, text[begin:position]))
     return _neutral(tree, begin)
 
 
@@ -91,12 +91,15 @@ def _position(error: UnexpectedInput, end: int) -> int:
     return end if error.pos_in_stream is None else error.pos_in_stream
 
 
-def _accepted(error: UnexpectedInput) -> frozenset[str]:
-    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
-    state = getattr(error, "interactive_parser", None)
-    if isinstance(state, InteractiveParser):
-        return frozenset(state.accepts())  # type: ignore[no-untyped-call]
-    return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
+def _accepted(start: Start, good: str) -> frozenset[str]:
+    """What could follow the part that can be read.
+
+    It is read anew: what the error itself knows was found after the parser had made up its mind,
+    seeing the wrong token, and leaves out much of what could have come.
+    """
+    state = _lark().parse_interactive(good, start=start)
+    state.exhaust_lexer()
+    return frozenset(state.accepts())  # type: ignore[no-untyped-call]
 
 
 def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:

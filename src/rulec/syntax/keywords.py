@@ -26,6 +26,14 @@ CLAUSE_WORDS: Final = frozenset(
 )
 """The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
 
+CONTEXTUAL: Final = frozenset(
+    (
+        *("left", "right", "stutter", "finite", "on", "off", "verified", "secondary", "unverified"),
+        *("weight", "force", "from"),
+    )
+)
+"""Words in their place only; elsewhere they may be names."""
+
 OPERATOR_WORDS: Final = frozenset(
     (
         *("not", "and", "or", "implies", "iff", "xor", "then"),

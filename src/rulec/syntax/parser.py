@@ -21,7 +21,8 @@ from rulec.syntax.text import checked
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""
 
-_BEHIND_NAME = ("is", "in", "default", "(")
+_BEHIND_NAME = ("is", "in", "default", "(", "=", ":")
+_NAMING_PROVISIONS = ("option", "param", "define")
 
 _NOTHING = tree.File("rulebook", None, complete=False)
 """The tree of a file that cannot be read at all."""
@@ -132,7 +133,8 @@ class _Reader:
         words = self.tokens[piece.first : piece.last]
         names = {token.text for token in words if token.kind == "word"} - RESERVED
         first = words[0].text
-        nameless = first in DECLARATION_WORDS and (len(words) < 2 or words[1].text in _BEHIND_NAME)
+        names_one = first in (*DECLARATION_WORDS, *_NAMING_PROVISIONS)
+        nameless = names_one and (len(words) < 2 or words[1].text in _BEHIND_NAME)
         span = span_of(self.source, self.tokens, piece)
         return tree.BrokenItem(frozenset(names), span, first, nameless)
 

@@ -88,6 +88,8 @@ class RuleSplitter:
         It is a name on a line of its own where a formula cannot have one: behind something
         complete, behind ``cite`` and ``says``, before a brace or a text.
         """
+        if self.tokens[index].first and self.marks.is_word(index, "in"):
+            return True
         if not (self.tokens[index].first and self.marks.is_name(index)):
             return False
         if self.marks.begins_misspelt(index):
