@@ -235,15 +235,22 @@ def _until_like(operator: BinaryOperator, bound: Bound | None, *, inside: bool) 
 
 def _between(pattern: str, left: Formula, right: Formula, *, inside: bool) -> Phrase:
     """Clauses in the places of a pattern; what is more than a clause goes to a list below it."""
-    sides = (phrase(left, inside=inside), phrase(right, inside=inside))
-    return _placed(pattern, sides, Shape.CLAUSE)
+    first, last = phrase(left, inside=inside), phrase(right, inside=inside)
+    if last.shape is Shape.JOINED and pattern.endswith("{}"):
+        last = Phrase(_together(last), Shape.CLAUSE)
+    return _placed(pattern, (first, last), Shape.CLAUSE)
 
 
 def _placed(pattern: str, sides: Sequence[Phrase], most: Shape) -> Phrase:
-    items = tuple(side for side in sides if side.shape > most)
-    places = [label(items.index(side)) if side in items else side.text for side in sides]
+    items: list[Phrase] = []
+    places = []
+    for side in sides:
+        places.append(side.text if side.shape <= most else label(len(items)))
+        items += [side] if side.shape > most else []
     text = pattern.format(*places)
-    return Phrase(f"{text}, where:", Shape.LIST, items) if items else Phrase(text, Shape.LINE)
+    if not items:
+        return Phrase(text, Shape.LINE)
+    return Phrase(f"{text}, where:", Shape.LIST, tuple(items))
 
 
 def _condition(left: Phrase, right: Phrase) -> Phrase:
