@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import unicodedata
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from textwrap import wrap
 
 from rulec.report.automaton import Automaton, Transition
@@ -16,7 +18,10 @@ CHARACTER = 7.3
 
 LINE = 16.0
 STATE_HEIGHT = 34.0
-LAYER_GAP = 30.0
+LAYER_GAP = 26.0
+MORE_GAP = 2.0
+"""The more lines there are between two layers, the more room they need to be told apart."""
+
 LOOP = 30.0
 MARGIN = 12.0
 PORT = 20.0
@@ -153,13 +158,13 @@ class _Layout:
         links = []
         for _, way in self._ways:
             downward = self._layer_of(way[0]) < self._layer_of(way[-1])
-            steps = zip(way, way[1:], strict=False)
-            links += [(a, b) if downward else (b, a) for a, b in steps]
+            links += [(a, b) if downward else (b, a) for a, b in pairwise(way)]
         x = arrange(self._layers, self._boxes, links)
-        tops, bottom = [], LAYER_GAP + MARGIN
-        for layer in self._layers:
-            tops.append(bottom)
-            bottom += max(self._heights[box] for box in layer) + LAYER_GAP
+        into = Counter(self._layer_of(lower) for _, lower in links)
+        tops, bottom = [], MARGIN
+        for number, layer in enumerate(self._layers):
+            tops.append(bottom + LAYER_GAP + MORE_GAP * into[number])
+            bottom = tops[-1] + max(self._heights[box] for box in layer)
         y = {
             box: top + max(self._heights[one] for one in layer) / 2
             for layer, top in zip(self._layers, tops, strict=True)
@@ -170,7 +175,9 @@ class _Layout:
             for state, text in enumerate(self._texts)
         )
         width = max(x[box] + self._boxes[box].right for box in x)
-        return Drawing(width, bottom, states, (*self._lines(x, y), *self._loop_lines(states)))
+        return Drawing(
+            width, bottom + LAYER_GAP, states, (*self._lines(x, y), *self._loop_lines(states))
+        )
 
     def _layer_of(self, box: int) -> int:
         return next(number for number, layer in enumerate(self._layers) if box in layer)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from html import escape
+from itertools import pairwise
 
 from rulec.report.automaton import Automaton
 from rulec.report.automaton_drawing import LINE, STATE_HEIGHT, Drawing, State, draw, text_width
@@ -12,7 +13,7 @@ from rulec.report.excerpt import visible
 
 MARGIN = 14.0
 
-# The verdict is told by dashes and words; the colours, which the colour-blind tell apart too, repeat it.
+# Dashes and words tell the verdict; the colours, of which nobody is blind to both, repeat it.
 _STYLE = """\
 .ground { fill: #ffffff } .ink { fill: #1b1f24 }
 text { font: 12px ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace }
@@ -50,15 +51,16 @@ def as_svg(automaton: Automaton, name: str) -> str:
     width += 2 * MARGIN
     height = drawing.height + 3 * MARGIN + LINE * (1 + len(legend))
     shift = (width - 2 * MARGIN - drawing.width) / 2 + MARGIN
+    size = f'width="{width:.0f}" height="{height:.0f}"'
+    box = f"0 0 {width:.0f} {height:.0f}"
+    head = f'<text class="ink" x="{MARGIN}" y="{MARGIN + 10}" font-weight="bold">'
     return "\n".join(
         [
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
-            f'viewBox="0 0 {width:.0f} {height:.0f}" role="img">',
+            f'<svg xmlns="http://www.w3.org/2000/svg" {size} viewBox="{box}">',
             f"<title>{escape(title)}</title>",
             f"<style>\n{_STYLE}\n</style>",
-            f'<rect class="ground" width="{width:.0f}" height="{height:.0f}"/>',
-            f'<text class="ink" x="{MARGIN}" y="{MARGIN + 10}" font-weight="bold">'
-            f"{escape(title)}</text>",
+            f'<rect class="ground" {size}/>',
+            f"{head}{escape(title)}</text>",
             f'<g transform="translate({shift:.1f} {MARGIN + LINE:.1f})">',
             *_body(drawing, automaton),
             "</g>",
@@ -86,14 +88,14 @@ def _line(line: Drawn) -> Iterator[str]:
     (x, y), *rest = line.points
     path = f"M{x:.1f} {y:.1f}"
     if one.source == one.target:
-        (over_x, over_y), (end_x, end_y) = rest
-        side = 1 if over_x > x else -1
-        bulge = over_x + side * 6
-        path += f" C{bulge:.1f} {y - 6:.1f} {bulge:.1f} {end_y + 6:.1f} {end_x + side * 6:.1f} {end_y:.1f}"
+        (over, _), (end_x, end_y) = rest
+        side = 1 if over > x else -1
+        out = f"{over + side * 6:.1f}"
+        path += f" C{out} {y - 6:.1f} {out} {end_y + 6:.1f} {end_x + side * 6:.1f} {end_y:.1f}"
         tip, way = (end_x, end_y), (-side, 0)
     else:
         down = 1 if line.points[-1][1] > y else -1
-        for before, (to_x, to_y) in zip(line.points, rest, strict=False):
+        for before, (to_x, to_y) in pairwise(line.points):
             if (to_x, to_y) == line.points[-1]:
                 to_y -= 6 * down
             half = (before[1] + to_y) / 2

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 SWEEPS = 24
 
@@ -68,7 +69,7 @@ def _mean(boxes: Sequence[int], place: Mapping[int, float], otherwise: float) ->
 
 def _crossings(layers: Sequence[Sequence[int]], below: Mapping[int, list[int]]) -> int:
     total = 0
-    for upper, lower in zip(layers, layers[1:], strict=False):
+    for upper, lower in pairwise(layers):
         place = {box: index for index, box in enumerate(lower)}
         ends = [sorted(place[box] for box in below[first]) for first in upper]
         for number, mine in enumerate(ends):
