@@ -15,21 +15,13 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
+from rulec.rulebook.model import Exemption, ExemptionScope
 from rulec.rulebook.numbers import all_of, any_of, negated
-from rulec.syntax.tree import Scope
 
 _AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL
 
 MOST_THROUGHOUT = 4
 """Exceptions of one rule that have to hold throughout; the formula grows exponentially in them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Exemption:
-    """The rule does not count where ``formula`` holds as ``scope`` says."""
-
-    formula: Formula
-    scope: Scope
 
 
 class NoStretchError(Exception):
@@ -88,7 +80,7 @@ def _phases(formula: Formula) -> list[_Phase]:
 
 def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
     """The sequence of these phases as far as no exemption exempts it."""
-    denied: dict[Scope, list[Formula]] = {}
+    denied: dict[ExemptionScope, list[Formula]] = {}
     for one in exemptions:
         denied.setdefault(one.scope, []).append(negated(one.formula))
     if len(phases) == 1:

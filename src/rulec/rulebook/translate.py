@@ -16,13 +16,12 @@ from rulec.rulebook.examples import example_of
 from rulec.rulebook.exceptions import (
     MOST_THROUGHOUT,
     BoundedPhaseError,
-    Exemption,
     NoStretchError,
     TooManyExceptionsError,
     exempted,
 )
 from rulec.rulebook.meaning import meaning, number, truth
-from rulec.rulebook.model import Rule, Variable
+from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.numbers import negated
 from rulec.rulebook.overlay import RuleEntry
 from rulec.rulebook.provisions import Provisions
@@ -46,8 +45,12 @@ def translate_rule(
     variables = variables_of(item.variables, declared, mistakes)
     scope = Scope(declared, provisions, variables, mistakes)
     provisions.expansions = 0
-    formula = None if item.require is None else truth(item.require, scope)
-    formula = _with_exceptions(item, formula, scope)
+    required = None if item.require is None else truth(item.require, scope)
+    exemptions = _exemptions(item, scope)
+    condition = None if item.when is None else truth(item.when, scope)
+    formula = None
+    if required is not None and exemptions is not None and (condition or item.when is None):
+        formula = _with_exceptions(item, required, exemptions, condition, scope)
     if formula is not None and too_deep(formula):
         scope.report(rule_messages.too_deep(item, DEEPEST))
     if item.complete and formula is not None:
@@ -79,6 +82,9 @@ def translate_rule(
         dates.until,
         entry.book.name.text if entry.book.name else "",
         step,
+        required if exemptions or condition else None,
+        tuple(exemptions or ()),
+        condition,
     )
     return rule, mistakes
 
@@ -152,24 +158,26 @@ def variables_of(
     return found
 
 
-def _with_exceptions(item: tree.RuleItem, formula: Formula | None, scope: Scope) -> Formula | None:
-    """The formula with ``unless`` and ``when``."""
-    exemptions: list[Exemption] = []
-    whole = True
-    for one in item.unless:
-        found = truth(one.formula, scope)
-        if found is None:
-            whole = False
-        else:
-            exemptions.append(Exemption(found, one.scope or "throughout"))
-    when = None if item.when is None else truth(item.when, scope)
-    if formula is None or not whole or (when is None and item.when is not None):
-        return None
-    if when is not None:
+def _exemptions(item: tree.RuleItem, scope: Scope) -> list[Exemption] | None:
+    """What `unless` says; None if it has a mistake, which is then reported."""
+    found = [(truth(one.formula, scope), one.scope or "throughout") for one in item.unless]
+    good = [Exemption(formula, when) for formula, when in found if formula is not None]
+    return good if len(good) == len(found) else None
+
+
+def _with_exceptions(
+    item: tree.RuleItem,
+    formula: Formula,
+    exemptions: list[Exemption],
+    condition: Formula | None,
+    scope: Scope,
+) -> Formula | None:
+    """The formula with `unless` and `when`; None if they don't fit it, which is then reported."""
+    if condition is not None:
         if _guards_a_stretch(formula):
-            exemptions.append(Exemption(negated(when), "at some point"))
+            exemptions = [*exemptions, Exemption(negated(condition), "at some point")]
         else:
-            formula = Binary(BinaryOperator.IMPLIES, when, formula)
+            formula = Binary(BinaryOperator.IMPLIES, condition, formula)
     try:
         return exempted(formula, exemptions)
     except NoStretchError:
