@@ -232,6 +232,8 @@ def _operators(scene: Scene) -> str:
         return "`weak` stands before `until`, `next` or `previously`"
     if "strong" in (before, text):
         return "`strong` stands before `release`"
+    if scene.operand and text == "{":
+        return "a formula stands in parentheses, or alone, but not in braces"
     if scene.operand and text in _RELATIONS and text != "=":
         return "say what is compared, such as `speed <= 50 km/h`"
     return ""

@@ -6,7 +6,13 @@ from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
-from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
+from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
+    ITEM_WORDS,
+    OPERATOR_LETTERS,
+    PROVISION_WORDS,
+    RESERVED,
+)
 from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.expectations import in_words
 from rulec.syntax.messages.in_items import other_word
@@ -49,6 +55,9 @@ _WHAT = {
     "accept": "the example",
     "reject": "the example",
 }
+_CLAUSE_BEGINS = CLAUSE_WORDS | {"throughout", "initially"}
+"""What may stand first on a line of a rule: clauses, and the scope of the exception above."""
+
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
 
 
@@ -95,7 +104,7 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
         f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected a clause such as `require` or `accept`",
-        help=did_you_mean(found.text, CLAUSE_WORDS) or other_clause(found.text) or formula,
+        help=did_you_mean(found.text, _CLAUSE_BEGINS) or other_clause(found.text) or formula,
     )
 
 
@@ -151,8 +160,8 @@ def _is_word_for_name(scene: Scene) -> bool:
         return False
     if "NAME" not in scene.accepted:
         return False
-    if found.text in ("because", "rule") and scene.kind == "item":
-        return False
+    if found.text in ("because", "rule") and scene.first in PROVISION_WORDS:
+        return False  # the name before it is missing, or `rule` stands where it need not
     if scene.operand or scene.quantity:
         return found.text in ITEM_WORDS | CLAUSE_WORDS
     return scene.kind != "state" or found.text in ITEM_WORDS | CLAUSE_WORDS
