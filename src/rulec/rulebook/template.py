@@ -13,7 +13,7 @@ _TEXT = """\
 rulebook {name}
 title "What this rulebook is about"
 law   "The law that it puts into rules" as of {today}
-use   road      # station, lateral, surface, congested; and types such as vehicle and pedestrian
+use   road  # station, lateral, surface, congested; and types such as vehicle and pedestrian
 
 # A hard rule must never be violated, a soft rule may yield. It holds for every vehicle v.
 hard rule overtake_on_the_left (v: vehicle) {{
@@ -23,14 +23,19 @@ hard rule overtake_on_the_left (v: vehicle) {{
 
   # What the rule allows and what it forbids, state by state; what is not said has its default.
   accept "on the left" {{
-    behind(v) and same_lane(v); beside(v) and left_of(v); in_front_of(v) and same_lane(v)
+    behind(v) and same_lane(v);
+    beside(v) and left_of(v);
+    in_front_of(v) and same_lane(v)
   }}
   accept "in a queue" {{
     congested and behind(v) and right_of(v);
-    beside(v) and right_of(v); in_front_of(v) and right_of(v)
+    beside(v) and right_of(v);
+    in_front_of(v) and right_of(v)
   }}
   reject "on the right" {{
-    behind(v) and same_lane(v); beside(v) and right_of(v); in_front_of(v) and same_lane(v)
+    behind(v) and same_lane(v);
+    beside(v) and right_of(v);
+    in_front_of(v) and same_lane(v)
   }}
 }}
 """
