@@ -152,7 +152,7 @@ def _after(lead: str, scope: Phrase) -> Phrase:
     if scope.shape is Shape.JOINED and lead.endswith("that"):
         return Phrase(f"{lead} {_together(scope)}", Shape.LINE)
     # A pause is made where more than a clause follows, unless there is one or `that` forbids it.
-    runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith("it ")
+    runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith(("it ", "there "))
     pause = "" if runs_on or lead.endswith(("that", "which", ",")) else ","
     shape = Shape.LINE if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
     return replace(scope, text=f"{lead}{pause} {scope.text}", shape=shape)

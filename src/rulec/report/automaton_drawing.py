@@ -29,7 +29,7 @@ WIDEST = 30
 MOST_LINES = 5
 
 MOST_STATES = 40
-MOST_TRANSITIONS = 120
+MOST_TRANSITIONS = 80
 """Beyond this nobody finds their way through a picture."""
 
 Point = tuple[float, float]
