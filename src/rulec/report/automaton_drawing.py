@@ -10,7 +10,6 @@ from itertools import pairwise
 from textwrap import wrap
 
 from rulec.report.automaton import Automaton, Transition
-from rulec.report.excerpt import visible
 from rulec.report.layered import Box, arrange
 
 CHARACTER = 7.3
@@ -90,7 +89,7 @@ def _columns(character: str) -> int:
 
 
 def _broken(text: str) -> tuple[str, ...]:
-    lines = wrap(visible(text), WIDEST)
+    lines = wrap(text, WIDEST)
     if len(lines) > MOST_LINES:
         lines = [*lines[: MOST_LINES - 1], f"{lines[MOST_LINES - 1][: WIDEST - 2]} …"]
     return tuple(lines)

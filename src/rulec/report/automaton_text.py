@@ -11,6 +11,9 @@ from rulec.report.automaton import Automaton, Transition
 
 WORDS = {True: "accepted", False: "rejected"}
 
+MOST_LINES = 6
+"""Of a condition that takes more lines only the beginning is shown: nobody would read it."""
+
 _FINAL = {
     "violated": "violated for good: whatever follows, the trace is rejected",
     "satisfied": "satisfied for good: whatever follows, the trace is accepted",
@@ -42,9 +45,14 @@ def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[
     ordered += [one for one in transitions if one.otherwise]
     targets = ["stays" if one.target == state else f"to state {one.target}" for one in ordered]
     room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
-    labels = [wrap(one.label, room, subsequent_indent="  ") for one in ordered]
+    labels = [_broken(one.label, room) for one in ordered]
     widest = max(len(line) for lines in labels for line in lines)
     column = max(map(len, targets))
     for one, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
         yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[one.accepted]}"
         yield from (f"  {line}" for line in rest)
+
+
+def _broken(label: str, room: int) -> list[str]:
+    lines = wrap(label, room, subsequent_indent="  ")
+    return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  … (all: --json)"]

@@ -179,7 +179,7 @@ def as_json(
                     {
                         "source": one.source,
                         "target": one.target,
-                        "condition": visible(one.condition),
+                        "condition": one.condition,
                         "otherwise": one.otherwise,
                         "accepted": one.accepted,
                     }

@@ -44,6 +44,9 @@ class Witnesses:
         self._vocabulary = vocabulary
         self._states: dict[int, Witness | None] = {}
         self._digits = [self._split(letter) for letter in range(len(rule.machine.letters))]
+        self._members: list[list[int]] = [[] for _ in rule.machine.following[0]]
+        for letter, symbol in enumerate(rule.machine.letters):
+            self._members[symbol].append(letter)
         self._plain = tuple(self._usual(read) for read in rule.machine.reads)
 
     def plainest(self, symbol: int) -> int | None:
@@ -84,9 +87,10 @@ class Witnesses:
         return 0 if default is None else read.digit(default)
 
     def _closest(self, symbol: int, digits: tuple[int, ...]) -> int | None:
-        members = [n for n, one in enumerate(self._machine.letters) if one == symbol]
-        members.sort(key=lambda one: (_distance(self._digits[one], digits), one))
-        return next((one for one in members if self.state(one) is not None), None)
+        alike = sorted(
+            self._members[symbol], key=lambda one: (_distance(self._digits[one], digits), one)
+        )
+        return next((one for one in alike if self.state(one) is not None), None)
 
     def _state(self, letter: int) -> Witness | None:
         facts: dict[tuple[str, tuple[str, ...]], bool | str | float] = {}
