@@ -159,8 +159,8 @@ def test_all_of_it_as_data(capsys):
     assert data["rulebook"] == "esterle2019"
     assert rule["cite"] == "Article 21.3"
     assert rule["sentence"].startswith("For every pedestrian p: at all times it is not the case")
-    assert rule["accepts"] == ["f(p)"]
-    assert rule["rejects"] == ["R_pc and f(p)"]
+    assert rule["accepts"] == {"objects": [], "states": ["f(p)"], "remarks": []}
+    assert rule["rejects"]["states"] == ["R_pc and f(p)"]
     assert [one["fate"] for one in rule["automaton"]["states"]] == ["open", "violated"]
     stays = {
         "source": 0,
@@ -204,8 +204,8 @@ def test_the_shortest_traces_can_be_pasted(capsys):
 
         page = page_of(bare.rules[0], compile_rulebook(bare).rules[0], bare.vocabulary)
         examples = " ".join(
-            f"{word} {{ {'; '.join(states)} }}"
-            for word, states in (("accept", page.accepted), ("reject", page.rejected))
+            f"{word} {{ {'; '.join(trace.states)} }}"
+            for word, trace in (("accept", page.accepted), ("reject", page.rejected))
         )
         pasted = parse_rulebook(book.format(formula=formula, examples=examples))
         run = run_all(pasted, compile_rulebook(pasted))

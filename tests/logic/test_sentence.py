@@ -125,9 +125,13 @@ def counting(relation, limit, body=BEHIND):
         ),
         (
             Binary(IMPLIES, Unary(ALWAYS, Binary(OR, HORN, FOG)), HORN),
+            "If at all times, “horn” holds or “fog” holds, then “horn” holds at the start.",
+        ),
+        (
+            Binary(IMPLIES, Binary(OR, FOG, Unary(ALWAYS, HORN)), HORN),
             (
-                "If (a), then “horn” holds at the start, where: (a) at all times, “horn” holds or "
-                "“fog” holds."
+                "If (a), then “horn” holds at the start, where: (a) “fog” holds at the start, or "
+                "at all times “horn” holds."
             ),
         ),
     ],

@@ -13,7 +13,6 @@ from rulec.automata.machine import Machine, NumberRead, Threshold
 from rulec.logic.formula import Atom, Comparison, Count, Quantity
 from rulec.report.automaton import automaton_of
 from rulec.report.conditions import Wording
-from rulec.runtime.witness import Witness
 
 SPEED = {0: Fraction(2), 1: Fraction(3), 2: Fraction(4), 3: Fraction(7)}
 """A number for each digit of the speed that is read."""
@@ -171,5 +170,5 @@ def test_the_state_of_an_example():
     machine = Machine(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
     wording = Wording(rule_with(machine), VOCABULARY)
     facts = {("p", ()): True, ("q", ()): False, ("place", ("x",)): "far", ("speed", ()): 0.1}
-    assert wording.state(Witness(facts)) == "p and not q and far(x) and speed = 0.1 km/h"
-    assert wording.state(Witness({})) == "true"
+    assert wording.state(facts) == "p and not q and far(x) and speed = 0.1 km/h"
+    assert wording.state({}) == "true"

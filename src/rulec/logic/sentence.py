@@ -46,9 +46,11 @@ class Shape(IntEnum):
     """Adverbs before one clause: they reach to the end."""
     JOINED = 2
     """Clauses joined by one ``and`` or ``or``."""
-    LINE = 3
+    REACHING = 3
+    """Adverbs before joined clauses."""
+    LINE = 4
     """Anything else that is one line."""
-    LIST = 4
+    LIST = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,11 +151,11 @@ def _clause(formula: Formula, *, holds: bool) -> str | None:
 def _after(lead: str, scope: Phrase) -> Phrase:
     """Words at the head of a line, which reach to its end, or over the list that it introduces."""
     if scope.shape is Shape.JOINED and lead.endswith("that"):
-        return Phrase(f"{lead} {_together(scope)}", Shape.LINE)
+        return Phrase(f"{lead} {_together(scope)}", Shape.REACHING)
     # A pause is made where more than a clause follows, unless there is one or `that` forbids it.
     runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith(("it ", "there "))
     pause = "" if runs_on or lead.endswith(("that", "which", ",")) else ","
-    shape = Shape.LINE if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
+    shape = Shape.REACHING if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
     return replace(scope, text=f"{lead}{pause} {scope.text}", shape=shape)
 
 
@@ -186,8 +188,8 @@ def _placed(pattern: str, sides: Sequence[Phrase], most: Shape) -> Phrase:
 
 
 def _condition(left: Phrase, right: Phrase) -> Phrase:
-    if left.shape > Shape.JOINED:
-        return _placed("if {}, then {}", (left, right), Shape.JOINED)
+    if left.shape > Shape.REACHING:
+        return _placed("if {}, then {}", (left, right), Shape.REACHING)
     shape = Shape.LIST if right.shape is Shape.LIST else Shape.LINE
     return replace(right, text=f"if {left.text}, then {right.text}", shape=shape)
 
