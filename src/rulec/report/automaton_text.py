@@ -23,12 +23,14 @@ _FINAL = {
 def as_text(automaton: Automaton, width: int) -> str:
     """A paragraph for each state; the last column is the verdict on a trace that ends there."""
     number = len(automaton.fates)
-    lines = [f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"]
+    head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
     if automaton.transitions:
-        lines[0] += ", and is accepted or rejected as it says behind its last step"
+        head += ", and is accepted or rejected as it says behind its last step"
+    lines = wrap(head, width)
     for state, fate in enumerate(automaton.fates):
         if fate != "open":
-            lines.append(f"state {state}: {click.style(_FINAL[fate], fg=_COLORS[fate])}")
+            final = wrap(f"state {state}: {_FINAL[fate]}", width, subsequent_indent="  ")
+            lines += [click.style(line, fg=_COLORS[fate]) for line in final]
             continue
         lines.append(f"state {state}")
         lines += _leaving(

@@ -159,7 +159,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
         "transitions; --automaton text lists them"
     )
     if page.step_s is not None:
-        automaton = f"for traces with steps of {amount(page.step_s, 's')}: {automaton}"
+        automaton = f"for traces with steps of {amount(page.step_s, 's')}:\n{automaton}"
     sections = [
         ("in English", in_english(phrase_of(page.rule, vocabulary), width)),
         ("formula", _indented(formula)),
