@@ -156,7 +156,9 @@ def _read_term(data: Any, depth: int) -> tuple[Fraction, Term]:
             coefficient,
             {"count": str(variable), "type": str(type_name), "body": body} as term,
         ] if len(term) == 3:
-            return number_from_data(coefficient), Count(variable, type_name, from_data(body, depth + 1))
+            return number_from_data(coefficient), Count(
+                variable, type_name, from_data(body, depth + 1)
+            )
     raise ValueError("a term of a comparison is neither a quantity nor a count")
 
 
