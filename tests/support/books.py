@@ -51,10 +51,20 @@ def compile_here(rulebook):
 
     compiled = []
     for one in rulebook.rules:
-        job = compiler._job(rulebook, one, cpu_limit_s=5)
-        compiled.append(compiler._compiled(one, _answer(job)))
+        step = compiler._step(one, None)
+        job = compiler._job(rulebook, one, step, cpu_limit_s=5)
+        compiled.append(compiler._compiled(one, step, _answer(job)))
     return CompiledRulebook(
-        rulebook.name, rulebook.vocabulary, tuple(compiled), "", "", "", (), "", spot_bridge.VERSION
+        rulebook.name,
+        rulebook.vocabulary,
+        tuple(compiled),
+        "",
+        "",
+        "",
+        (),
+        "",
+        spot_bridge.VERSION,
+        rulebook.semantics,
     )
 
 
