@@ -10,12 +10,11 @@ from rulec.automata import any_step
 from rulec.automata.any_step import AnyStep
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Bound, Unary, UnaryOperator
-from rulec.maneuvers import judged
 from rulec.runtime.product import instances
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph
-from rulec.workflow import compile_rulebook, find_maneuvers, machines, navigation_graph
+from rulec.workflow import compile_rulebook, machines
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 
@@ -35,8 +34,8 @@ def trace(text, step_s):
     return Trace("t", step_s, {}, states, place=Place("t.jsonl", 3))
 
 
-def violated(judged):
-    return [one.rule for one in judged.violations]
+def violated(verdict):
+    return [one.rule for one in verdict.violations]
 
 
 @pytest.mark.parametrize(
