@@ -103,7 +103,7 @@ def _guessed(formula: Formula, memories: Sequence[Memory], wording: Wording) -> 
     guessing = wording.translated(wording.language([wording.said(formula), *defined]), "small")
     projection = spot.remove_ap()
     for memory in memories:
-        projection.add_ap(wording.said(memory.atom))
+        projection.add_ap(wording.said(memory.atom).ap_name())
     return spot.postprocess(projection.strip(guessing), *_SHAPE)
 
 
