@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 from books import P, Q, always, book, both, compile_here, eventually, far, implies, near, no, rule
+from click import unstyle
 from hypothesis import assume, given
 from measured import MEASURED, SPEED, closer, gap, number, others_near
 from words import formulas, letters, words
@@ -120,7 +121,7 @@ def test_a_number_stands_out_when_it_passes_a_limit_not_whenever_it_changes():
         "gap(v) < 1.5 m": True,
         "speed > 30 km/h": False,
     }
-    rows = [line.split() for line in report.as_text(found).splitlines()]
+    rows = [line.split() for line in unstyle(report.as_text(found)).splitlines()]
     assert ["gap(a)", "in", "m", "3", "2.5", "1.4*"] in rows
     assert ["speed", "in", "km/h", "43", "42.5", "41.4"] in rows
     data = report.as_data(found)
@@ -156,7 +157,7 @@ def test_a_count_says_whom_it_counts():
     assert fact.values == (0, 1, 2)
     assert fact.objects == ((), ("b",), ("b", "c"))
     assert fact.changed
-    text = report.as_text(found)
+    text = unstyle(report.as_text(found))
     assert "2: b, c*" in text
     assert report.as_data(found)["facts"][0]["objects"] == ((), ("b",), ("b", "c"))
 

@@ -5,7 +5,7 @@ runtime's matter.
 """
 
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache
 
 from hypothesis import strategies as st
 from words import ATOMS, TYPES, VOCABULARY
@@ -158,7 +158,7 @@ def by_definition(formula, word, semantics):
         high = int(bound.high) if bound and bound.high is not None else now
         return range(low, min(high, now) + 1)
 
-    @lru_cache(maxsize=None)
+    @cache
     def at(part, now):
         match part:
             case Constant(value):
