@@ -5,6 +5,7 @@
 
 import re
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import assume, given
@@ -18,6 +19,7 @@ from rulec.syntax.formatting import format_source, safety
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]
+GOOD = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("good/*.rules"))]
 FRAGMENTS = st.sampled_from(
     ["#", "# c\n", "\n", "\n\n", " ", "(", ")", "{", "}", ";", '"', "and", "!", "weak ", "[<= 3 s]"]
 )
@@ -38,7 +40,7 @@ def code_of(line):
     return TEXT_OR_COMMENT.sub(lambda found: "" if found[1] else found[0], line).rstrip(), texts
 
 
-@given(untidy_files())
+@given(untidy_files)
 def test_tree_comments_and_width(text):
     tree = tree_of(text)
     assume(tree is not None)
@@ -58,15 +60,16 @@ def test_tree_comments_and_width(text):
         assert len(code) <= 100 or texts
 
 
-@given(untidy_files())
-def test_white_space_alone_makes_no_difference_to_the_code(text):
-    """Where lines end in the file matters in a few places; how far they are indented nowhere."""
-    assume(tree_of(text) is not None)
-    indented = re.sub(r"\n[ \t]*(?=[^\s#])", "\n        ", text)
-    assume(tree_of(indented) is not None)
-    assert [code_of(line)[0].split() for line in formatted(indented).split("\n")] == [
-        code_of(line)[0].split() for line in formatted(text).split("\n")
-    ]
+@given(st.sampled_from(GOOD), st.integers())
+def test_indentation_makes_no_difference(text, seed):
+    choose = Random(seed)
+    indented = re.sub(
+        r"^[ \t]*(?=\S)", lambda _: " " * choose.randrange(20), text, flags=re.MULTILINE
+    )
+    # Columns that an author has made are gone then.
+    as_it_is, again = formatted(text), formatted(indented)
+    assert again.split() == as_it_is.split()
+    assert again.count("\n") == as_it_is.count("\n")
 
 
 @given(st.sampled_from(TEXTS), st.data())
