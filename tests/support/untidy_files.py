@@ -1,6 +1,7 @@
 """Hypothesis strategies for whole files as nobody should write them: white space at random."""
 
 import re
+from random import Random
 
 from hypothesis import strategies as st
 from syntax_trees import names, texts
@@ -171,12 +172,19 @@ vocabularies = st.builds(
 )
 files = rulebooks | vocabularies
 
-comments = st.text(
-    st.sampled_from("abc #{}()\"';=é\t") | st.characters(exclude_categories=("Cc", "Cs")),
-    max_size=30,
-).map(lambda text: f"#{text}")
-blanks = st.sampled_from([" ", " ", " ", "  ", "\t"])
-line_ends = st.sampled_from(["\n", "\n", "\n\n", "\n   \n\n"])
+COMMENTS = [
+    "#",
+    "# c",
+    "#c  ",
+    "## (",
+    "# }",
+    '# "',
+    "#\té;",
+    "# 車 \x85 \u2028x",
+    f"# {'long ' * 9}",
+]
+BLANKS = [" ", " ", " ", "  ", "\t"]
+LINE_ENDS = ["\n", "\n", "\n\n", "\n   \n\n"]
 GOES_ON = set(";,({=&|!+*") | {"and", "or", "implies", "then", "until", "not", "always", "->", "G"}
 
 _TOKENS = re.compile(
@@ -194,25 +202,28 @@ _TOKENS = re.compile(
 _OR_LINE_END = re.compile(rf"\n|{_TOKENS.pattern}", re.VERBOSE)
 
 
-@st.composite
-def untidy_files(draw):
-    """A text with any white space and some comments between any two tokens.
+def untidied(text, seed):
+    """A printed file with other white space, and with comments, between any two tokens.
 
     Most have no mistakes; a line that ends in the middle of nothing may be taken for the beginning
     of something else.
     """
-    text = print_file(draw(files), "written")
-    pieces = [draw(st.sampled_from(["", "\n", "# first\n\n"]))]
+    choose = Random(seed)
+    pieces = [choose.choice(["", "\n", "# first\n\n"])]
     for token in _OR_LINE_END.findall(text):
         if token == "\n":
-            pieces.append(draw(line_ends))
+            pieces.append(choose.choice(LINE_ENDS))
             continue
-        pieces.append(token)
-        ends = draw(st.integers(0, 2 if token in GOES_ON else 60)) == 0
-        pieces.append(draw(line_ends if ends else blanks))
-        if draw(st.integers(0, 15)) == 0:
-            pieces.append(draw(comments) + "\n" + draw(st.sampled_from(["", "\n", "  "])))
+        ends = choose.randrange(3 if token in GOES_ON else 60) == 0
+        pieces += [token, choose.choice(LINE_ENDS if ends else BLANKS)]
+        if choose.randrange(16) == 0:
+            pieces += [choose.choice(COMMENTS), "\n", choose.choice(["", "\n", "  "])]
     return "".join(pieces)
+
+
+untidy_files = st.builds(
+    untidied, files.map(lambda file: print_file(file, "written")), st.integers()
+)
 
 
 def tree_of(text):

@@ -40,6 +40,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
         return _standard_input(check=check, diff=diff)
     files, refused = format_files(paths or ["."], search_path())
     changed = [file for file in files if file.changed]
+    in_form = len(files) - len(changed)
     if diff or check:
         _show(changed, check=check, diff=diff)
     else:
@@ -48,8 +49,8 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
         changed = [file for file in changed if file.name not in named]
         refused = (*refused, *unwritten)
     print_diagnostics(refused)
-    if files:
-        print_aside(_summary(len(changed), len(files) - len(changed), would=diff or check))
+    if changed or in_form:
+        print_aside(_summary(len(changed), in_form, would=diff or check))
     if refused:
         return ExitStatus.NOT_ANSWERED
     return ExitStatus.FOUND if changed and (diff or check) else ExitStatus.OK
@@ -72,13 +73,14 @@ def _standard_input(*, check: bool, diff: bool) -> int:
 
 def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
     from rulec.report.console import print_result, wants_color
-    from rulec.report.difference import as_diff, in_color
+    from rulec.report.difference import as_diff, for_terminal
 
     for file in changed:
         if diff:
             text = as_diff(file.name, file.before.decode(), file.after.decode())
-            if wants_color(sys.stdout):
-                print_result(in_color(text).removesuffix("\n"))
+            if sys.stdout.isatty():
+                shown = for_terminal(text, color=wants_color(sys.stdout))
+                print_result(shown.removesuffix("\n"))
             else:
                 sys.stdout.buffer.write(text.encode())
         elif check:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from difflib import unified_diff
 
 from rulec.report.excerpt import visible
@@ -21,9 +20,9 @@ def as_diff(name: str, before: str, after: str) -> str:
     )
 
 
-def in_color(diff: str) -> str:
-    """A diff for a terminal, which no character in it can drive."""
-    return "\n".join(_painted(diff)) + "\n"
+def for_terminal(diff: str, *, color: bool) -> str:
+    """The same to be looked at: no character in it can drive the terminal."""
+    return "".join(f"{_shown(line, color)}\n" for line in diff.removesuffix("\n").split("\n"))
 
 
 def _lines(text: str) -> list[str]:
@@ -31,8 +30,7 @@ def _lines(text: str) -> list[str]:
     return re.findall(r"[^\n]*\n|[^\n]+", text)
 
 
-def _painted(diff: str) -> Iterator[str]:
-    for line in diff.removesuffix("\n").split("\n"):
-        color = next((_COLORS[start] for start in _COLORS if line.startswith(start)), "")
-        text = visible(line.replace("\t", "    "))
-        yield f"{color}{text}{_RESET}" if color else text
+def _shown(line: str, color: bool) -> str:
+    text = visible(line.replace("\t", "    "))
+    paint = next((_COLORS[start] for start in _COLORS if line.startswith(start)), "")
+    return f"{paint}{text}{_RESET}" if color and paint else text

@@ -63,10 +63,12 @@ _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "th
 
 def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
     """Why the piece cannot be read."""
+    # A rulebook's name is a name, as far as messages are concerned.
+    accepted = frozenset("NAME" if one == "BOOK" else one for one in mismatch.accepted)
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
     found = inside[at] if at < len(inside) else None
-    scene = Scene(source, piece.kind, inside, at, mismatch.accepted)
+    scene = Scene(source, piece.kind, inside, at, accepted)
     first = scene.first
     end = span_of(source, tokens, piece).end
     span = Span(source, end, end) if found is None else _span(source, found)
@@ -88,7 +90,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         "R0104",
         message,
         span.place,
-        expected=in_words(mismatch.accepted),
+        expected=in_words(accepted),
         help=advise(scene),
         labels=_open_parenthesis(source, scene),
     )
