@@ -16,8 +16,8 @@ _TEXT = """\
 rulebook {name}
 title   "What this rulebook is about"
 law     "The law that it puts into rules" as of {today}
-traffic right   # the near side, that of the kerb, is the right one
-use     road    # station, lateral, surface, congested; and types such as vehicle and pedestrian
+traffic right  # the near side, that of the kerb, is the right one
+use     road   # station, lateral, surface, congested; and types such as vehicle and pedestrian
 
 # A hard rule must never be violated, a soft rule may yield. It holds for every vehicle v.
 hard rule overtake_on_the_far_side (v: vehicle) {{
@@ -27,15 +27,20 @@ hard rule overtake_on_the_far_side (v: vehicle) {{
   unless  congested throughout
 
   # What the rule allows and what it forbids, state by state; what is not said has its default.
-  accept  "on the far side" {{
-    behind(v) and same_lane(v); beside(v) and far_side_of(v); in_front_of(v) and same_lane(v)
+  accept "on the far side" {{
+    behind(v) and same_lane(v);
+    beside(v) and far_side_of(v);
+    in_front_of(v) and same_lane(v)
   }}
-  accept  "in a queue" {{
-    behind(v) and near_side_of(v); congested and beside(v) and near_side_of(v);
+  accept "in a queue" {{
+    behind(v) and near_side_of(v);
+    congested and beside(v) and near_side_of(v);
     in_front_of(v) and near_side_of(v)
   }}
-  reject  "on the near side" {{
-    behind(v) and same_lane(v); beside(v) and near_side_of(v); in_front_of(v) and same_lane(v)
+  reject "on the near side" {{
+    behind(v) and same_lane(v);
+    beside(v) and near_side_of(v);
+    in_front_of(v) and same_lane(v)
   }}
 }}
 """
