@@ -11,7 +11,8 @@ from syntax_trees import formulas
 
 from rulec.resources import grammar_file
 from rulec.syntax import grammar as at_work
-from rulec.syntax import parse_formula, print_formula, tables
+from rulec.syntax import parse_formula, tables
+from rulec.syntax.printer import print_whole
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 FILE = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
@@ -33,7 +34,7 @@ def test_the_tables_are_those_in_use():
 
 @given(formulas, st.data())
 def test_both_parsers_read_and_refuse_alike(formula, data):
-    text = print_formula(formula)
+    text = print_whole(formula)
     assert at_work._lark().parse(text, start="formula") == ANEW.parse(text, start="formula")
     some = text[: data.draw(st.integers(0, len(text)))]
     assert outcome(at_work._lark(), some) == outcome(ANEW, some)

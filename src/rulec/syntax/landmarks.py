@@ -63,6 +63,9 @@ class Landmarks:
             and self.tokens[index].text not in RESERVED
         )
 
+    def _is_number(self, index: int) -> bool:
+        return 0 <= index < len(self.tokens) and self.tokens[index].kind == "number"
+
     def wants_more(self, index: int) -> bool:
         """Does the text have to go on behind it, as behind ``signal``, ``until``, ``(``, ``;``?"""
         if index < 0:
@@ -107,14 +110,14 @@ class Landmarks:
             # `type car extends vehicle` is a mistake about the type.
             return not token.first and self.is_word(index - 2, "type")
         if token.text == "step" and not token.first:
-            # `next[1 step]`: a unit.
-            return self.is_symbol(index + 1, "]") or self.is_symbol(index + 1, "..")
+            # `next[1 step]`: a unit; but `as of 2020-01-01 step 1 s`.
+            return self._is_number(index - 1) and not self._is_number(index + 1)
         return False
 
     def goes_on(self, index: int) -> bool:
         """Does a word that might be a name go on with what came before, on a line of its own?"""
         if self.is_word(index, "weight"):
-            return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "number"
+            return self._is_number(index + 1)
         if self.is_word(index, "at"):
             return self.is_word(index + 1, "start", "some", "end")
         return any(
