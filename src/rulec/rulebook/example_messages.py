@@ -107,5 +107,16 @@ def other_dimension(
     )
 
 
+def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic:
+    """A value beyond all numbers that a trace can have."""
+    assert fact.value is not None, "only a value can be too large"
+    return Diagnostic(
+        "R0112",
+        f"this number is too large for `{term_text(what)}`, which counts in {unit.text}",
+        fact.value.span.place,
+        help=f"write a number below 1e308 {unit.text}",
+    )
+
+
 def _subject(what: Atom | Quantity) -> str:
     return term_text(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))

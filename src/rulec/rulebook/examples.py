@@ -20,8 +20,8 @@ from rulec.logic.formula import (
 from rulec.rulebook import example_messages as say
 from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.declared import Declared
-from rulec.rulebook.meaning import literal
 from rulec.rulebook.model import Example, ExampleState, Variable
+from rulec.rulebook.numerals import literal
 from rulec.rulebook.scope import BoundVariable, Scope
 from rulec.syntax import tree
 
@@ -166,5 +166,9 @@ def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | N
     if given.dimension not in (None, unit.dimension):
         scope.report(say.other_dimension(fact, found, given, unit))
         return None
-    value = float(given.cases[0][1].constant / unit.factor)
+    try:
+        value = float(given.cases[0][1].constant / unit.factor)
+    except OverflowError:
+        scope.report(say.too_large(fact, found, unit))
+        return None
     return -value if minus else value
