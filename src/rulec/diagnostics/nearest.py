@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-
 _MOST = 500
 """Among more names the search takes too long; only those with the same letters are found then."""
 

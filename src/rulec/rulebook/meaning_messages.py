@@ -63,12 +63,13 @@ def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnos
     if isinstance(node, tree.AtomUse):
         unit = scope.declared.unit_text(node.name.text)
     inside = f" (in {unit})" if unit else ""
+    test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     return Diagnostic(
         "R0313",
         f"`{_short(node)}` is {_kind(found.dimension)}{inside} and cannot be true or false",
         node.span.place,
         expected="expected something that is true or false",
-        help=f"compare it, such as `{_short(node)} < {f'5 {unit}' if unit else '…'}`",
+        help=f"compare it, such as `{_short(node)} {test}`",
         labels=_once(_origins(node, scope)),
     )
 
@@ -222,15 +223,18 @@ def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def not_linear(node: tree.Arithmetic) -> Diagnostic:
-    """A product or quotient of two numbers that vary."""
-    verb = "multiplied" if node.operator == "*" else "divided"
+    """A product of two numbers that vary, or a quotient by one."""
+    if node.operator == "*":
+        why = "two numbers that change from state to state cannot be multiplied"
+        wanted = "on one side"
+    else:
+        why = "a number that changes from state to state cannot be divided by"
+        wanted = "behind `/`"
     return Diagnostic(
         "R0314",
-        f"`{_short(node)}`: two numbers that change from state to state cannot be {verb}",
+        f"`{_short(node)}`: {why}",
         node.span.place,
-        expected="expected a fixed number on one side"
-        if node.operator == "*"
-        else "expected a fixed number behind `/`",
+        expected=f"expected a fixed number {wanted}",
         help="multiply and divide by fixed numbers and parameters only",
     )
 
@@ -359,7 +363,7 @@ def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> D
         f"the parameter `{name}` has no value that is in force on {day}",
         use.span.place,
         expected="a value is needed here",
-        help=f"give it one for that day, such as `param {name} = … in force until …`, "
+        help=f"give it one for that day, such as `param {name} = … in force from DATE`, "
         "or ask for another day",
         labels=tuple(Label(value.item.span.place, "a value is here") for value in values),
     )

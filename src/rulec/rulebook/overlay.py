@@ -60,7 +60,10 @@ class Overlay:
     mistakes: list[Diagnostic] = field(default_factory=list)
     unsure: bool = False
     """A rulebook of the chain could not be read whole: names may be missing for that reason."""
+    unsure_rules: bool = False
+    """A rule could not be read, not even its name."""
     suspects: set[str] = field(default_factory=set)
+    """Names in what could not be read."""
 
     def kind_of(self, name: str) -> str:
         """``option``, ``parameter``, ``definition``, or empty for any other name."""
@@ -96,6 +99,10 @@ class _Layer:
 
     def take(self, item: tree.Item) -> None:
         """Lay one item over what there is."""
+        if isinstance(item, tree.RuleItem | tree.ParamItem | tree.SetItem):
+            dates = item.in_force
+            if dates is not None and dates.until and dates.until < dates.since:
+                self.result.mistakes.append(say.never_in_force(dates))
         match item:
             case tree.RuleItem(override=False):
                 self._rule(item)
@@ -132,7 +139,8 @@ class _Layer:
                 self.result.remarks.append(Remark(name.text, because.value, "silent"))
             case tree.BrokenItem(names):
                 self.result.suspects |= names
-                self.result.unsure |= item.nameless or item.word == "rule"
+                self.result.unsure_rules |= item.nameless and item.word == "rule"
+                self.result.unsure |= item.nameless and item.word != "rule"
             case _:
                 return
 
@@ -238,7 +246,8 @@ class _Layer:
         return False
 
     def _nothing(self, name: tree.Name, kind: str, verb: str, known: Iterable[str]) -> None:
-        if self.result.unsure or name.text in self.result.suspects:
+        unsure = self.result.unsure or (kind == "rule" and self.result.unsure_rules)
+        if unsure or name.text in self.result.suspects:
             return
         base = self.file.extends
         extends = None if base is None else base.name.text

@@ -12,6 +12,7 @@ __all__ = [
     "changed_twice",
     "inherited_name",
     "inherited_rule",
+    "never_in_force",
     "nothing_to",
     "option_is_on_or_off",
     "own",
@@ -113,6 +114,17 @@ def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
         expected="changed again here",
         help="say all of it in one place",
         labels=(Label(before.span.place, "first changed here"),),
+    )
+
+
+def never_in_force(dates: tree.InForce) -> Diagnostic:
+    """``in force from 2024-01-01 until 2020-01-01``."""
+    return Diagnostic(
+        "R0324",
+        f"this is never in force: {dates.until} comes before {dates.since}",
+        dates.span.place,
+        expected="expected the earlier day first",
+        help="exchange the days, or correct one of them",
     )
 
 

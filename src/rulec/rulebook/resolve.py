@@ -46,7 +46,7 @@ def resolve(
     """
     books = [*bases, file]
     declared = declare([*vocabularies, *books], opaque=opaque)
-    spans = {**declared.spans}
+    spans = {**declared.type_spans, **declared.spans}
     laid = overlay(books, spans, unsure=opaque or not all(one.complete for one in books))
     provisions = Provisions(laid, at, _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])

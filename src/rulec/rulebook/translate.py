@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook import rule_messages
@@ -60,7 +60,7 @@ def translate_rule(
         or weight is None
         or any(one.severity == "error" for one in mistakes)
     ):
-        return None, mistakes
+        return None, [_with_change(one, entry) for one in mistakes]
     dates = item.in_force or tree.InForce()
     rule = Rule(
         item.name.text,
@@ -98,6 +98,14 @@ def _step_of(file: tree.File, scope: Scope) -> Fraction:
         scope.report(rule_messages.no_step(file.step))
         return Fraction(1)
     return step
+
+
+def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
+    """A mistake in what a rule inherits, with the line that changed the rule."""
+    changed = None if entry.changed is None else entry.changed.span.place
+    if changed is None or mistake.place is None or mistake.place.file == changed.file:
+        return mistake
+    return replace(mistake, labels=(*mistake.labels, Label(changed, "the rule is changed here")))
 
 
 @dataclass(frozen=True, slots=True)
