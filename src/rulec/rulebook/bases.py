@@ -48,7 +48,8 @@ def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) 
             above = find_base(line.name.text, line.name.span, here.path, search_path)
             first = next((one for one in way if _is(one, above)), None)
             if first is not None or len(way) > MOST_BASES:
-                found.mistakes.append(_circle(line, way))
+                wrong = _too_many(line) if first is None else _circle(line, way)
+                found.mistakes.append(wrong)
                 found.failed = True
                 break
             data = read_bytes(above, line.name.span)
@@ -94,6 +95,15 @@ def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
         labels=tuple(
             Label(one.span.place, f"`{one.name.text}` is extended here") for one in others if one
         ),
+    )
+
+
+def _too_many(line: tree.ExtendsLine) -> Diagnostic:
+    return Diagnostic(
+        "R0323",
+        f"more than {MOST_BASES} rulebooks build upon one another",
+        line.span.place,
+        help="let a rulebook extend a more general one directly",
     )
 
 

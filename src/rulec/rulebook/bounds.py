@@ -9,6 +9,7 @@ from typing import Literal
 from rulec.logic.formula import Bound
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook.numbers import Number
+from rulec.rulebook.numerals import exact_value
 from rulec.rulebook.scope import Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
@@ -56,11 +57,13 @@ def bound_of(
 
 def _time(side: tree.Amount, scope: Scope, evaluate: Evaluate) -> _Time | None:
     if isinstance(side, tree.Number) and side.unit in _STEPS:
-        amount = Fraction(side.text)
-        if amount.denominator != 1:
+        whole = exact_value(side, scope)
+        if whole is None:
+            return None
+        if whole.denominator != 1:
             scope.report(say.half_a_step(side))
             return None
-        return amount, "steps"
+        return whole, "steps"
     found = evaluate(side, scope)
     if found is None:
         return None

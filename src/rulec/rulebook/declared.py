@@ -111,7 +111,17 @@ def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
         for item in file.items:
             if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
                 _declare_item(declared, item, _roots(declared, file))
+    _note_clashes(declared, files)
     return declared
+
+
+def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
+    """Types with the name of a signal, a quantity, an enumeration or a value."""
+    order = [file.span.source for file in files]
+    for name in declared.type_spans.keys() & declared.spans.keys():
+        spans = (declared.type_spans[name], declared.spans[name])
+        first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
+        declared.mistakes.append(twice("name", tree.Name(name, again), first))
 
 
 def _note_suspects(declared: Declared, file: tree.File) -> None:
@@ -205,8 +215,8 @@ def _declare_item(
             enumeration = Enumeration(name.text, types, texts, default)
             _add(declared, name, enumeration)
             for value in values:
-                if value.text in declared.spans:
-                    first = declared.spans[value.text]
+                first = declared.spans.get(value.text)
+                if first is not None:
                     declared.mistakes.append(twice("name", value, first))
                 else:
                     declared.spans[value.text] = value.span
@@ -214,8 +224,9 @@ def _declare_item(
 
 
 def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
-    if name.text in declared.spans:
-        declared.mistakes.append(twice("name", name, declared.spans[name.text]))
+    first = declared.spans.get(name.text)
+    if first is not None:
+        declared.mistakes.append(twice("name", name, first))
         return
     declared.spans[name.text] = name.span
     declared.items[name.text] = item

@@ -12,9 +12,6 @@ from rulec.syntax import tree
 
 _Meaning = TypeVar("_Meaning")
 
-MOST_USES = 2_000
-"""Definitions put in, one inside the other included, in one formula."""
-
 
 def put_in(
     use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning]
@@ -24,11 +21,7 @@ def put_in(
     item = scope.provisions.definitions[name]
     if any(call.name == name for call in scope.calls):
         scope.report(say.circle(use, "definition", scope))
-        return None
-    scope.provisions.expansions += 1
-    if scope.provisions.expansions > MOST_USES:
-        if scope.provisions.expansions == MOST_USES + 1:
-            scope.report(say.too_many_uses(use, MOST_USES))
+        scope.provisions.broken |= {call.name for call in scope.calls}
         return None
     if len(use.arguments) != len(item.parameters):
         scope.used |= {one.text for one in use.arguments}
@@ -46,14 +39,15 @@ def put_in(
         wanted = None if parameter.type is None else parameter.type.text
         if wanted is not None and wanted not in scope.declared.types:
             wanted = None
-        actual = scope.object(argument, wanted)
+        others = [] if parameter.type is not None else scope.relation_names()
+        actual = scope.object(argument, wanted, relations=others)
         if actual is None:
             good = False
             continue
         outer = scope.variables.get(argument.text)
         kind = wanted if outer is None else outer.type
         variables[local] = BoundVariable(kind, argument.span, actual)
-    if not good:
+    if not good or name in scope.provisions.broken:
         return None
     inner = replace(
         scope,

@@ -66,6 +66,19 @@ def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: Declare
     )
 
 
+def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
+    """An option, a parameter or a definition in a state."""
+    return Diagnostic(
+        "R0303",
+        f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} of the rulebook, no fact "
+        "about a state",
+        use.span.place,
+        expected="expected a signal, a value or a quantity",
+        help="name the facts themselves",
+        labels=(Label(declared.span.place, f"`{use.name.text}` is declared here"),),
+    )
+
+
 def without_number(fact: tree.StateLiteral, what: Quantity, declared: Declared) -> Diagnostic:
     """A quantity without a value."""
     unit = declared.unit_text(what.name)
@@ -104,6 +117,17 @@ def other_dimension(
         fact.value.span.place,
         expected=f"expected a {unit.dimension.name}",
         help=f"write it in {unit.text}",
+    )
+
+
+def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic:
+    """A value beyond all numbers that a trace can have."""
+    assert fact.value is not None, "only a value can be too large"
+    return Diagnostic(
+        "R0112",
+        f"this number is too large for `{term_text(what)}`, which counts in {unit.text}",
+        fact.value.span.place,
+        help=f"write a number below 1e308 {unit.text}",
     )
 
 

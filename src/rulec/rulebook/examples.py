@@ -20,8 +20,8 @@ from rulec.logic.formula import (
 from rulec.rulebook import example_messages as say
 from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.declared import Declared
-from rulec.rulebook.meaning import literal
 from rulec.rulebook.model import Example, ExampleState, Variable
+from rulec.rulebook.numerals import literal
 from rulec.rulebook.scope import BoundVariable, Scope
 from rulec.syntax import tree
 
@@ -121,7 +121,7 @@ def _state(
     places: dict[Key, Span] = {}
     unclear = False
     for fact in state.literals:
-        found = scope.reference(fact.atom)
+        found = _named(fact.atom, scope)
         value = None if found is None else _value(fact, found, scope)
         if found is None or value is None:
             unclear = True
@@ -134,6 +134,15 @@ def _state(
     if missing and not unclear:
         scope.report(say.left_open(state, missing[0], scope.declared))
     return said
+
+
+def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
+    """What a fact is about; None if it has a mistake, which is reported."""
+    kind = scope.provisions.overlay.kind_of(use.name.text)
+    if kind and scope.behind(use.name.text) is None:
+        scope.report(say.no_fact(use, kind, scope.provisions.overlay.declared_at[use.name.text]))
+        return None
+    return scope.reference(use)
 
 
 def _value(
@@ -166,5 +175,9 @@ def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | N
     if given.dimension not in (None, unit.dimension):
         scope.report(say.other_dimension(fact, found, given, unit))
         return None
-    value = float(given.cases[0][1].constant / unit.factor)
+    try:
+        value = float(given.cases[0][1].constant / unit.factor)
+    except OverflowError:
+        scope.report(say.too_large(fact, found, unit))
+        return None
     return -value if minus else value

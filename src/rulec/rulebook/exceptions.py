@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import comb
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Exemption, ExemptionScope
@@ -22,6 +23,9 @@ _AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UN
 
 MOST_THROUGHOUT = 4
 """Exceptions of one rule that have to hold throughout; the formula grows exponentially in them."""
+
+_MOST_WAYS = 2_000
+"""Ways for them to fail in one phase or the other; with many phases there are more of them."""
 
 
 class NoStretchError(Exception):
@@ -33,7 +37,7 @@ class BoundedPhaseError(Exception):
 
 
 class TooManyExceptionsError(Exception):
-    """More than ``MOST_THROUGHOUT`` exceptions have to hold throughout."""
+    """Too many exceptions have to hold throughout."""
 
 
 def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
@@ -90,6 +94,8 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
         raise TooManyExceptionsError
     if throughout and any(phase.bound is not None for phase in phases):
         raise BoundedPhaseError
+    if comb(len(phases) - 1 + len(throughout), len(throughout)) * 2 ** len(throughout) > _MOST_WAYS:
+        raise TooManyExceptionsError
     at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
     everywhere = all_of(denied.get("at some point", []))
     if len(phases) == 2:

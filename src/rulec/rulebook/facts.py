@@ -27,8 +27,8 @@ def fact_of(
         # Facts hold always; one may say so.
         formula = formula.operand
     variables = _variables(formula, declared, mistakes)
-    scope = Scope(declared, provisions, variables, mistakes, counted=frozenset(("",)))
-    provisions.expansions = 0
+    scope = Scope(declared, provisions, variables, mistakes, in_moment=True)
+    provisions.begin()
     found = truth(formula, scope)
     if found is None or mistakes:
         return None, mistakes

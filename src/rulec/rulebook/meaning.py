@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
-    Comparison,
     Constant,
-    Count,
     Formula,
     Quantity,
     Same,
     Unary,
     UnaryOperator,
 )
-from rulec.logic.printing import in_words
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook.bounds import bound_of
-from rulec.rulebook.declaration_messages import twice, unknown_type
+from rulec.rulebook.counts import aggregate
 from rulec.rulebook.definitions import put_in
+from rulec.rulebook.extent import excess
 from rulec.rulebook.numbers import (
     Linear,
     Number,
@@ -31,7 +28,6 @@ from rulec.rulebook.numbers import (
     added,
     combined,
     compared,
-    constant,
     divided,
     either,
     measured,
@@ -40,12 +36,10 @@ from rulec.rulebook.numbers import (
     scaled,
     term_text,
 )
+from rulec.rulebook.numerals import literal
 from rulec.rulebook.parameters import parameter
-from rulec.rulebook.scope import Anything, BoundVariable, Scope
+from rulec.rulebook.scope import Anything, Scope
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS
-
-NUMBER = DIMENSIONS["number"]
 
 _TEMPORAL = frozenset(
     (
@@ -98,58 +92,52 @@ def number(node: tree.Formula, scope: Scope) -> Number | None:
 
 
 def meaning(node: tree.Formula, scope: Scope) -> Meaning | None:
-    """What an expression means; None if it has a mistake, which is then reported."""
-    try:
-        return _meaning(node, scope)
-    except TooManyCasesError:
-        scope.report(say.too_many_cases(node))
-        return None
+    """What an expression means; None if it has a mistake, which is then reported.
 
-
-def _meaning(node: tree.Formula, scope: Scope) -> Meaning | None:
-    match node:
-        case tree.AtomUse():
-            return _name(node, scope)
-        case tree.Truth(value):
-            return Constant(value)
-        case tree.Number():
-            return literal(node, scope)
-        case tree.Prefix():
-            return _prefix(node, scope)
-        case tree.Infix():
-            return _infix(node, scope)
-        case tree.Compare():
-            return _compare(node, scope)
-        case tree.Arithmetic():
-            return _arithmetic(node, scope)
-        case tree.Minus(operand):
-            inside = number(operand, scope)
-            if inside is None:
-                return None
-            return Number(tuple((when, opposite(linear)) for when, linear in inside.cases))
-        case tree.Conditional(value, condition, otherwise):
-            first, test = meaning(value, scope), truth(condition, scope)
-            return _either(node, first, test, meaning(otherwise, scope), scope)
-        case tree.Aggregate():
-            return _aggregate(node, scope)
-
-
-def literal(node: tree.Number, scope: Scope) -> Number | None:
-    """A number with its unit."""
-    value = Fraction(node.text)
-    if not node.unit:
-        return constant(value, None if value == 0 else NUMBER, node.text)
-    unit = scope.declared.unit(node.unit)
-    if unit is None:
-        scope.report(say.unknown_unit(node))
-        return None
-    text = f"{node.text} {node.unit}"
-    return constant(value * unit.factor, unit.dimension, text)
+    Raises:
+        TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
+    """
+    with scope.provisions.one_deeper():
+        try:
+            match node:
+                case tree.AtomUse():
+                    return _name(node, scope)
+                case tree.Truth(value):
+                    return Constant(value)
+                case tree.Number():
+                    return literal(node, scope)
+                case tree.Prefix():
+                    return _prefix(node, scope)
+                case tree.Infix():
+                    return _infix(node, scope)
+                case tree.Compare():
+                    return _compare(node, scope)
+                case tree.Arithmetic():
+                    return _arithmetic(node, scope)
+                case tree.Minus(operand):
+                    inside = number(operand, scope)
+                    if inside is None:
+                        return None
+                    return Number(tuple((when, opposite(linear)) for when, linear in inside.cases))
+                case tree.Conditional(value, condition, otherwise):
+                    first, test = meaning(value, scope), truth(condition, scope)
+                    return _either(node, first, test, meaning(otherwise, scope), scope)
+                case tree.Aggregate():
+                    return aggregate(node, scope, truth)
+        except TooManyCasesError:
+            scope.report(say.too_many_cases(node))
+            return None
 
 
 def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     name = node.name.text
     relation = scope.relations.get(name)
+    if relation is None and name in scope.variables:
+        scope.used.add(name)
+        if node.arguments:
+            scope.report(say.object_as_relation(node, scope))
+            return None
+        return Object(scope.variables[name].actual)
     if isinstance(relation, Anything):
         scope.used.add(name)
         scope.used |= {one.text for one in node.arguments}
@@ -158,9 +146,6 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         scope.used.add(name)
         node = replace(node, name=replace(node.name, text=relation))
         name = relation
-    if not node.arguments and name in scope.variables:
-        scope.used.add(name)
-        return Object(scope.variables[name].actual)
     kind = scope.provisions.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
         scope.report(say.takes_no_object(node, kind, scope))
@@ -203,7 +188,7 @@ def _infix(node: tree.Infix, scope: Scope) -> Formula | None:
 
 
 def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -> bool:
-    if operator in _TEMPORAL and scope.in_count:
+    if operator in _TEMPORAL and scope.in_moment:
         scope.report(say.temporal_in_count(node))
         return True
     return False
@@ -234,7 +219,14 @@ def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
         return None
     if not _fit(node, first, second, scope):
         return None
-    return compared(first, node.relation, second)
+    return _checked(compared(first, node.relation, second))
+
+
+def _checked(formula: Formula) -> Formula:
+    """The formula. Raises TooManyCasesError: conditions have doubled its parts too often."""
+    if excess(formula):
+        raise TooManyCasesError
+    return formula
 
 
 def _as_number(
@@ -322,45 +314,4 @@ def _either(
         return None
     chosen = Binary(BinaryOperator.AND, condition, value)
     other = Binary(BinaryOperator.AND, negated(condition), otherwise)
-    return Binary(BinaryOperator.OR, chosen, other)
-
-
-def _aggregate(node: tree.Aggregate, scope: Scope) -> Meaning | None:
-    name, kind = node.variable.name, node.variable.type
-    assert kind is not None, "the grammar asks for a type"
-    known = kind.text in scope.declared.types
-    if not known and not scope.declared.may_know_type(kind.text):
-        scope.report(unknown_type(kind, list(scope.declared.types)))
-    if name.text in scope.variables:
-        scope.report(twice("variable", name, scope.variables[name.text].span))
-        return None
-    taken = {one.actual for one in scope.variables.values()} | scope.counted
-    actual, number_ = name.text, 2
-    while actual in taken:
-        actual, number_ = f"{name.text}_{number_}", number_ + 1
-    variable = BoundVariable(kind.text if known else None, node.variable.span, actual)
-    inner = replace(
-        scope,
-        variables={**scope.variables, name.text: variable},
-        counted=scope.counted | {actual},
-    )
-    body = truth(node.body, inner)
-    if body is not None and name.text not in inner.used:
-        scope.report(say.unused_variable(node))
-    if body is None or not known:
-        return None
-    wanted = negated(body) if node.kind == "every" else body
-    term = Count(actual, kind.text, wanted)
-    count = measured(term, Fraction(1), NUMBER, term_text(term))
-    if node.kind == "count":
-        return count
-    found = compared(count, ">=", constant(Fraction(1), NUMBER, "1"))
-    text = f"{node.kind} {actual}: {kind.text} ({in_words(body)})"
-    if node.kind == "some":
-        return _said(found, text)
-    return _said(compared(count, "<", constant(Fraction(1), NUMBER, "1")), text)
-
-
-def _said(formula: Formula, text: str) -> Formula:
-    """The comparison by another text."""
-    return replace(formula, text=text) if isinstance(formula, Comparison) else formula
+    return _checked(Binary(BinaryOperator.OR, chosen, other))

@@ -12,7 +12,7 @@ from rulec.rulebook.numbers import Number
 from rulec.rulebook.overlay import Value
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
-from rulec.vocabulary.units import Dimension, unit_refusal
+from rulec.vocabulary.units import DIMENSIONS, Dimension, unit_refusal
 
 if TYPE_CHECKING:
     from rulec.rulebook.scope import Scope
@@ -39,7 +39,8 @@ def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
     match node:
         case tree.AtomUse(name):
             declared = scope.declared.spans.get(name.text)
-            provision = scope.provisions.overlay.declared_at.get(name.text)
+            laid = scope.provisions.overlay
+            provision = laid.changed_at.get(name.text) or laid.declared_at.get(name.text)
             span = declared or (provision.span if provision else None)
             if span is not None:
                 yield Label(span.place, f"`{name.text}` is declared here")
@@ -62,12 +63,13 @@ def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnos
     if isinstance(node, tree.AtomUse):
         unit = scope.declared.unit_text(node.name.text)
     inside = f" (in {unit})" if unit else ""
+    test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     return Diagnostic(
         "R0313",
         f"`{_short(node)}` is {_kind(found.dimension)}{inside} and cannot be true or false",
         node.span.place,
         expected="expected something that is true or false",
-        help=f"compare it, such as `{_short(node)} < 5{f' {unit}' if unit else ''}`",
+        help=f"compare it, such as `{_short(node)} {test}`",
         labels=_once(_origins(node, scope)),
     )
 
@@ -139,7 +141,9 @@ def two_dimensions(
         f"{message}: they cannot be {verb}",
         second.span.place,
         expected=f"this is {other}",
-        help=_unit_help(second, first, scope) or _unit_help(first, second, scope),
+        help=_unit_help(second, first, scope)
+        or _unit_help(first, second, scope)
+        or _kind_help(first, left, second, right),
         labels=_once(iter(labels)),
     )
 
@@ -150,6 +154,23 @@ def _unit_help(node: tree.Formula, other: tree.Formula, scope: Scope) -> str:
         unit = scope.declared.unit_text(other.name.text)
         return f"write the unit, such as `{node.text} {unit}`" if unit else ""
     return ""
+
+
+def _kind_help(first: tree.Formula, left: Number, second: tree.Formula, right: Number) -> str:
+    """What one could be multiplied with to become the other."""
+    if left.dimension is not None and right.dimension is not None:
+        for node, ratio in (
+            (second, left.dimension / right.dimension),
+            (first, right.dimension / left.dimension),
+        ):
+            if ratio == DIMENSIONS["time"]:
+                return f"a time makes them alike, such as `2 s * {_factor(node)}`"
+    return "check the names and the units"
+
+
+def _factor(node: tree.Formula) -> str:
+    text = _short(node)
+    return f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
 
 
 def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
@@ -170,18 +191,23 @@ def unknown_unit(node: tree.Number) -> Diagnostic:
     refusal = unit_refusal(node.unit)
     if refusal is not None:
         message = f"the unit `{node.unit}` cannot be used: {refusal.why}"
-        return Diagnostic(
-            "R0209",
-            message,
-            node.span.place,
-            help=refusal.instead,
-        )
+        return Diagnostic("R0209", message, node.span.place, help=refusal.instead)
     return Diagnostic(
         "R0209",
         f"there is no unit `{node.unit}`",
         node.span.place,
         expected="expected a unit of measure",
         help=unit_help(node.unit),
+    )
+
+
+def too_long(node: tree.Number) -> Diagnostic:
+    """A number with more digits than anyone could mean."""
+    return Diagnostic(
+        "R0112",
+        "this number has too many digits",
+        node.span.place,
+        help="write at most 400 digits, and no exponent beyond 400",
     )
 
 
@@ -197,15 +223,18 @@ def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def not_linear(node: tree.Arithmetic) -> Diagnostic:
-    """A product or quotient of two numbers that vary."""
-    verb = "multiplied" if node.operator == "*" else "divided"
+    """A product of two numbers that vary, or a quotient by one."""
+    if node.operator == "*":
+        why = "two numbers that change from state to state cannot be multiplied"
+        wanted = "on one side"
+    else:
+        why = "a number that changes from state to state cannot be divided by"
+        wanted = "behind `/`"
     return Diagnostic(
         "R0314",
-        f"`{_short(node)}`: two numbers that change from state to state cannot be {verb}",
+        f"`{_short(node)}`: {why}",
         node.span.place,
-        expected="expected a fixed number on one side"
-        if node.operator == "*"
-        else "expected a fixed number behind `/`",
+        expected=f"expected a fixed number {wanted}",
         help="multiply and divide by fixed numbers and parameters only",
     )
 
@@ -225,9 +254,9 @@ def too_many_cases(node: tree.Formula) -> Diagnostic:
     """A comparison with too many conditional numbers."""
     return Diagnostic(
         "R0323",
-        f"`{_short(node)}` has too many cases",
+        f"`{_short(node)}` becomes too large, with parameters and conditions put in",
         node.span.place,
-        help="say it in several comparisons, or with fewer numbers that have an `if`",
+        help="use fewer numbers that have an `if`, or say it in several comparisons",
     )
 
 
@@ -278,6 +307,23 @@ def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
     )
 
 
+def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
+    """``v(w)`` where v is an object."""
+    name = use.name.text
+    variable = scope.variables[name]
+    said = (
+        "is an object" if variable.actual == name else f"stands for the object `{variable.actual}`"
+    )
+    return Diagnostic(
+        "R0303",
+        f"`{name}` {said} and cannot be said of another one",
+        use.span.place,
+        expected="expected a signal, a value or a definition before `(`",
+        help=f"write such as `near({name})`, or give the definition a relation for it",
+        labels=(Label(variable.span.place, f"`{variable.actual}` comes from here"),),
+    )
+
+
 def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
     """A definition used with too few or too many objects."""
     names = ", ".join(one.name.text for one in item.parameters)
@@ -309,16 +355,6 @@ def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
     )
 
 
-def too_many_uses(use: tree.AtomUse, limit: int) -> Diagnostic:
-    """Definitions in definitions that make a formula explode."""
-    return Diagnostic(
-        "R0323",
-        f"the formula takes more than {limit:,} definitions, those inside one another included",
-        use.span.place,
-        help="definitions that use another one twice double it each time: make them simpler",
-    )
-
-
 def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> Diagnostic:
     """A parameter that has no value on the day."""
     name = use.name.text
@@ -327,7 +363,7 @@ def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> D
         f"the parameter `{name}` has no value that is in force on {day}",
         use.span.place,
         expected="a value is needed here",
-        help=f"give it one for that day, such as `param {name} = … in force until …`, "
+        help=f"give it one for that day, such as `param {name} = … in force from DATE`, "
         "or ask for another day",
         labels=tuple(Label(value.item.span.place, "a value is here") for value in values),
     )
@@ -452,11 +488,12 @@ def bounded_phase(unless: tree.Unless) -> Diagnostic:
     )
 
 
-def too_many_exceptions(unless: tree.Unless, limit: int) -> Diagnostic:
+def too_many_exceptions(unless: tree.Unless) -> Diagnostic:
     """More exceptions that hold throughout than a formula can take."""
     return Diagnostic(
         "R0323",
-        f"more than {limit} exceptions of this rule have to hold `throughout`",
+        "with this one, too many exceptions of the rule have to hold `throughout` its phases: "
+        "each multiplies the formula",
         unless.span.place,
         help="join some of them by `or` in one `unless`, if one of them may follow the other",
     )

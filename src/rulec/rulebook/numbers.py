@@ -30,6 +30,10 @@ from rulec.vocabulary.units import Dimension
 MOST_CASES = 64
 """More cases in one comparison are no condition that anyone could check by reading."""
 
+_LONGEST_TEXT = 50_000
+_MOST_BITS = 20_000
+"""Parameters that use another one twice double its text, or its digits."""
+
 SUM, PRODUCT, SIGN, PRIMARY = range(4)
 """How tightly the outermost operator of a number's text binds."""
 
@@ -47,6 +51,12 @@ class Linear:
     dimension: Dimension | None
     text: str
     binding: int = PRIMARY
+
+    def __post_init__(self) -> None:
+        """Raises TooManyCasesError."""
+        bits = max(self.constant.numerator.bit_length(), self.constant.denominator.bit_length())
+        if len(self.text) > _LONGEST_TEXT or bits > _MOST_BITS:
+            raise TooManyCasesError
 
     def within(self, binding: int) -> str:
         """The text, in parentheses if it binds less tightly."""
@@ -83,7 +93,7 @@ class Number:
 
 
 class TooManyCasesError(Exception):
-    """A number has more than ``MOST_CASES`` cases."""
+    """An expression has too many cases, or has otherwise grown beyond anything to be read."""
 
 
 def constant(value: Fraction, dimension: Dimension | None, text: str) -> Number:

@@ -19,10 +19,16 @@ LATEST = "9999-12-31"
 
 @dataclass(frozen=True, slots=True)
 class RuleEntry:
-    """A rule after all overrides; ``book`` is the file that it, or its last override, stands in."""
+    """A rule after all overrides.
+
+    ``book`` is the file that it, or its last override, stands in, ``examples_from`` the one that
+    its examples stand in. ``changed`` is the name in the last line that changed it.
+    """
 
     item: tree.RuleItem
     book: tree.File
+    examples_from: tree.File
+    changed: tree.Name | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +41,9 @@ class Value:
 
 @dataclass(slots=True)
 class Overlay:
-    """What a chain of rulebooks comes to. Names of options, parameters, definitions are disjoint.
+    """What a chain of rulebooks comes to.
 
-    ``traffic``, ``semantics`` and priorities are those of the last rulebook that says any.
+    An option, a parameter and a definition never have the same name.
     """
 
     options: dict[str, bool] = field(default_factory=dict)
@@ -49,10 +55,15 @@ class Overlay:
     """Where each option, parameter and definition was first named."""
     levels: dict[str, int] = field(default_factory=dict)
     """The number in the chain of the file that named it first."""
+    changed_at: dict[str, tree.Name] = field(default_factory=dict)
+    """Where an option or a definition was last ``set`` or redefined."""
     mistakes: list[Diagnostic] = field(default_factory=list)
     unsure: bool = False
     """A rulebook of the chain could not be read whole: names may be missing for that reason."""
+    unsure_rules: bool = False
+    """A rule could not be read, not even its name."""
     suspects: set[str] = field(default_factory=set)
+    """Names in what could not be read."""
 
     def kind_of(self, name: str) -> str:
         """``option``, ``parameter``, ``definition``, or empty for any other name."""
@@ -88,6 +99,10 @@ class _Layer:
 
     def take(self, item: tree.Item) -> None:
         """Lay one item over what there is."""
+        if isinstance(item, tree.RuleItem | tree.ParamItem | tree.SetItem):
+            dates = item.in_force
+            if dates is not None and dates.until and dates.until < dates.since:
+                self.result.mistakes.append(say.never_in_force(dates))
         match item:
             case tree.RuleItem(override=False):
                 self._rule(item)
@@ -108,10 +123,10 @@ class _Layer:
                 if self._new(name, "definition"):
                     self.result.definitions[name.text] = item
             case tree.DefineItem(name):
-                if name.text in self.result.definitions:
-                    self.result.definitions[name.text] = item
-                else:
+                if name.text not in self.result.definitions:
                     self._nothing(name, "definition", "redefine", self.result.definitions)
+                elif self._changes(name, "definition", "redefine"):
+                    self.result.definitions[name.text] = item
             case tree.DropItem(name, because):
                 if self._inherited(name, "drop"):
                     del self.result.rules[name.text]
@@ -119,13 +134,13 @@ class _Layer:
             case tree.SoftenItem():
                 self._soften(item)
             case tree.SilentItem(name, because):
-                own = self.result.rules.pop(name.text, None)
-                if own is not None and own.book is self.file:
-                    self.result.mistakes.append(say.own_rule(name, "be silent on", own.item))
+                if name.text not in self.result.rules or self._inherited(name, "be silent on"):
+                    self.result.rules.pop(name.text, None)
                 self.result.remarks.append(Remark(name.text, because.value, "silent"))
             case tree.BrokenItem(names):
                 self.result.suspects |= names
-                self.result.unsure |= item.nameless or item.word == "rule"
+                self.result.unsure_rules |= item.nameless and item.word == "rule"
+                self.result.unsure |= item.nameless and item.word != "rule"
             case _:
                 return
 
@@ -148,23 +163,42 @@ class _Layer:
     def _set(self, item: tree.SetItem) -> None:
         name = item.name
         if name.text in self.result.options:
-            if isinstance(item.value, bool):
-                self.result.options[name.text] = item.value
-            else:
+            if not isinstance(item.value, bool):
                 self.result.mistakes.append(say.option_is_on_or_off(item))
+            elif self._changes(name, "option", "set"):
+                self.result.options[name.text] = item.value
         elif name.text in self.result.parameters:
             if isinstance(item.value, bool):
                 self.result.mistakes.append(say.parameter_is_a_number(item))
-            else:
+            elif self._is_inherited(name, "parameter", "set"):
                 self.result.parameters[name.text].append(Value(item, self.level))
         else:
             known = [*self.result.options, *self.result.parameters]
             self._nothing(name, "option or parameter", "set", known)
 
+    def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
+        """Is an option, parameter or definition another rulebook's? If it is not, report it."""
+        if self.result.levels[name.text] < self.level:
+            return True
+        known = self.result.declared_at[name.text]
+        self.result.mistakes.append(say.own(name, kind, verb, known))
+        return False
+
+    def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
+        """Is it inherited, and not changed yet in this rulebook? What is wrong is reported."""
+        if not self._is_inherited(name, kind, verb):
+            return False
+        before = self.result.changed_at.get(name.text)
+        if before is not None and before.span.source is name.span.source:
+            self.result.mistakes.append(say.changed_twice(name, kind, before))
+            return False
+        self.result.changed_at[name.text] = name
+        return True
+
     def _rule(self, item: tree.RuleItem) -> None:
         known = self.result.rules.get(item.name.text)
         if known is None:
-            self.result.rules[item.name.text] = RuleEntry(item, self.file)
+            self.result.rules[item.name.text] = RuleEntry(item, self.file, self.file)
         elif known.book is self.file:
             self.result.mistakes.append(say.rule_twice(item, known.item))
         else:
@@ -173,7 +207,12 @@ class _Layer:
     def _override(self, item: tree.RuleItem) -> None:
         if self._inherited(item.name, "override"):
             base = self.result.rules[item.name.text]
-            self.result.rules[item.name.text] = RuleEntry(merged(base.item, item), self.file)
+            self.result.rules[item.name.text] = RuleEntry(
+                merged(base.item, item),
+                self.file,
+                self.file if item.examples else base.examples_from,
+                item.name,
+            )
 
     def _soften(self, item: tree.SoftenItem) -> None:
         if not self._inherited(item.name, "soften"):
@@ -187,13 +226,17 @@ class _Layer:
             level=item.level or entry.item.level,
             weight=item.weight or entry.item.weight,
         )
-        self.result.rules[item.name.text] = replace(entry, item=softer)
+        self.result.rules[item.name.text] = replace(entry, item=softer, changed=item.name)
         because = item.because.value if item.because else ""
         self.result.remarks.append(Remark(item.name.text, because, "softened"))
 
     def _inherited(self, name: tree.Name, verb: str) -> bool:
         """Is it an inherited rule? What else it is, is reported."""
         known = self.result.rules.get(name.text)
+        before = None if known is None else known.changed
+        if before is not None and before.span.source is name.span.source:
+            self.result.mistakes.append(say.changed_twice(name, "rule", before))
+            return False
         if known is not None and known.book is not self.file:
             return True
         if known is not None:
@@ -203,7 +246,8 @@ class _Layer:
         return False
 
     def _nothing(self, name: tree.Name, kind: str, verb: str, known: Iterable[str]) -> None:
-        if self.result.unsure or name.text in self.result.suspects:
+        unsure = self.result.unsure or (kind == "rule" and self.result.unsure_rules)
+        if unsure or name.text in self.result.suspects:
             return
         base = self.file.extends
         extends = None if base is None else base.name.text

@@ -9,10 +9,13 @@ from rulec.rulebook.declaration_messages import twice
 from rulec.syntax import tree
 
 __all__ = [
+    "changed_twice",
     "inherited_name",
     "inherited_rule",
+    "never_in_force",
     "nothing_to",
     "option_is_on_or_off",
+    "own",
     "own_rule",
     "parameter_is_a_number",
     "rule_twice",
@@ -86,6 +89,42 @@ def own_rule(name: tree.Name, verb: str, known: tree.RuleItem) -> Diagnostic:
         expected="expected an inherited rule",
         help="change the rule itself",
         labels=(Label(known.name.span.place, "the rule is here"),),
+    )
+
+
+def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
+    """``set`` or ``redefine`` of something of the same rulebook."""
+    article = "an" if kind == "option" else "a"
+    return Diagnostic(
+        "R0212",
+        f"`{name.text}` is {article} {kind} of this rulebook, not an inherited one to {verb}",
+        name.span.place,
+        expected=f"expected an inherited {kind}",
+        help=f"change the {kind} itself",
+        labels=(Label(known.span.place, f"the {kind} is here"),),
+    )
+
+
+def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
+    """A second line that changes the same thing in one rulebook."""
+    return Diagnostic(
+        "R0204",
+        f"the {kind} `{name.text}` is changed twice in this rulebook",
+        name.span.place,
+        expected="changed again here",
+        help="say all of it in one place",
+        labels=(Label(before.span.place, "first changed here"),),
+    )
+
+
+def never_in_force(dates: tree.InForce) -> Diagnostic:
+    """``in force from 2024-01-01 until 2020-01-01``."""
+    return Diagnostic(
+        "R0324",
+        f"this is never in force: {dates.until} comes before {dates.since}",
+        dates.span.place,
+        expected="expected the earlier day first",
+        help="exchange the days, or correct one of them",
     )
 
 

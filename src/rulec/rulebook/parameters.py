@@ -21,6 +21,7 @@ def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> Number | N
     name = use.name.text
     if any(call.name == name for call in scope.calls):
         scope.report(say.circle(use, "parameter", scope))
+        scope.provisions.broken |= {call.name for call in scope.calls}
         return None
     known = scope.provisions.numbers
     if name not in known:
@@ -51,12 +52,14 @@ def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
         scope,
         variables={},
         relations={},
-        calls=(*scope.calls, Call(name, use.span)),
-        # As in a count, there is no time in a parameter: it speaks of one state.
-        counted=frozenset(("",)),
+        calls=(*scope.calls, Call(name, None)),
+        counted=frozenset(),
+        taken=frozenset(),
+        in_moment=True,
         used=set(),
     )
-    found = evaluate(item.value, inner)
+    with scope.provisions.one_deeper():
+        found = evaluate(item.value, inner)
     if found is None:
         return None
     wanted = _dimension(name, scope)

@@ -12,6 +12,10 @@ Order = frozenset[tuple[str, str]]
 """All pairs (higher, lower), transitive; levels that are equal stand in both orders."""
 
 
+MOST_LEVELS = 100
+"""More levels are no order that anyone could keep in mind."""
+
+
 def pre_order(
     lines: Sequence[tree.PriorityLine],
 ) -> tuple[tuple[str, ...], Order, list[Diagnostic]]:
@@ -24,11 +28,16 @@ def pre_order(
     strict: set[tuple[str, str]] = set()
     mistakes: list[Diagnostic] = []
     for line in lines:
+        if len({*levels, *(name.text for name in line.levels)}) > MOST_LEVELS:
+            mistakes.append(_too_many(line))
+            break
         for (higher, lower), sign in zip(pairwise(line.levels), line.relations, strict=True):
             above, below = higher.text, lower.text
             pairs = {(above, below)} if sign == ">" else {(above, below), (below, above)}
             demanded = strict | ({(above, below)} if sign == ">" else set())
-            larger = _closed(order | pairs)
+            larger = order
+            for pair in pairs:
+                larger = _with_pair(larger, pair)
             broken = next((pair for pair in demanded if pair[::-1] in larger), None)
             if broken is not None or above == below:
                 mistakes.append(_contradiction(higher, lower, sign, levels))
@@ -39,15 +48,21 @@ def pre_order(
     return tuple(levels), frozenset(order), mistakes
 
 
-def _closed(pairs: set[tuple[str, str]]) -> set[tuple[str, str]]:
-    """The transitive closure, without pairs of a level with itself."""
-    closed = set(pairs)
-    names = {name for pair in pairs for name in pair}
-    for middle in names:
-        above = [one for one, other in closed if other == middle]
-        below = [other for one, other in closed if one == middle]
-        closed |= {(one, other) for one in above for other in below if one != other}
-    return closed
+def _with_pair(order: set[tuple[str, str]], pair: tuple[str, str]) -> set[tuple[str, str]]:
+    """A transitive order with one more pair, transitive again; no level stands above itself."""
+    higher, lower = pair
+    above = [higher, *(one for one, other in order if other == higher)]
+    below = [lower, *(other for one, other in order if one == lower)]
+    return order | {(one, other) for one in above for other in below if one != other}
+
+
+def _too_many(line: tree.PriorityLine) -> Diagnostic:
+    return Diagnostic(
+        "R0323",
+        f"there are more than {MOST_LEVELS} levels of priority",
+        line.span.place,
+        help="use fewer levels, and weights among the rules of one level",
+    )
 
 
 def _contradiction(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Literal
 
+from rulec.rulebook.extent import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
 from rulec.rulebook.numbers import Number
 from rulec.rulebook.overlay import Overlay
 from rulec.syntax import tree
@@ -23,8 +25,29 @@ class Provisions:
     at: str
     traffic: Literal["", "left", "right"] = ""
     numbers: dict[str, Number | None] = field(default_factory=dict)
-    expansions: int = 0
-    """How many definitions have been put into the formula at hand."""
+    broken: set[str] = field(default_factory=set)
+    """Definitions with a mistake that has been reported."""
+    parts: int = 0
+    depth: int = 0
+    """How much of the expression at hand has been looked at, and how deep in it we are."""
+
+    def begin(self) -> None:
+        """Turn to another expression."""
+        self.parts = self.depth = 0
+
+    @contextmanager
+    def one_deeper(self) -> Iterator[None]:
+        """Look at one more part. Raises TooDeepError, TooLargeError."""
+        self.parts += 1
+        if self.parts > MOST_PARTS:
+            raise TooLargeError
+        if self.depth == DEEPEST:
+            raise TooDeepError
+        self.depth += 1
+        try:
+            yield
+        finally:
+            self.depth -= 1
 
     @property
     def options(self) -> Mapping[str, bool]:

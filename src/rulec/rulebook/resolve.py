@@ -5,23 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, Place
 from rulec.rulebook import rule_messages
-from rulec.rulebook.declared import Declared, declare
+from rulec.rulebook.declared import declare
 from rulec.rulebook.facts import fact_of
-from rulec.rulebook.meaning import number
-from rulec.rulebook.meaning_messages import unknown_dimension
 from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
 from rulec.rulebook.overlay import Overlay, overlay
-from rulec.rulebook.parameters import parameter
 from rulec.rulebook.priorities import pre_order
+from rulec.rulebook.provision_checks import check_provisions
 from rulec.rulebook.provisions import Provisions, in_force
-from rulec.rulebook.scope import Scope
-from rulec.rulebook.translate import check_definition, translate_rule
+from rulec.rulebook.translate import translate_rule
 from rulec.rulebook.uses import names_used
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.units import DIMENSIONS
 
 
 def resolve(
@@ -50,12 +46,12 @@ def resolve(
     """
     books = [*bases, file]
     declared = declare([*vocabularies, *books], opaque=opaque)
-    spans = {**declared.spans}
+    spans = {**declared.type_spans, **declared.spans}
     laid = overlay(books, spans, unsure=opaque or not all(one.complete for one in books))
     provisions = Provisions(laid, at, _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
-    mistakes += _provisions(declared, provisions)
+    mistakes += check_provisions(declared, provisions)
     facts: list[Fact] = []
     for fact in (item for one in (*vocabularies, *books) for item in one.items):
         if isinstance(fact, tree.FactItem):
@@ -68,7 +64,7 @@ def resolve(
         mistakes += found
         if in_force(entry.item.in_force, at):
             rules.append(rule)
-    mistakes = list(dict.fromkeys(mistakes))
+    mistakes = _once(mistakes)
     good = [rule for rule in rules if rule is not None]
     wrong = any(one.severity == "error" for one in mistakes)
     whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
@@ -110,28 +106,17 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
     return declared.vocabulary(file.name.text), ()
 
 
+def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Each mistake once: a definition's may come back with every use of it."""
+    first: dict[tuple[str, str, Place | None], Diagnostic] = {}
+    for one in mistakes:
+        first.setdefault((one.code, one.message, one.place), one)
+    return list(first.values())
+
+
 def _last_traffic(books: Sequence[tree.File]) -> Literal["", "left", "right"]:
     sides: list[Literal["left", "right"]] = [one.traffic.side for one in books if one.traffic]
     return sides[-1] if sides else ""
-
-
-def _provisions(declared: Declared, provisions: Provisions) -> Iterator[Diagnostic]:
-    """What is wrong with parameters and definitions, whoever uses them."""
-    laid = provisions.overlay
-    mistakes: list[Diagnostic] = []
-    scope = Scope(declared, provisions, {}, mistakes)
-    for values in laid.parameters.values():
-        for value in values:
-            kind = value.item.dimension if isinstance(value.item, tree.ParamItem) else None
-            if kind is not None and kind.text not in DIMENSIONS:
-                mistakes.append(unknown_dimension(kind, list(DIMENSIONS)))
-        # Evaluated here once, without a use that would have to stand in the messages.
-        first = values[0].item.name
-        if any(in_force(value.item.in_force, provisions.at) for value in values):
-            parameter(tree.AtomUse(first, (), first.span), scope, number)
-    for definition in laid.definitions.values():
-        mistakes += check_definition(definition, declared, provisions)
-    yield from mistakes
 
 
 def _is_whole(file: tree.File) -> bool:

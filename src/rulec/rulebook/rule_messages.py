@@ -5,18 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rulec.diagnostics import Diagnostic, did_you_mean, named
+from rulec.rulebook.extent import DEEPEST, MOST_PARTS
 from rulec.syntax import tree
 
 
-def too_deep(item: tree.RuleItem, limit: int) -> Diagnostic:
-    """A formula that is too deep once definitions are put in."""
+def too_deep(what: str, name: tree.Name) -> Diagnostic:
+    """A formula, definition or parameter that is too deep once definitions are put in."""
     return Diagnostic(
         "R0111",
-        f"the formula of `{item.name.text}` is nested more than {limit} levels deep, definitions "
-        "and exceptions included",
-        item.name.span.place,
-        help="split it into several rules",
+        f"the {what}{_of(what)} `{name.text}` is nested more than {DEEPEST} levels deep, with "
+        "definitions put in",
+        name.span.place,
+        help="say its parts in rules of their own",
     )
+
+
+def too_large(what: str, name: tree.Name) -> Diagnostic:
+    """One that is too large once definitions are put in."""
+    return Diagnostic(
+        "R0323",
+        f"the {what}{_of(what)} `{name.text}` has more than {MOST_PARTS:,} parts, with definitions "
+        "put in",
+        name.span.place,
+        help="definitions that use another one twice double it each time: make them simpler",
+    )
+
+
+def _of(what: str) -> str:
+    return " of" if what == "formula" else ""
 
 
 def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:

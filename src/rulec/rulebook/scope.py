@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
@@ -37,10 +38,13 @@ class Anything:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A definition that is being put in the place of its use."""
+    """A definition that is being put in the place of its use, or a parameter evaluated.
+
+    ``span`` is the use; None where that says nothing: a parameter is the same wherever it is used.
+    """
 
     name: str
-    span: Span
+    span: Span | None
 
 
 Declared_ = Signal | Enumeration | QuantityDeclaration
@@ -51,8 +55,9 @@ class Scope:
     """One rule's or definition's view: the declarations, provisions and its variables.
 
     ``relations`` are the parameters of a definition that stand for relations. ``calls`` are the
-    definitions that are being put in, outermost first. ``in_count`` tells that the formula is the
-    body of a count, ``counted`` are the variables (actual names) of the counts around.
+    definitions that are being put in, outermost first. ``in_moment`` tells that the formula speaks
+    of one state alone, as in a count and in a parameter. ``counted`` are the variables (actual
+    names) of the counts around, ``taken`` all actual names in use.
     """
 
     declared: Declared
@@ -63,16 +68,17 @@ class Scope:
     relations: dict[str, str | Anything] = field(default_factory=dict)
     calls: tuple[Call, ...] = ()
     counted: frozenset[str] = frozenset()
+    taken: frozenset[str] = frozenset()
+    in_moment: bool = False
     of_definition: bool = False
-
-    @property
-    def in_count(self) -> bool:
-        """Is this the body of a count, which speaks of one state alone?"""
-        return bool(self.counted)
 
     def report(self, mistake: Diagnostic) -> None:
         """Note a mistake, with the uses of definitions that led to it."""
-        labels = [Label(call.span.place, f"`{call.name}` is used here") for call in self.calls]
+        labels: list[Label] = []
+        for call in reversed(self.calls):
+            if call.span is None:
+                break
+            labels.insert(0, Label(call.span.place, f"`{call.name}` is used here"))
         if labels:
             mistake = replace(mistake, labels=(*mistake.labels, *labels))
         if mistake not in self.mistakes:
@@ -84,6 +90,10 @@ class Scope:
         if isinstance(found, QuantityDeclaration):
             return found
         return self.declared.behind_atom(name)
+
+    def relation_names(self) -> list[str]:
+        """What can be given to a definition for a relation."""
+        return [*self.declared.atoms(), *SIDES, *self.provisions.names(), *self.relations]
 
     def absolute(self, use: tree.AtomUse, name: str) -> str | None:
         """``near_side_of`` as the side that it is; other names as they are; None if reported."""
@@ -150,18 +160,24 @@ class Scope:
         return Atom(item.name, found, name if isinstance(item, Enumeration) else None)
 
     def object(
-        self, argument: tree.Name, wanted: str | None, parameter: tuple[str, int] | None = None
+        self,
+        argument: tree.Name,
+        wanted: str | None,
+        parameter: tuple[str, int] | None = None,
+        relations: Sequence[str] = (),
     ) -> str | None:
         """The actual name of an object of a type; None if there is none such, which is reported.
 
-        ``parameter``: which parameter of which declaration asks for it.
+        ``parameter``: which parameter of which declaration asks for it. ``relations``: what could
+        be meant besides an object.
         """
         self.used.add(argument.text)
         if isinstance(self.relations.get(argument.text), Anything):
             return argument.text
         variable = self.variables.get(argument.text)
         if variable is None:
-            self.report(_unknown_variable(argument, list(self.variables), self.of_definition))
+            known = [*self.variables, *relations]
+            self.report(_unknown_variable(argument, self, known))
             return None
         if wanted is None or variable.type is None or self.declared.fits(variable.type, wanted):
             return variable.actual
@@ -171,10 +187,11 @@ class Scope:
         return None
 
 
-def _unknown_variable(name: tree.Name, known: list[str], of_definition: bool) -> Diagnostic:
-    owner = "definition" if of_definition else "rule"
-    if known:
-        way_out = f"the {owner}'s variables are {named(known)}"
+def _unknown_variable(name: tree.Name, scope: Scope, known: Sequence[str]) -> Diagnostic:
+    owner = "definition" if scope.of_definition else "rule"
+    variables = list(scope.variables)
+    if variables:
+        way_out = f"the {owner}'s variables are {named(variables)}"
     else:
         way_out = f"declare it behind the {owner}'s name, such as `({name.text}: vehicle)`"
     return Diagnostic(

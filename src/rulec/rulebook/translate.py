@@ -3,34 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook import rule_messages
-from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.declared import Declared
 from rulec.rulebook.examples import example_of
 from rulec.rulebook.exceptions import (
-    MOST_THROUGHOUT,
     BoundedPhaseError,
     NoStretchError,
     TooManyExceptionsError,
     exempted,
 )
-from rulec.rulebook.meaning import meaning, number, truth
+from rulec.rulebook.extent import TooDeepError, TooLargeError, excess
+from rulec.rulebook.meaning import number, truth
 from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.numbers import negated
+from rulec.rulebook.numerals import exact_value
 from rulec.rulebook.overlay import RuleEntry
 from rulec.rulebook.provisions import Provisions
-from rulec.rulebook.scope import Anything, BoundVariable, Call, Scope
+from rulec.rulebook.scope import Scope
+from rulec.rulebook.variables import variables_of
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
-
-DEEPEST = 240
-"""Operators inside one another in a rule with its definitions put in."""
 
 
 def translate_rule(
@@ -43,27 +41,26 @@ def translate_rule(
     item = entry.item
     mistakes: list[Diagnostic] = []
     variables = variables_of(item.variables, declared, mistakes)
-    scope = Scope(declared, provisions, variables, mistakes)
-    provisions.expansions = 0
-    required = None if item.require is None else truth(item.require, scope)
-    exemptions = _exemptions(item, scope)
-    condition = None if item.when is None else truth(item.when, scope)
-    formula = None
-    if required is not None and exemptions is not None and (condition or item.when is None):
-        formula = _with_exceptions(item, required, exemptions, condition, scope)
-    if formula is not None and too_deep(formula):
-        scope.report(rule_messages.too_deep(item, DEEPEST))
+    scope = Scope(declared, provisions, variables, mistakes, taken=frozenset(variables))
+    provisions.begin()
+    parts = _parts_of(item, scope)
+    formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
         mistakes += _unused(item, scope)
     if item.level is not None and item.level.text not in levels:
         scope.report(rule_messages.no_level(item.level, levels))
-    weight = Fraction(1) if item.weight is None else Fraction(item.weight.text)
-    if weight <= 0 and item.weight is not None:
+    weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
+    if item.weight is not None and weight == 0:
         scope.report(rule_messages.weightless(item.weight))
     examples = [example_of(example, formula, scope) for example in item.examples]
-    step = step_of(entry.book, scope)
-    if formula is None or any(one.severity == "error" for one in mistakes):
-        return None, mistakes
+    step = _step_of(entry.examples_from, scope)
+    if (
+        parts is None
+        or formula is None
+        or weight is None
+        or any(one.severity == "error" for one in mistakes)
+    ):
+        return None, [_with_change(one, entry) for one in mistakes]
     dates = item.in_force or tree.InForce()
     rule = Rule(
         item.name.text,
@@ -82,51 +79,14 @@ def translate_rule(
         dates.until,
         entry.book.name.text if entry.book.name else "",
         step,
-        required if exemptions or condition else None,
-        tuple(exemptions or ()),
-        condition,
+        parts.required if parts.exemptions or parts.condition else None,
+        parts.exemptions,
+        parts.condition,
     )
     return rule, mistakes
 
 
-def check_definition(
-    item: tree.DefineItem, declared: Declared, provisions: Provisions
-) -> list[Diagnostic]:
-    """What is wrong with a definition by itself, whoever uses it."""
-    mistakes: list[Diagnostic] = []
-    typed = tuple(one for one in item.parameters if one.type is not None)
-    variables = variables_of(typed, declared, mistakes)
-    mistakes += (
-        twice("parameter", one.name, variables[one.name.text].span)
-        for one in item.parameters
-        if one.type is None and one.name.text in variables
-    )
-    scope = Scope(
-        declared,
-        provisions,
-        variables,
-        mistakes,
-        relations={one.name.text: Anything() for one in item.parameters if one.type is None},
-        of_definition=True,
-    )
-    provisions.expansions = 0
-    inner = replace(scope, calls=(Call(item.name.text, item.name.span),))
-    found = meaning(item.body, inner) is not None
-    if found:
-        mistakes += (
-            rule_messages.unused_parameter(item, one)
-            for one in item.parameters
-            if one.name.text not in inner.used
-        )
-    # A definition's own name as the place that it is used at says nothing.
-    own = item.name.span.place
-    return [
-        replace(one, labels=tuple(label for label in one.labels if label.place != own))
-        for one in mistakes
-    ]
-
-
-def step_of(file: tree.File, scope: Scope) -> Fraction:
+def _step_of(file: tree.File, scope: Scope) -> Fraction:
     """How far the states of a rulebook's examples are apart, in seconds."""
     if file.step is None:
         return Fraction(1)
@@ -140,44 +100,60 @@ def step_of(file: tree.File, scope: Scope) -> Fraction:
     return step
 
 
-def variables_of(
-    parameters: tuple[tree.Parameter, ...], declared: Declared, mistakes: list[Diagnostic]
-) -> dict[str, BoundVariable]:
-    """Variables with their types; what is wrong with them is added to ``mistakes``."""
-    found: dict[str, BoundVariable] = {}
-    for one in parameters:
-        name, type_ = one.name, one.type
-        assert type_ is not None, "the grammar asks for a variable's type"
-        known = type_.text in declared.types
-        if not known and not declared.may_know_type(type_.text):
-            mistakes.append(unknown_type(type_, list(declared.types)))
-        if name.text in found:
-            mistakes.append(twice("variable", name, found[name.text].span))
-        else:
-            found[name.text] = BoundVariable(type_.text if known else None, one.span, name.text)
-    return found
+def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
+    """A mistake in what a rule inherits, with the line that changed the rule."""
+    changed = None if entry.changed is None else entry.changed.span.place
+    if changed is None or mistake.place is None or mistake.place.file == changed.file:
+        return mistake
+    return replace(mistake, labels=(*mistake.labels, Label(changed, "the rule is changed here")))
 
 
-def _exemptions(item: tree.RuleItem, scope: Scope) -> list[Exemption] | None:
-    """What `unless` says; None if it has a mistake, which is then reported."""
-    found = [(truth(one.formula, scope), one.scope or "throughout") for one in item.unless]
-    good = [Exemption(formula, when) for formula, when in found if formula is not None]
-    return good if len(good) == len(found) else None
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """What a rule requires, what it exempts, and when it is in force."""
+
+    required: Formula
+    exemptions: tuple[Exemption, ...]
+    condition: Formula | None
 
 
-def _with_exceptions(
-    item: tree.RuleItem,
-    formula: Formula,
-    exemptions: list[Exemption],
-    condition: Formula | None,
-    scope: Scope,
-) -> Formula | None:
-    """The formula with `unless` and `when`; None if they don't fit it, which is then reported."""
-    if condition is not None:
+def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
+    """The parts of a rule's formula; None if one has a mistake, which is then reported."""
+    try:
+        required = None if item.require is None else truth(item.require, scope)
+        found = [(truth(one.formula, scope), one.scope or "throughout") for one in item.unless]
+        condition = None if item.when is None else truth(item.when, scope)
+    except TooDeepError:
+        scope.report(rule_messages.too_deep("formula", item.name))
+        return None
+    except TooLargeError:
+        scope.report(rule_messages.too_large("formula", item.name))
+        return None
+    exemptions = tuple(Exemption(formula, when) for formula, when in found if formula is not None)
+    whole = len(exemptions) == len(found) and (condition is not None or item.when is None)
+    return None if required is None or not whole else _Parts(required, exemptions, condition)
+
+
+def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
+    """All of it as one formula; None if it has a mistake, which is then reported."""
+    formula = _with_exceptions(item, parts, scope)
+    match "" if formula is None else excess(formula):
+        case "deep":
+            scope.report(rule_messages.too_deep("formula", item.name))
+            return None
+        case "large":
+            scope.report(rule_messages.too_large("formula", item.name))
+            return None
+    return formula
+
+
+def _with_exceptions(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
+    formula, exemptions = parts.required, list(parts.exemptions)
+    if parts.condition is not None:
         if _guards_a_stretch(formula):
-            exemptions = [*exemptions, Exemption(negated(condition), "at some point")]
+            exemptions.append(Exemption(negated(parts.condition), "at some point"))
         else:
-            formula = Binary(BinaryOperator.IMPLIES, condition, formula)
+            formula = Binary(BinaryOperator.IMPLIES, parts.condition, formula)
     try:
         return exempted(formula, exemptions)
     except NoStretchError:
@@ -187,7 +163,7 @@ def _with_exceptions(
     except BoundedPhaseError:
         scope.report(say.bounded_phase(_throughout(item)))
     except TooManyExceptionsError:
-        scope.report(say.too_many_exceptions(_throughout(item), MOST_THROUGHOUT))
+        scope.report(say.too_many_exceptions(_throughout(item)))
     return None
 
 
@@ -198,26 +174,6 @@ def _throughout(item: tree.RuleItem) -> tree.Unless:
 def _guards_a_stretch(formula: Formula) -> bool:
     guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
     return isinstance(formula, Unary) and formula.operator in guarding
-
-
-def too_deep(formula: Formula) -> bool:
-    """Has it more than ``DEEPEST`` operators inside one another?"""
-    layer: list[Formula] = [formula]
-    for _ in range(DEEPEST):
-        layer = [part for one in layer for part in _parts(one)]
-        if not layer:
-            return False
-    return True
-
-
-def _parts(formula: Formula) -> tuple[Formula, ...]:
-    match formula:
-        case Unary(_, operand):
-            return (operand,)
-        case Binary(_, left, right):
-            return left, right
-        case _:
-            return ()
 
 
 def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:

@@ -183,4 +183,13 @@ OVERLAY_MEANING = {
         "not wet)\n"
         "  unless a or b or c or d or e throughout\n}\n",
     ),
+    "R0324": Explanation(
+        "something is in force until a day before it begins",
+        "What is `in force from` one day `until` another is in force on both and on all between "
+        "them. If the second day comes first there is none.",
+        "rulebook example\nsignal wet\nhard rule r {\n  in force from 2024-07-01 until 2020-06-30\n"
+        "  require not wet\n}\n",
+        "rulebook example\nsignal wet\nhard rule r {\n  in force from 2020-07-01 until 2024-06-30\n"
+        "  require not wet\n}\n",
+    ),
 }

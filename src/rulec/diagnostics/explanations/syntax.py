@@ -86,8 +86,8 @@ SYNTAX = {
         "rulebook example\nsignal p\nhard rule r { require not p }\n",
     ),
     "R0112": Explanation(
-        "a number is too large",
-        "Numbers reach to about 1.8e308, as in nearly all programs.",
+        "a number is too large or too long",
+        "Numbers reach to about 1.8e308, as in nearly all programs, and have at most 400 digits.",
         "rulebook example\nquantity speed in km/h default 1e999\nsignal p\n"
         "hard rule r { require p }\n",
         "rulebook example\nquantity speed in km/h default 130\nsignal p\n"
