@@ -74,9 +74,12 @@ COMPILING = {
         "a bound is not a multiple of the step",
         "A bound in seconds becomes a number of states, with the time from one state of a trace "
         "to the next, its step. If a bound falls between two states, nobody knows what held "
-        "there. Choose a bound that is a multiple of the step, or traces with a finer one.",
-        "",
-        "",
-        "circumstance",
+        "there. Choose a bound that is a multiple of the step, or traces with a finer one. The "
+        "states of examples are 1 s apart unless their rule says otherwise.",
+        "rulebook example\nsignal p default false\n"
+        "hard rule r {\n  require eventually[<= 1.5 s] p\n}\n",
+        "rulebook example\nsignal p default false\n"
+        "hard rule r {\n  require eventually[<= 2 s] p\n}\n",
+        "compiled",
     ),
 }
