@@ -48,9 +48,10 @@ class _Obligation(NamedTuple):
 class Obligations:
     """The obligations of a formula without operators of the past, as variables of BDDs.
 
-    The variables of ``propositions``, a graph without states, are those of letters, by ``names``,
-    before those of obligations. ``first`` is what the formula asks of the first letter and the rest,
-    ``unfolded`` what each obligation asks, by its variable, ``known`` what they imply of each other.
+    ``propositions``, a graph without states, has a variable for each: those of letters, by their
+    ``names``, come before those of obligations. ``first`` is what the formula asks of a letter and
+    of the rest of the word, ``unfolded`` what each obligation asks, by its variable, and ``known``
+    what obligations imply of each other.
     ``is_safety``: no word is rejected but by one of its prefixes; ``is_cosafety``: none is accepted
     but by one. Judged by the formula's operators, so that it may be one although neither is true.
     """
