@@ -126,6 +126,15 @@ def test_a_long_bound_takes_as_many_states_as_it_has_steps(formula, semantics):
 
 
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_ranges_that_overlap_ask_for_the_same_instants(semantics):
+    """Which of the coming 40 instants must have q: no set but unions of ranges of 25."""
+    formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ALWAYS, 16, 40, Q)))
+    machine = machine_of(formula, semantics)
+    assert len(machine.following) < 1000 < 2**16
+    assert agrees(machine, formula, semantics)
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
 def test_random_words_tell_machines_apart(semantics):
     """So they are worth being asked: one step more or less shows."""
     for formula, other in [

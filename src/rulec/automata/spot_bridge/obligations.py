@@ -139,9 +139,16 @@ class Obligations:
 
     def _unfolded(self, one: _Obligation) -> Any:
         """What an obligation asks of this letter, and what it leaves to the rest of the word."""
-        strong, _, right, (low, high) = one
+        strong, left, right, (low, high) = one
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue
+        if high is not None and 0 < low < high and left == (_TRUE if strong else _FALSE):
+            # Instant by instant, so that ranges that overlap are seen to ask for the same.
+            asked = buddy.bddfalse if strong else buddy.bddtrue
+            for distance in range(low, high + 1):
+                there = self._unfolded(one._replace(span=Range(distance, distance)))
+                asked = asked | there if strong else asked & there
+            return asked
         ends_here = low == 0 and high == 0
         now = self._now(right, True) if low == 0 else buddy.bddfalse if strong else buddy.bddtrue
         if ends_here:
@@ -149,8 +156,8 @@ class Obligations:
         rest = Range(max(low - 1, 0), None if high is None else high - 1)
         later = self._variable(one._replace(span=rest))
         if strong:
-            return now | (self._now(one.left, True) & later)
-        return now & (self._now(one.left, True) | later)
+            return now | (self._now(left, True) & later)
+        return now & (self._now(left, True) | later)
 
     def _implications(self) -> Any:
         """What obligations imply of each other: a shorter until a longer one."""
