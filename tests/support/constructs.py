@@ -22,7 +22,7 @@ HEADER = [
     ),
     Construct(
         ("extends vienna", "extends\n  vienna"),
-        ("extends", 'extends "vienna"', "extends a, b", "extnds vienna", "extends until"),
+        ("extends", 'extends "vienna"', "extends a, b", "extnds vienna", "extends 2go"),
     ),
     Construct(
         ("traffic left", "traffic\n  left"),
