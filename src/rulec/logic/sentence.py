@@ -85,6 +85,26 @@ def sentence(formula: Formula, variables: Sequence[tuple[str, str]], related: Re
     return replace(body, text=f"{_for_every(variables, related)}{body.text}") if variables else body
 
 
+_WHEN = {
+    "initially": "at the start of the trace",
+    "at start": "at the start of the stretch that the rule guards",
+    "throughout": "throughout the stretch that the rule guards",
+    "at some point": "at some point of the stretch that the rule guards",
+    "at end": "at the end of the stretch that the rule guards",
+}
+
+
+def exemption(formula: Formula, scope: str) -> Phrase:
+    """An exception of a rule as a sentence, without its full stop; ``scope`` as in a rulebook."""
+    return _after(f"it does not count if, {_WHEN[scope]},", phrase(formula, inside=True))
+
+
+def condition(formula: Formula, *, guards: bool) -> Phrase:
+    """Where a rule applies at all; ``guards``: it guards a stretch of the trace."""
+    when = _WHEN["throughout" if guards else "initially"]
+    return _after(f"it counts only if, {when},", phrase(formula, inside=True))
+
+
 Related = Callable[[str, str], bool]
 
 

@@ -13,8 +13,9 @@ import click
 
 from rulec.automata.compiled import CompiledRule
 from rulec.logic.english import amount, number_text, plural, spoken
+from rulec.logic.formula import Unary, UnaryOperator
 from rulec.logic.printing import in_words
-from rulec.logic.sentence import Phrase, sentence
+from rulec.logic.sentence import Phrase, condition, exemption, sentence
 from rulec.logic.sentence_lines import in_one_line, lines
 from rulec.report import automaton_text
 from rulec.report.automaton import Automaton, automaton_of
@@ -93,12 +94,39 @@ def _remarks(states: Sequence[Witness]) -> Iterator[str]:
 
 
 def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
-    """The rule as a sentence."""
+    """The rule as a sentence, without its exceptions."""
     return sentence(
-        rule.formula,
+        rule.required or rule.formula,
         [(variable.name, variable.type) for variable in rule.variables],
         lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
     )
+
+
+def restrictions_of(rule: Rule) -> list[Phrase]:
+    """When the rule applies, and its exceptions, as sentences."""
+    found = [exemption(one.formula, one.scope) for one in rule.exemptions]
+    if rule.condition is None:
+        return found
+    guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+    guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
+    return [condition(rule.condition, guards=guards), *found]
+
+
+def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
+    phrases = [phrase_of(rule, vocabulary), *restrictions_of(rule)]
+    return "\n".join(in_english(phrase, width) for phrase in phrases)
+
+
+def _formula(rule: Rule, width: int) -> list[str]:
+    """The formula; one with exceptions as it is written, and then with them put in."""
+    whole = formula_lines(visible(in_words(rule.formula)), width)
+    if rule.required is None:
+        return whole
+    parts = [in_words(rule.required)]
+    parts += [f"when {in_words(rule.condition)}"] if rule.condition is not None else []
+    parts += [f"unless {in_words(one.formula)} {one.scope}" for one in rule.exemptions]
+    written = [line for part in parts for line in formula_lines(visible(part), width)]
+    return [*written, "that is", *whole]
 
 
 def head(rule: Rule, rulebook: str, width: int) -> str:
@@ -146,12 +174,12 @@ def in_english(phrase: Phrase, width: int) -> str:
 
 def summary(rule: Rule, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
     """The rule in brief."""
-    return f"{head(rule, rulebook, width)}\n\n{in_english(phrase_of(rule, vocabulary), width)}"
+    return f"{head(rule, rulebook, width)}\n\n{_sentences(rule, vocabulary, width)}"
 
 
 def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
     """The whole page."""
-    formula = formula_lines(visible(in_words(page.rule.formula)), width - len(INDENT))
+    formula = _formula(page.rule, width - len(INDENT))
     automaton = (
         automaton_text.as_text(page.automaton, width - len(INDENT))
         if len(page.automaton.transitions) <= MOST_LISTED
@@ -161,7 +189,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
     if page.step_s is not None:
         automaton = f"for traces with steps of {amount(page.step_s, 's')}:\n{automaton}"
     sections = [
-        ("in English", in_english(phrase_of(page.rule, vocabulary), width)),
+        ("in English", _sentences(page.rule, vocabulary, width)),
         ("formula", _indented(formula)),
         ("automaton", _indented(automaton.split("\n"))),
         ("shortest traces", _indented(list(_examples(page)))),
@@ -239,5 +267,6 @@ def _as_data(rule: Rule, vocabulary: Vocabulary) -> dict[str, Any]:
         "in_force_until": rule.in_force_until,
         "book": rule.book,
         "sentence": in_one_line(phrase_of(rule, vocabulary)),
+        "restrictions": [in_one_line(phrase) for phrase in restrictions_of(rule)],
         "formula": in_words(rule.formula),
     }
