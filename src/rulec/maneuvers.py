@@ -11,11 +11,13 @@ from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.product import Product, count_paths, explore, instances
+from rulec.runtime.terms import names_in
 from rulec.trace import State, TraceGraph, Value
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph, PartitionName
+    from rulec.rulebook.model import Rulebook
 
 RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
     "paper": ("position",),
@@ -29,9 +31,13 @@ SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
 
 @dataclass(frozen=True, slots=True)
 class Maneuvers:
-    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule."""
+    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
+
+    ``rules`` have judged them, by machines for the graph's step.
+    """
 
     graph: NavigationGraph
+    rules: CompiledRulebook
     traces: int
     satisfying: int
     product: Product
@@ -45,16 +51,17 @@ def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
 
     Raises:
-        RulecError: R0502 to R0505 if the graph does not supply what the rules read.
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
+            rule was compiled for another step.
     """
     traces = _in_terms_of(rules.vocabulary, graph.trace_graph())
     try:
-        bound = instances(traces, rules)
+        bound = instances(traces, rules, graph.step)
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
     explored = explore(traces, bound)
-    return Maneuvers(graph, count_paths(traces), explored.accepted, explored)
+    return Maneuvers(graph, rules, count_paths(traces), explored.accepted, explored)
 
 
 def _in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
@@ -92,13 +99,15 @@ def _state(vocabulary: Vocabulary, objects: Mapping[str, str], state: State) -> 
     return kept
 
 
-def partition_for(rules: CompiledRulebook, wanted: PartitionName | None) -> PartitionName:
+def partition_for(
+    rules: Rulebook | CompiledRulebook, wanted: PartitionName | None
+) -> PartitionName:
     """The wanted partition, or the one that the rules need.
 
     Raises:
         RulecError: R0405 if the rules need another one, or two.
     """
-    read = {read.name for rule in rules.rules for read in rule.machine.reads}
+    read = {name for rule in rules.rules for name in names_in(rule.formula)}
     needed = {
         name: [relation for relation in relations if relation in read]
         for name, relations in RELATIONS_OF.items()

@@ -9,6 +9,8 @@ The command line and ``import rulec`` are thin layers over these functions.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,10 +18,14 @@ from rulec.automata import compiled_file
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import opened
+from rulec.logic.timing import speaks_of_seconds
 from rulec.maneuvers import Maneuvers, judged, partition_for
+from rulec.runtime.numbers import exact
+from rulec.runtime.verify import check_step
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
+    from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.examples import ExampleRun
@@ -37,28 +43,58 @@ def compile_rulebook(
     reference: str | Path | Rulebook | CompiledRulebook,
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    step_s: Fraction | float | None = None,
 ) -> CompiledRulebook:
     """Compile a rulebook: given by name, by path (source or compiled), or itself.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
-    than it says, for one.
+    than it says, for one. ``step_s`` (above 0, a float meaning the decimal that is written) is the
+    step of the traces that rules with bounds in seconds are compiled for; else it is that of their
+    own examples.
 
     Raises:
-        RulecError: with every mistake in the source, or why it cannot be compiled or read.
+        RulecError: with every mistake in the source, or why it cannot be compiled or read; R0407
+            for a bound that is no multiple of the step, R0507 if it has been compiled for another.
     """
+    step = None if step_s is None else exact(step_s)
+    found = machines(reference, search_path, warn)
+    if not isinstance(found, CompiledRulebook):
+        return found.at_own_steps() if step is None else found(step)
+    for rule in found.rules:
+        if step is not None:
+            check_step(rule, step)
+    return found
+
+
+def machines(
+    reference: str | Path | Rulebook | CompiledRulebook | AnyStep,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+) -> CompiledRulebook | AnyStep:
+    """As ``compile_rulebook``; if the step of traces makes a difference, for those of any step."""
     if isinstance(reference, CompiledRulebook):
         return reference
-    if not isinstance(reference, str | Path):
-        from rulec.automata.compiler import compile_rulebook as through_spot
-
-        return through_spot(reference)
-    if Path(reference).suffix == ".json":
+    if isinstance(reference, str | Path) and Path(reference).suffix == ".json":
         return compiled_file.read_compiled(Path(reference))
-    from rulec.runtime.examples import surprise
+    from rulec.automata.any_step import AnyStep
 
-    run = run_examples(reference, search_path)
-    warn([*run.warnings, *(surprise(one) for one in run.outcomes if not one.passed)])
-    return run.compiled
+    if isinstance(reference, AnyStep):
+        return reference
+    if not isinstance(reference, str | Path):
+        every = AnyStep(reference)
+        return every if every.depends() else every.at_own_steps()
+    from rulec.rulebook.loader import read_rulebook
+    from rulec.runtime.examples import run_all, surprise
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path])
+    every = AnyStep(loaded.rulebook)
+    # A rule with bounds in seconds but no examples need not fit the step that those would have.
+    rules = tuple(
+        one for one in loaded.rulebook.rules if one.examples or not speaks_of_seconds(one.formula)
+    )
+    outcomes = run_all(replace(loaded.rulebook, rules=rules), every.at_own_steps(rules)).outcomes
+    warn([*loaded.warnings, *(surprise(one) for one in outcomes if not one.passed)])
+    return every if every.depends() else every.at_own_steps()
 
 
 def run_examples(
@@ -69,12 +105,13 @@ def run_examples(
     ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
     wild. Raises RulecError like ``compile_rulebook``.
     """
-    from rulec.automata.compiler import compile_rulebook as through_spot
+    from rulec.automata.any_step import AnyStep
     from rulec.rulebook.loader import read_rulebook
     from rulec.runtime.examples import run_all
 
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path])
-    return run_all(loaded.rulebook, through_spot(loaded.rulebook), loaded.warnings, pattern)
+    compiled = AnyStep(loaded.rulebook).at_own_steps()
+    return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
@@ -104,7 +141,7 @@ def navigation_graph(
 
 def find_maneuvers(
     scenario: str | Path | Scenario,
-    rulebook: str | Path | Rulebook | CompiledRulebook,
+    rulebook: str | Path | Rulebook | CompiledRulebook | AnyStep,
     *,
     partition: PartitionName | None = None,
     adjacency: AdjacencyName = "touch",
@@ -115,12 +152,13 @@ def find_maneuvers(
 
     ``partition``: the one whose relations the rulebook reads, unless given. Raises RulecError.
     """
-    rules = compile_rulebook(rulebook)
+    rules = machines(rulebook)
+    source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
     graph = navigation_graph(
         scenario,
-        partition=partition_for(rules, partition),
+        partition=partition_for(source, partition),
         adjacency=adjacency,
         step_s=step_s,
         horizon_s=horizon_s,
     )
-    return judged(graph, rules)
+    return judged(graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step))

@@ -26,6 +26,9 @@ def covered(*rules, pattern=None):
     return coverage(run_all(rulebook, compile_rulebook(rulebook), pattern=pattern))
 
 
+WORDS = parse_rulebook(HEAD + "hard rule A { require p }").vocabulary
+
+
 def test_edges_and_values_are_counted():
     # Until `p` there are two edges: staying, and leaving for good.
     (one,) = covered("hard rule A { require eventually p accept { not p; p } reject { not p } }")
@@ -38,7 +41,7 @@ def test_what_is_missing_is_said():
     (edge,) = one.missing_edges
     assert (edge.source, edge.accepted) == (0, True)
     assert edge.target != 0
-    assert missing_example(edge) == "accept { p }"
+    assert missing_example(edge, WORDS) == "accept { p }"
     assert one.missing_values == ((Atom("p"), True),)
     assert (one.total, one.covered, percent([one])) == (4, 2, 50)
 
@@ -74,7 +77,7 @@ def test_with_a_pattern_only_rules_that_ran_count():
 
 def test_a_value_that_the_rule_does_not_name_stands_for_the_others():
     (one,) = covered("hard rule A (v: t) { require always not red(v) }")
-    assert [missing_example(edge) for edge in one.missing_edges] == [
+    assert [missing_example(edge, WORDS) for edge in one.missing_edges] == [
         "reject { red(v) }",
         "accept { amber(v) }",
     ]
@@ -100,7 +103,7 @@ def test_with_every_proposed_example_everything_is_covered(formula):
     rule = f"require {formula}"
     (before,) = covered(f"hard rule A (v: t) {{ {rule} }}")
     assert len(before.missing_edges) == before.n_edges
-    examples = "\n".join(missing_example(edge) for edge in before.missing_edges)
+    examples = "\n".join(missing_example(edge, WORDS) for edge in before.missing_edges)
     rulebook = parse_rulebook(f"{HEAD}hard rule A (v: t) {{ {rule}\n{examples} }}")
     run = run_all(rulebook, compile_rulebook(rulebook))
     assert all(one.passed for one in run.outcomes), in_words(rulebook.rules[0].formula)

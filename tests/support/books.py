@@ -44,17 +44,27 @@ def rule(name, formula, *variables, strength="hard"):
     return Rule(name, strength, tuple(bound), formula, cite=f"Art. {name}")
 
 
-def compile_here(rulebook):
+def compile_here(rulebook, step_s=None):
     """As the compiler does, without a process of its own: for tests with many small rulebooks."""
     from rulec.automata import spot_bridge
     from rulec.automata.spot_worker import _answer
 
     compiled = []
     for one in rulebook.rules:
-        job = compiler._job(rulebook, one, cpu_limit_s=5)
-        compiled.append(compiler._compiled(one, _answer(job)))
+        step = compiler._step(one, step_s)
+        job = compiler._job(rulebook, one, step, cpu_limit_s=5)
+        compiled.append(compiler._compiled(one, step, _answer(job)))
     return CompiledRulebook(
-        rulebook.name, rulebook.vocabulary, tuple(compiled), "", "", "", (), "", spot_bridge.VERSION
+        rulebook.name,
+        rulebook.vocabulary,
+        tuple(compiled),
+        "",
+        "",
+        "",
+        (),
+        "",
+        spot_bridge.VERSION,
+        semantics=rulebook.semantics,
     )
 
 

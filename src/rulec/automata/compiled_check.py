@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Container
+from fractions import Fraction
 from itertools import chain
 
 from rulec.automata import compiled_schema as schema
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled_formula import problem_in
 from rulec.automata.letters import reads_of
-from rulec.automata.machine import Machine, Read, trap
-from rulec.logic.data import from_data
-from rulec.logic.formula import Atom, atoms_of
+from rulec.automata.machine import Machine, NumberRead, Read, Threshold, trap
+from rulec.logic.data import from_data, number_from_data, terms_from_data
+from rulec.logic.formula import Formula
 from rulec.logic.printing import in_words
-from rulec.rulebook.model import SourceFile, Strength, Variable
-from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.logic.timing import in_steps, speaks_of_seconds
+from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
+from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
 def checked(read: schema.File) -> CompiledRulebook:
@@ -30,17 +33,38 @@ def checked(read: schema.File) -> CompiledRulebook:
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
         _require(bool(plain), f"`{name}` is not a name")
     _require(len(set(names)) == len(names), "two rules have the same name")
+    semantics: Semantics = read.semantics
     return CompiledRulebook(
         read.name,
         vocabulary,
-        tuple(_rule(rule, vocabulary) for rule in read.rules),
+        tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
         read.title,
         read.law,
         read.as_of,
         tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         read.rulec,
         read.spot,
+        semantics,
+        tuple(read.levels),
+        _priorities(read),
+        tuple(read.extends),
+        read.at,
     )
+
+
+def _priorities(read: schema.File) -> frozenset[tuple[str, str]]:
+    """They are a pre-order of the levels."""
+    _require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
+    pairs = frozenset(read.priorities)
+    _require(len(pairs) == len(read.priorities), "a priority is said twice")
+    named = {level for pair in pairs for level in pair}
+    _require(named <= set(read.levels), "a priority is about an unknown level")
+    below: dict[str, set[str]] = {level: {level} for level in read.levels}
+    for higher, lower in pairs:
+        below[higher].add(lower)
+    closed = all(below[lower] <= below[higher] for higher, lower in pairs)
+    _require(closed, "the priorities leave out what follows from them")
+    return pairs
 
 
 def _declaration(
@@ -72,21 +96,25 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
-def _rule(rule: schema.Rule, vocabulary: Vocabulary) -> CompiledRule:
+def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
     variables = tuple(Variable(name, type_name) for name, type_name in rule.variables)
     types = {variable.name: variable.type for variable in variables}
     _require(len(types) == len(variables), f"rule `{rule.name}` names a variable twice")
     for type_name in types.values():
         _require(type_name in vocabulary.types, f"rule `{rule.name}` is about an unknown type")
     formula = from_data(rule.tree)
-    for atom in atoms_of(formula):
-        fits = _fits(atom, vocabulary.declarations.get(atom.name), types)
-        _require(fits, f"rule `{rule.name}` speaks of `{atom}`, which its vocabulary lacks")
+    problem = problem_in(formula, vocabulary, types.keys())
+    _require(problem is None, f"rule `{rule.name}` {problem}")
     _require(in_words(formula) == rule.formula, f"rule `{rule.name}` has two different formulas")
     machine = _machine(rule.machine, rule.name)
     same = machine.reads == reads_of(formula, vocabulary)
     _require(same, f"the table of rule `{rule.name}` does not read what its formula does")
+    level = rule.level
+    _require(not level or level in levels, f"rule `{rule.name}` has an unknown level")
+    weight = number_from_data(rule.weight)
+    _require(weight > 0, f"rule `{rule.name}` has no weight")
     strength: Strength = rule.strength
+    certainty: Certainty = rule.certainty
     return CompiledRule(
         rule.name,
         strength,
@@ -96,23 +124,28 @@ def _rule(rule: schema.Rule, vocabulary: Vocabulary) -> CompiledRule:
         formula,
         machine,
         rule.hoa,
+        _step(rule, formula),
+        level,
+        weight,
+        rule.source,
+        certainty,
+        rule.book,
     )
 
 
-def _fits(atom: Atom, declaration: Declaration | None, variables: Container[str]) -> bool:
-    match declaration:
-        case Enumeration(values=values):
-            known = atom.value in values
-        case Signal():
-            known = atom.value is None
-        case _:
-            return False
-    about = len(declaration.parameters) == len(atom.arguments)
-    return known and about and all(argument in variables for argument in atom.arguments)
+def _step(rule: schema.Rule, formula: Formula) -> Fraction | None:
+    """The step of traces that it is for, without which bounds in seconds are no numbers."""
+    needed = speaks_of_seconds(formula)
+    _require(needed is (rule.step_s is not None), f"rule `{rule.name}` is for a wrong step")
+    if rule.step_s is None:
+        return None
+    step = number_from_data(rule.step_s)
+    in_steps(formula, step)
+    return step
 
 
 def _machine(read: schema.Machine, rule: str) -> Machine:
-    reads = tuple(Read(r.name, tuple(r.variables), tuple(r.values), r.others) for r in read.reads)
+    reads = tuple(_read(one) for one in read.reads)
     n_letters = 1
     for item in reads:
         n_letters *= item.size
@@ -138,6 +171,17 @@ def _machine(read: schema.Machine, rule: str) -> Machine:
         read.dead,
         read.safe,
     )
+
+
+def _read(read: schema.Read | schema.NumberRead) -> Read | NumberRead:
+    match read:
+        case schema.Read():
+            return Read(read.name, tuple(read.variables), tuple(read.values), read.others)
+        case schema.NumberRead():
+            thresholds = (
+                Threshold(number_from_data(one.limit), one.inclusive) for one in read.thresholds
+            )
+            return NumberRead(terms_from_data(read.terms), tuple(thresholds))
 
 
 def _require(condition: bool, problem: str) -> None:

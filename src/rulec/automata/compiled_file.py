@@ -1,4 +1,4 @@
-"""The compiled rulebook as a file: JSON, version 1, described in docs/compiled.md."""
+"""The compiled rulebook as a file: JSON, version 2, described in docs/compiled.md."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import codecs
 import json
 import re
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +15,15 @@ import msgspec
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.compiled_check import checked
 from rulec.automata.compiled_schema import File, Header
+from rulec.automata.machine import NumberRead, Read
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.diagnostics.json_words import json_words
 from rulec.files import make_folder, opened, written_whole
-from rulec.logic.data import to_data
+from rulec.logic.data import terms_to_data, to_data
 from rulec.logic.printing import in_words
 
 FORMAT = "rulec compiled rulebook"
-VERSION = 1
+VERSION = 2
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
@@ -37,7 +39,11 @@ def to_json(rulebook: CompiledRulebook) -> str:
         "law": rulebook.law,
         "as_of": rulebook.as_of,
         "sources": rulebook.sources,
-        "semantics": "stutter",
+        "semantics": rulebook.semantics,
+        "levels": rulebook.levels,
+        "priorities": sorted(rulebook.priorities),
+        "extends": rulebook.extends,
+        "at": rulebook.at,
         "vocabulary": {
             "name": vocabulary.name,
             "types": {item.name: item.parent for item in vocabulary.types.values()},
@@ -64,14 +70,37 @@ def _rule(rule: CompiledRule) -> dict[str, Any]:
     return {
         "name": rule.name,
         "strength": rule.strength,
+        "level": rule.level,
+        "weight": str(rule.weight),
         "variables": [(variable.name, variable.type) for variable in rule.variables],
         "cite": rule.cite,
         "says": rule.says,
+        "source": rule.source,
+        "certainty": rule.certainty,
+        "book": rule.book,
+        "step_s": None if rule.step_s is None else str(rule.step_s),
         "formula": in_words(rule.formula),
         "tree": to_data(rule.formula),
-        "machine": rule.machine,
+        "machine": {
+            **msgspec.to_builtins(replace(rule.machine, reads=())),
+            "reads": [_read(read) for read in rule.machine.reads],
+        },
         "hoa": rule.hoa,
     }
+
+
+def _read(read: Read | NumberRead) -> dict[str, Any]:
+    match read:
+        case Read():
+            return {"kind": "state", **msgspec.to_builtins(read)}
+        case NumberRead(terms, thresholds):
+            return {
+                "kind": "number",
+                "terms": terms_to_data(terms),
+                "thresholds": [
+                    {"limit": str(one.limit), "inclusive": one.inclusive} for one in thresholds
+                ],
+            }
 
 
 def from_json(data: bytes, file: str) -> CompiledRulebook:

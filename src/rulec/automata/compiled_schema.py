@@ -1,4 +1,4 @@
-"""The fields of a compiled rulebook's file, version 1, as docs/compiled.md describes them."""
+"""The fields of a compiled rulebook's file, version 2, as docs/compiled.md describes them."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class Vocabulary(msgspec.Struct, forbid_unknown_fields=True):
     declarations: list[Enumeration | Signal | Quantity]
 
 
-class Read(msgspec.Struct, forbid_unknown_fields=True):
-    """What a machine asks of a state."""
+class Read(msgspec.Struct, tag="state", tag_field="kind", forbid_unknown_fields=True):
+    """An enumeration or a signal that a machine asks of a state."""
 
     name: str
     variables: list[str]
@@ -57,10 +57,24 @@ class Read(msgspec.Struct, forbid_unknown_fields=True):
     others: bool
 
 
+class Threshold(msgspec.Struct, forbid_unknown_fields=True):
+    """A place on the number line; the limit is a fraction."""
+
+    limit: str
+    inclusive: bool
+
+
+class NumberRead(msgspec.Struct, tag="number", tag_field="kind", forbid_unknown_fields=True):
+    """A number that a machine asks of a state."""
+
+    terms: Any
+    thresholds: list[Threshold]
+
+
 class Machine(msgspec.Struct, forbid_unknown_fields=True):
     """A rule as a table."""
 
-    reads: list[Read]
+    reads: list[Read | NumberRead]
     letters: list[int]
     following: list[list[int]]
     accepting: list[list[bool]]
@@ -73,9 +87,15 @@ class Rule(msgspec.Struct, forbid_unknown_fields=True):
 
     name: str
     strength: Literal["hard", "soft"]
+    level: str
+    weight: str
     variables: list[tuple[str, str]]
     cite: str
     says: str
+    source: str
+    certainty: Literal["", "verified", "secondary", "unverified"]
+    book: str
+    step_s: str | None
     formula: str
     tree: Any
     machine: Machine
@@ -101,6 +121,10 @@ class File(msgspec.Struct, forbid_unknown_fields=True):
     law: str
     as_of: str
     sources: list[Source]
-    semantics: Literal["stutter"]
+    semantics: Literal["stutter", "finite"]
+    levels: list[str]
+    priorities: list[tuple[str, str]]
+    extends: list[str]
+    at: str
     vocabulary: Vocabulary
     rules: list[Rule]

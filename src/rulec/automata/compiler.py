@@ -11,12 +11,15 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.letters import reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.printing import time_in_words
+from rulec.logic.timing import NotAMultipleError, in_steps, operations_of, speaks_of_seconds
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.version import __version__
 
@@ -31,11 +34,15 @@ main()
 """
 
 
-def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> CompiledRulebook:
+def compile_rulebook(
+    rulebook: Rulebook, *, step_s: Fraction | None = None, cpu_limit_s: int = CPU_LIMIT_S
+) -> CompiledRulebook:
     """Compile every rule.
 
     Args:
         rulebook: the rulebook, as meant.
+        step_s: the seconds between two states of the traces to be judged, for rules with bounds in
+            seconds; None for the step of each such rule's own examples.
         cpu_limit_s: processor time that a rule's automaton may take, in whole seconds.
 
     Returns:
@@ -43,20 +50,27 @@ def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> C
 
     Raises:
         RulecError: R0401 for each rule whose automaton is too large, R0402 for each whose
-            automaton failed its check, R0403 if Spot is not installed.
+            automaton failed its check, R0403 if Spot is not installed, R0407 for each rule with a
+            bound that is not a multiple of the step.
     """
     compiled: list[CompiledRule] = []
     problems: list[Diagnostic] = []
-    waiting = list(rulebook.rules)
+    waiting: list[tuple[Rule, Fraction | None, Job]] = []
+    for rule in rulebook.rules:
+        step = _step(rule, step_s)
+        try:
+            waiting.append((rule, step, _job(rulebook, rule, step, cpu_limit_s)))
+        except NotAMultipleError as error:
+            problems.append(_no_multiple(rule, error))
     spot = ""
     while waiting or not spot:
         # A worker lives until it is done or a rule has killed it; the next one takes the rest.
         with _worker() as (process, spot):
             while waiting:
-                rule = waiting.pop(0)
-                answer = _ask(process, _job(rulebook, rule, cpu_limit_s))
+                rule, step, job = waiting.pop(0)
+                answer = _ask(process, job)
                 if isinstance(answer, Done):
-                    compiled.append(_compiled(rule, answer))
+                    compiled.append(_compiled(rule, step, answer))
                 else:
                     problems.append(_problem(rule, answer, cpu_limit_s))
                 if answer is None:
@@ -73,6 +87,11 @@ def compile_rulebook(rulebook: Rulebook, *, cpu_limit_s: int = CPU_LIMIT_S) -> C
         rulebook.sources,
         rulec=__version__,
         spot=spot,
+        semantics=rulebook.semantics,
+        levels=rulebook.levels,
+        priorities=rulebook.priorities,
+        extends=rulebook.extends,
+        at=rulebook.at,
     )
 
 
@@ -114,17 +133,28 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
     return answer
 
 
-def _job(rulebook: Rulebook, rule: Rule, cpu_limit_s: int) -> Job:
+def _step(rule: Rule, step_s: Fraction | None) -> Fraction | None:
+    """The step that the rule is compiled for; None if it is the same for any."""
+    if not speaks_of_seconds(rule.formula):
+        return None
+    return rule.step_s if step_s is None else step_s
+
+
+def _job(rulebook: Rulebook, rule: Rule, step: Fraction | None, cpu_limit_s: int) -> Job:
+    """What to ask of the worker. Raises NotAMultipleError."""
+    formula = rule.formula if step is None else in_steps(rule.formula, step)
     cite = f", {rule.cite}" if rule.cite else ""
-    remarks = (
+    remarks = [
         f"{rule.strength} rule {rule.name} of {rulebook.name}{cite}",
         f"compiled by rulec {__version__}",
-    )
-    reads = reads_of(rule.formula, rulebook.vocabulary)
-    return Job(rule.name, rule.formula, reads, remarks, cpu_limit_s)
+    ]
+    if step is not None:
+        remarks.append(f"one letter is {time_in_words(step, 's')}")
+    reads = reads_of(formula, rulebook.vocabulary)
+    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, cpu_limit_s)
 
 
-def _compiled(rule: Rule, done: Done) -> CompiledRule:
+def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
     return CompiledRule(
         rule.name,
         rule.strength,
@@ -134,6 +164,27 @@ def _compiled(rule: Rule, done: Done) -> CompiledRule:
         rule.formula,
         done.machine,
         done.hoa,
+        step_s=step,
+        level=rule.level,
+        weight=rule.weight,
+        source=rule.source,
+        certainty=rule.certainty,
+        book=rule.book,
+    )
+
+
+def _no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
+    below = error.offending // error.step_s * error.step_s
+    nearest = [time_in_words(each, "s") for each in (below, below + error.step_s) if each]
+    return Diagnostic(
+        "R0407",
+        f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
+        f"{time_in_words(error.step_s, 's')}",
+        at(rule.span),
+        help=f"the nearest multiples are {' and '.join(nearest)}"
+        if len(nearest) > 1
+        else f"the nearest multiple is {nearest[0]}",
+        notes=(f"rule `{rule.name}` would have to know what happens between two states",),
     )
 
 
@@ -149,7 +200,7 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
             help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
         )
     why = (
-        "it reads too many signals and enumerations at once"
+        "it reads too many signals, enumerations and numbers at once"
         if failed is not None and failed.why == "letters"
         else f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     )
@@ -158,8 +209,14 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
         f"the automaton of rule `{rule.name}` would be too large: {why}",
         place,
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
-        "rules beside each other do not",
+        "rules beside each other do not" + _bounds_help(rule),
     )
+
+
+def _bounds_help(rule: Rule) -> str:
+    # Seconds or steps, it is the number of them that makes it large.
+    has_bounds = any(one.bound is not None for one in operations_of(rule.formula))
+    return "; each bound takes as many states as it has steps" if has_bounds else ""
 
 
 def _no_spot(problem: str) -> Diagnostic:

@@ -14,9 +14,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.automata.letters import count_letters
-from rulec.automata.machine import Machine, Read
+from rulec.automata.machine import Machine, NumberRead, Read
+from rulec.automata.sampling import agrees
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Formula
+from rulec.logic.semantics import Semantics
 
 MEMORY_LIMIT_BYTES = 2 << 30
 MOST_LETTERS = 1 << 16
@@ -24,12 +26,16 @@ MOST_LETTERS = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One rule to translate. ``cpu_s``: the processor time it may use, in whole seconds."""
+    """One rule to translate, its bounds in steps.
+
+    ``cpu_s``: the processor time it may use, in whole seconds.
+    """
 
     name: str
     formula: Formula
-    reads: tuple[Read, ...]
+    reads: tuple[Read | NumberRead, ...]
     remarks: tuple[str, ...]
+    semantics: Semantics
     cpu_s: int
 
 
@@ -95,11 +101,16 @@ def _answer(job: Job) -> Done | Failed:
     if n_letters > MOST_LETTERS:
         return Failed("letters")
     try:
-        automaton = spot_bridge.translate(job.formula, job.reads)
+        found = spot_bridge.translate(job.formula, job.reads, job.semantics)
     except spot_bridge.CheckError:
         return Failed("check")
-    machine = build_machine(spot_bridge.explore(automaton, job.reads), job.reads, n_letters)
-    return Done(machine, spot_bridge.in_hoa(automaton, job.name, job.remarks))
+    machine = build_machine(spot_bridge.explore(found, job.reads), job.reads, n_letters)
+    if not found.is_checked and not agrees(machine, job.formula, job.semantics):
+        return Failed("check")
+    remarks = list(job.remarks)
+    if found.alive is not None:
+        remarks.append(f'finite words: "{found.alive}" is true as long as the word lasts')
+    return Done(machine, spot_bridge.in_hoa(found.automaton, job.name, remarks))
 
 
 def _limit(kind: int, amount: int) -> None:

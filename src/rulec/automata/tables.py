@@ -1,16 +1,16 @@
-"""From a deterministic automaton to the smallest table with stutter acceptance.
+"""From a deterministic automaton to the smallest table.
 
 Repeating the last letter for ever turns acceptance into a table: looping on a letter from a state
-runs into one cycle, whose colours decide. Letters with equal columns are merged, then states that
-no word tells apart.
+runs into one cycle, whose colours decide. So does repeating for ever that the word has ended.
+Letters with equal columns are merged, then states that no word tells apart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.machine import Machine, Read, trap
+from rulec.automata.machine import Machine, NumberRead, Read, trap
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,16 +26,19 @@ class Edge:
 class DeterministicAutomaton:
     """A complete deterministic automaton over letters, starting in state ``initial``.
 
-    ``accepts`` tells from the colours seen for ever whether a run is accepting.
+    ``accepts`` tells from the colours seen for ever whether a run is accepting. ``after_the_end``
+    is for words that end: target and colours of the edge from each state that is taken from then
+    on; None if a word's last letter goes on for ever.
     """
 
     edges: tuple[tuple[Edge, ...], ...]
     initial: int
     accepts: Callable[[int], bool]
+    after_the_end: tuple[tuple[int, int], ...] | None = None
 
 
 def build_machine(
-    automaton: DeterministicAutomaton, reads: tuple[Read, ...], n_letters: int
+    automaton: DeterministicAutomaton, reads: tuple[Read | NumberRead, ...], n_letters: int
 ) -> Machine:
     """The minimal machine of the automaton over ``n_letters`` letters.
 
@@ -81,10 +84,15 @@ def _tables(
 ) -> tuple[list[list[int]], list[list[bool]]]:
     following = [[0] * len(classes) for _ in automaton.edges]
     accepting = [[False] * len(classes) for _ in automaton.edges]
+    over = automaton.after_the_end
+    ends_well = None if over is None else _loop_verdicts(over, automaton)
     for column, members in enumerate(classes):
         letter = members & -members
         taken = [_edge_on(edges, letter) for edges in automaton.edges]
-        verdicts = _loop_verdicts([(edge.target, edge.colours) for edge in taken], automaton)
+        if ends_well is None:
+            verdicts = _loop_verdicts([(edge.target, edge.colours) for edge in taken], automaton)
+        else:
+            verdicts = [ends_well[edge.target] for edge in taken]
         for state, edge in enumerate(taken):
             following[state][column] = edge.target
             accepting[state][column] = verdicts[state]
@@ -122,14 +130,11 @@ def _minimise(
 
     Moore's partition refinement, with the verdicts as the machine's output.
     """
-    blocks = _number([tuple(row) for row in accepting])
+    blocks = _number(map(tuple, accepting))
+    columns = list(zip(*following, strict=True))
     while True:
-        refined = _number(
-            [
-                (block, *(blocks[t] for t in row))
-                for block, row in zip(blocks, following, strict=True)
-            ]
-        )
+        targets = (map(blocks.__getitem__, column) for column in columns)
+        refined = _number(zip(blocks, *targets, strict=True))
         if max(refined) == max(blocks):
             break
         blocks = refined
@@ -149,6 +154,6 @@ def _minimise(
     )
 
 
-def _number(keys: Sequence[tuple[object, ...]]) -> list[int]:
+def _number(keys: Iterable[tuple[object, ...]]) -> list[int]:
     numbers: dict[tuple[object, ...], int] = {}
     return [numbers.setdefault(key, len(numbers)) for key in keys]

@@ -39,6 +39,30 @@ def complete_sources(
     return _named([*available_rulebooks(_folders()), *vocabularies], incomplete)
 
 
+def complete_rules(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of the rules of the rulebook that has been named before, with what they say."""
+    from rulec.automata.compiled_file import read_compiled
+    from rulec.rulebook.loader import load_rulebook
+
+    reference = str(ctx.params.get("rulebook"))
+    try:
+        compiled = Path(reference).suffix == ".json"
+        rules = (
+            read_compiled(Path(reference)).rules
+            if compiled
+            else load_rulebook(reference, _folders()).rules
+        )
+    except RulecError:
+        return []
+    return [
+        CompletionItem(rule.name, help=rule.says or None)
+        for rule in rules
+        if rule.name.startswith(incomplete)
+    ]
+
+
 def complete_scenarios(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from fractions import Fraction
 from pathlib import Path
 
 import click
@@ -9,9 +11,33 @@ import click
 from rulec.cli.arguments import complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
+_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
+
+
+def _seconds(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> Fraction | None:
+    if value is None:
+        return None
+    try:
+        step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
+    except ZeroDivisionError:
+        step = Fraction(0)
+    if not step:
+        raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
+    return step
+
 
 @click.command()
 @click.argument("rulebook", shell_complete=complete_rulebooks)
+@click.option(
+    "--step",
+    "step_s",
+    callback=_seconds,
+    metavar="S",
+    help="The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
+    "matters to rules with bounds in seconds.  [default: that of their examples]",
+)
 @click.option(
     "-o",
     "--output",
@@ -19,7 +45,7 @@ from rulec.report.console import print_diagnostics, print_result
     metavar="DIR",
     help="The folder for the files, made if need be.",
 )
-def command(rulebook: str, output: str) -> None:
+def command(rulebook: str, output: str, step_s: Fraction | None) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
@@ -32,7 +58,6 @@ def command(rulebook: str, output: str) -> None:
 
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
-    for path in write_compiled(
-        compile_rulebook(rulebook, search_path(), print_diagnostics), Path(output)
-    ):
+    compiled = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s)
+    for path in write_compiled(compiled, Path(output)):
         print_result(f"wrote {path}")

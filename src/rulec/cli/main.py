@@ -23,6 +23,7 @@ VERBS = {
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
     "new": "Write a rulebook to start from.",
+    "show": "Show a rule in English, as a formula, as an automaton, by examples.",
     "test": "Run the examples of rulebooks.",
     "traces": "Write all maneuvers of a scenario as traces.",
     "verify": "Judge traces by a rulebook.",

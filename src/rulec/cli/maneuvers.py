@@ -32,15 +32,15 @@ def command(
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
     from rulec.settings import search_path
-    from rulec.workflow import compile_rulebook, find_maneuvers
+    from rulec.workflow import find_maneuvers, machines
 
     begin = time.perf_counter()
-    rules = compile_rulebook(rulebook, search_path(), print_diagnostics)
+    rules = machines(rulebook, search_path(), print_diagnostics)
     found = find_maneuvers(scenario, rules, **options)
     listed = None if n_listed is None else found.cheapest(n_listed)
     seconds = time.perf_counter() - begin
     if json_output:
-        print_result(report.as_json(found, listed, rules, seconds))
+        print_result(report.as_json(found, listed, seconds))
     else:
-        print_result(report.as_text(found, listed, rules, seconds))
+        print_result(report.as_text(found, listed, seconds))
     return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED

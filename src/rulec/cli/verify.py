@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook
     from rulec.diagnostics import RulecError
     from rulec.runtime.verdict import NotJudged, Verdict
+    from rulec.runtime.verify import RulebookFor
     from rulec.trace import Trace
 
+    Rules = CompiledRulebook | RulebookFor
     Answer = tuple[Trace | RulecError, Verdict | NotJudged]
 
 
@@ -48,11 +50,12 @@ def command(
     from rulec.report.console import Complaints, print_diagnostics, print_result
     from rulec.runtime.explanation import explain
     from rulec.runtime.verdict import NotJudged, Verdict
+    from rulec.runtime.verify import made_for
     from rulec.settings import search_path
     from rulec.trace import Trace
-    from rulec.workflow import compile_rulebook
+    from rulec.workflow import machines
 
-    rules = compile_rulebook(rulebook, search_path(), print_diagnostics)
+    rules = machines(rulebook, search_path(), print_diagnostics)
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
@@ -62,11 +65,12 @@ def command(
             violated += not answer.satisfied
             chosen = answer.violations[:to_explain]
             to_explain -= len(chosen)
-            explained = [explain(violation, trace, rules) for violation in chosen]
+            used = made_for(trace, rules)
+            explained = [explain(violation, trace, used) for violation in chosen]
             if json_output:
-                print_result(verdicts.as_json(answer, explained))
+                print_result(verdicts.as_json(answer, used, explained))
             elif answer.violations:
-                print_result(verdicts.as_text(answer, rules, explained))
+                print_result(verdicts.as_text(answer, used, explained))
         elif isinstance(answer, NotJudged):
             not_judged += 1
             complaints.add(answer.error)
@@ -80,7 +84,7 @@ def command(
     return ExitStatus.VIOLATED if violated else ExitStatus.OK
 
 
-def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Answer]:
+def _answers(files: tuple[str, ...], rules: Rules) -> Iterator[Answer]:
     """Every trace, or why there is none, with its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
@@ -99,9 +103,7 @@ def _answers(files: tuple[str, ...], rules: CompiledRulebook) -> Iterator[Answer
             yield error, NotJudged(None, error)
 
 
-def _judged(
-    stream: IO[bytes], name: str, size: int | None, rules: CompiledRulebook
-) -> Iterator[Answer]:
+def _judged(stream: IO[bytes], name: str, size: int | None, rules: Rules) -> Iterator[Answer]:
     from rulec.report.console import progress
     from rulec.runtime.verify import judge
     from rulec.trace.json_lines import read_traces

@@ -12,14 +12,15 @@ from rulec.diagnostics.explanations.explanation import Explanation
 from rulec.diagnostics.explanations.files import FILES
 from rulec.diagnostics.explanations.meaning import MEANING
 from rulec.diagnostics.explanations.names import NAMES
+from rulec.diagnostics.explanations.overlays import OVERLAY_MEANING, OVERLAY_NAMES
 from rulec.diagnostics.explanations.scenarios import SCENARIOS
 from rulec.diagnostics.explanations.syntax import SYNTAX
 from rulec.diagnostics.explanations.traces import TRACES
 
 STAGES: dict[str, dict[str, Explanation]] = {
     "Syntax": SYNTAX,
-    "Names": NAMES,
-    "Types and meaning": MEANING,
+    "Names": {**NAMES, **OVERLAY_NAMES},
+    "Types and meaning": {**MEANING, **OVERLAY_MEANING},
     "Compiling and examples": COMPILING,
     "Traces": TRACES,
     "Scenarios and graphs": SCENARIOS,

@@ -1,16 +1,25 @@
-"""Formulas as text: in the words of a rulebook, and in Spot's syntax."""
+"""Formulas as text, in the words of a rulebook."""
 
 from __future__ import annotations
+
+from fractions import Fraction
 
 from rulec.logic.formula import (
     Atom,
     Binary,
     BinaryOperator,
+    Bound,
+    Comparison,
     Constant,
+    Count,
     Formula,
+    Quantity,
+    Same,
+    Term,
     Unary,
     UnaryOperator,
 )
+from rulec.logic.timing import DISTANCE
 
 # As in the grammar: a larger number binds tighter.
 _BINDING = {
@@ -27,41 +36,25 @@ _BINDING = {
     BinaryOperator.SINCE: 7,
 }
 
-_SPOT = {
-    UnaryOperator.NOT: "!",
-    UnaryOperator.ALWAYS: "G",
-    UnaryOperator.EVENTUALLY: "F",
-    UnaryOperator.NEXT: "X",
-    # On the infinite words that Spot reads there always is a next instant.
-    UnaryOperator.WEAK_NEXT: "X",
-    BinaryOperator.AND: "&",
-    BinaryOperator.OR: "|",
-    BinaryOperator.IMPLIES: "->",
-    BinaryOperator.IFF: "<->",
-    BinaryOperator.XOR: "xor",
-    BinaryOperator.UNTIL: "U",
-    BinaryOperator.RELEASE: "R",
-    BinaryOperator.WEAK_UNTIL: "W",
-    BinaryOperator.STRONG_RELEASE: "M",
-}
-
 
 def in_words(formula: Formula) -> str:
     """The formula as a rulebook would say it, with no more parentheses than needed to read it."""
     match formula:
-        case Atom():
+        case Atom() | Comparison() | Same():
+            # A comparison binds tighter than any operator on formulas.
             return str(formula)
         case Constant(value):
             return "true" if value else "false"
-        case Unary(operator, operand):
+        case Unary(operator, operand, bound):
             inner = in_words(operand)
-            return f"{operator.value} {f'({inner})' if isinstance(operand, Binary) else inner}"
-        case Binary(operator, left, right):
+            said = _operator(operator, bound)
+            return f"{said} {f'({inner})' if isinstance(operand, Binary) else inner}"
+        case Binary(operator, left, right, bound):
             # Printed as it is read: chains of `and` and `or` to the left, phases to the right.
             to_the_left = operator in (BinaryOperator.AND, BinaryOperator.OR)
             first = _side(operator, left, chain=to_the_left)
             second = _side(operator, right, chain=operator is BinaryOperator.THEN)
-            return f"{first} {operator.value} {second}"
+            return f"{first} {_operator(operator, bound)} {second}"
 
 
 def _side(operator: BinaryOperator, formula: Formula, *, chain: bool) -> str:
@@ -72,22 +65,50 @@ def _side(operator: BinaryOperator, formula: Formula, *, chain: bool) -> str:
     return text if tighter or (chain and formula.operator is operator) else f"({text})"
 
 
-def in_spot(formula: Formula) -> str:
-    """The formula in Spot's syntax, every atom quoted, every operation in parentheses.
+def _operator(operator: UnaryOperator | BinaryOperator, bound: Bound | None) -> str:
+    if bound is None:
+        return str(operator.value)
+    if operator in DISTANCE:
+        return f"{operator.value}[{time_in_words(bound.low, bound.unit)}]"
+    return f"{operator.value}[{_span(bound)}]"
 
-    Spot has no operators of the past: KeyError for them; ``logic.past`` puts atoms in their place.
-    """
-    match formula:
-        case Atom():
-            return f'"{formula}"'
-        case Constant(value):
-            return "1" if value else "0"
-        case Unary(UnaryOperator.NEVER, operand):
-            return f"G(!({in_spot(operand)}))"
-        case Binary(BinaryOperator.THEN, left, right):
-            first = in_spot(left)
-            return f"({first} & X({first} U {in_spot(right)}))"
-        case Unary(operator, operand):
-            return f"{_SPOT[operator]}({in_spot(operand)})"
-        case Binary(operator, left, right):
-            return f"({in_spot(left)} {_SPOT[operator]} {in_spot(right)})"
+
+def _span(bound: Bound) -> str:
+    low = time_in_words(bound.low, bound.unit)
+    if bound.high is None:
+        return f">= {low}"
+    high = time_in_words(bound.high, bound.unit)
+    return f"{low} .. {high}" if bound.low else f"<= {high}"
+
+
+def time_in_words(amount: Fraction, unit: str) -> str:
+    """``3 s``, ``0.5 s``, ``1 step``, ``2 steps``."""
+    return f"{number_in_words(amount)} {'step' if unit == 'steps' and amount == 1 else unit}"
+
+
+def number_in_words(number: Fraction) -> str:
+    """As a decimal if it is one, however long, else as a fraction: ``0.5``, ``-3``, ``5/18``."""
+    rest = number.denominator
+    places = 0
+    for prime in (2, 5):
+        times = 0
+        while rest % prime == 0:
+            rest //= prime
+            times += 1
+        places = max(places, times)
+    if rest != 1:
+        return str(number)
+    shifted = abs(number) * int(f"1{'0' * places}")
+    digits = str(shifted.numerator).zfill(places + 1)
+    if places:
+        digits = f"{digits[:-places]}.{digits[-places:]}"
+    return f"-{digits}" if number < 0 else digits
+
+
+def term_in_words(term: Term) -> str:
+    """``gap(v)``, ``count v: vehicle (behind(v))``: the text that terms are sorted by."""
+    match term:
+        case Quantity(name, arguments):
+            return f"{name}({', '.join(arguments)})" if arguments else name
+        case Count(variable, type_name, body):
+            return f"count {variable}: {type_name} ({in_words(body)})"

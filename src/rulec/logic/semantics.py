@@ -2,109 +2,134 @@
 
 Definitions: Esterle, Aravantinos, Knoll (2019), section IV-A, with the standard until, as the
 paper's own tables I and II have it. A finite word stands for the infinite one that repeats its last
-letter for ever (the paper's reading, ``stutter``). The past begins with the word: operators of the
-past look back from an instant to the first one, as in Lichtenstein, Pnueli, Zuck, "The glory of the
-past" (1985).
+letter for ever (the paper's reading, ``stutter``) or for itself alone (``finite``: De Giacomo,
+Vardi, "Linear temporal logic and linear dynamic logic on finite traces", 2013). The past begins
+with the word: operators of the past look back from an instant to the first one, as in Lichtenstein,
+Pnueli, Zuck, "The glory of the past" (1985). Bounds count instants, as in Koymans, "Specifying
+real-time properties with metric temporal logic" (1990), on a clock that ticks with the trace.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence, Set
+from typing import Literal
 
 from rulec.logic.formula import (
     Atom,
     Binary,
     BinaryOperator,
+    Comparison,
     Constant,
     Formula,
+    Proposition,
+    Same,
     Unary,
     UnaryOperator,
 )
+from rulec.logic.timing import PAST, Range, range_of
 
-Letter = Set[Atom]
-"""The atoms that are true at one instant; every other atom is false."""
+Semantics = Literal["stutter", "finite"]
+"""How a word ends: its last letter goes on for ever, or nothing comes after it."""
 
-
-def holds(formula: Formula, word: Sequence[Letter]) -> bool:
-    """Does ``formula`` hold for ``word`` at its first instant? ValueError for an empty word."""
-    return truth_values(formula, word)[0]
-
-
-def truth_values(formula: Formula, word: Sequence[Letter]) -> list[bool]:
-    """The formula's truth value at each of the word's instants. ValueError for an empty word."""
-    return values_of_parts(formula, word)[formula]
+Letter = Set[Proposition]
+"""The atoms and comparisons that are true at one instant; all others are false."""
 
 
-def values_of_parts(formula: Formula, word: Sequence[Letter]) -> dict[Formula, list[bool]]:
-    """The same for the formula and every part of it. ValueError for an empty word."""
+def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
+    """Does ``formula`` hold for ``word`` at its first instant?
+
+    Its bounds are in steps. ValueError for an empty word, or for a bound in seconds.
+    """
+    return truth_values(formula, word, semantics)[0]
+
+
+def truth_values(
+    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
+) -> list[bool]:
+    """The formula's truth value at each of the word's instants. ValueError as for ``holds``."""
+    return values_of_parts(formula, word, semantics)[formula]
+
+
+def values_of_parts(
+    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
+) -> dict[Formula, list[bool]]:
+    """The same for the formula and every part of it. ValueError as for ``holds``."""
     if not word:
-        raise ValueError("an empty word has no last letter to repeat")
-    settling = [word[-1]] * _steps_to_settle(formula)
+        raise ValueError("an empty word has no last letter")
+    ends = semantics == "finite"
+    settling = [] if ends else [word[-1]] * _steps_to_settle(formula)
     known: dict[Formula, list[bool]] = {}
-    _evaluate(formula, [*word, *settling], known)
+    _evaluate(formula, [*word, *settling], ends, known)
     return {part: values[: len(word)] for part, values in known.items()}
 
 
 def _steps_to_settle(formula: Formula) -> int:
     """For how long may values still change, at most, while the last letter is repeated?
 
-    Only ``previously`` carries a change on to the next instant: where its operand is the same for
-    ever from some instant on, it is so from one instant later. All other operators are the same for
-    ever as soon as their operands are.
+    Only the past carries a change on to later instants: where its operands are the same for ever
+    from some instant on, it is so as soon as its range looks back at such instants alone, or, if
+    that has no end, once they are in reach. The future is the same for ever where its operands are.
     """
     match formula:
         case Unary(operator, operand):
-            carries = operator in (UnaryOperator.PREVIOUSLY, UnaryOperator.WEAK_PREVIOUSLY)
-            return carries + _steps_to_settle(operand)
-        case Binary(_, left, right):
-            return max(_steps_to_settle(left), _steps_to_settle(right))
-        case Atom() | Constant():
+            carried = _carried(range_of(formula)) if operator in PAST else 0
+            return carried + _steps_to_settle(operand)
+        case Binary(operator, left, right):
+            carried = _carried(range_of(formula)) if operator in PAST else 0
+            return carried + max(_steps_to_settle(left), _steps_to_settle(right))
+        case Atom() | Comparison() | Constant() | Same():
             return 0
 
 
+def _carried(span: Range) -> int:
+    return span.low if span.high is None else span.high
+
+
 def _evaluate(
-    formula: Formula, word: Sequence[Letter], known: dict[Formula, list[bool]]
+    formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
 ) -> list[bool]:
-    """Truth values on a word from whose last instant on they are the same for ever."""
-    if formula not in known:
-        match formula:
-            case Atom():
-                values = [formula in letter for letter in word]
-            case Constant(value):
-                values = [value] * len(word)
-            case Unary(operator, operand):
-                values = _unary(operator, _evaluate(operand, word, known))
-            case Binary(operator, left, right):
-                first, second = _evaluate(left, word, known), _evaluate(right, word, known)
-                values = _binary(operator, first, second)
-        known[formula] = values
-    return known[formula]
+    """Truth values on a word that ends with its last instant, or goes on like it for ever."""
+    found = known.get(formula)
+    if found is not None:
+        return found
+    match formula:
+        case Atom() | Comparison():
+            values = [formula in letter for letter in word]
+        case Same():
+            raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+        case Constant(value):
+            values = [value] * len(word)
+        case Unary(operator, operand):
+            inner = _evaluate(operand, word, ends, known)
+            values = _unary(operator, inner, range_of(formula), ends)
+        case Binary(operator, left, right):
+            first = _evaluate(left, word, ends, known)
+            second = _evaluate(right, word, ends, known)
+            values = _binary(operator, first, second, range_of(formula), ends)
+    known[formula] = values
+    return values
 
 
-def _unary(operator: UnaryOperator, values: list[bool]) -> list[bool]:
+def _unary(operator: UnaryOperator, values: list[bool], span: Range, ends: bool) -> list[bool]:
+    true = [True] * len(values)
     match operator:
         case UnaryOperator.NOT:
-            return [not value for value in values]
-        case UnaryOperator.NEXT | UnaryOperator.WEAK_NEXT:
-            # The last instant is followed by its like; so there always is a next one.
-            return values[1:] + values[-1:]
-        case UnaryOperator.EVENTUALLY:
-            return _until([True] * len(values), values)
-        case UnaryOperator.ALWAYS:
-            return [not value for value in _until([True] * len(values), [not v for v in values])]
+            return _not(values)
+        case UnaryOperator.NEXT | UnaryOperator.EVENTUALLY:
+            return _until(true, values, span, ends)
+        case UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS:
+            return _not(_until(true, _not(values), span, ends))
         case UnaryOperator.NEVER:
-            return [not value for value in _until([True] * len(values), values)]
-        case UnaryOperator.PREVIOUSLY:
-            return [False, *values[:-1]]
-        case UnaryOperator.WEAK_PREVIOUSLY:
-            return [True, *values[:-1]]
-        case UnaryOperator.ONCE:
-            return _since([True] * len(values), values)
-        case UnaryOperator.HISTORICALLY:
-            return [not value for value in _since([True] * len(values), [not v for v in values])]
+            return _not(_until(true, values, span, ends))
+        case UnaryOperator.PREVIOUSLY | UnaryOperator.ONCE:
+            return _since(true, values, span)
+        case UnaryOperator.WEAK_PREVIOUSLY | UnaryOperator.HISTORICALLY:
+            return _not(_since(true, _not(values), span))
 
 
-def _binary(operator: BinaryOperator, left: list[bool], right: list[bool]) -> list[bool]:
+def _binary(
+    operator: BinaryOperator, left: list[bool], right: list[bool], span: Range, ends: bool
+) -> list[bool]:
     pairs = zip(left, right, strict=True)
     match operator:
         case BinaryOperator.AND:
@@ -117,37 +142,64 @@ def _binary(operator: BinaryOperator, left: list[bool], right: list[bool]) -> li
             return [a == b for a, b in pairs]
         case BinaryOperator.XOR:
             return [a != b for a, b in pairs]
-        case BinaryOperator.UNTIL:
-            return _until(left, right)
+        case BinaryOperator.UNTIL | BinaryOperator.THEN:
+            return _until(left, right, span, ends)
         case BinaryOperator.WEAK_UNTIL:
-            # a W b = not (not b U (not a and not b))
-            neither = [not a and not b for a, b in pairs]
-            return [not value for value in _until([not b for b in right], neither)]
+            return _weak_until(left, right, span, ends)
         case BinaryOperator.RELEASE:
-            # a R b = not (not a U not b)
-            return [not v for v in _until([not a for a in left], [not b for b in right])]
+            return _not(_until(_not(left), _not(right), span, ends))
         case BinaryOperator.STRONG_RELEASE:
-            # a M b = b U (a and b)
-            return _until(right, [a and b for a, b in pairs])
+            return _not(_weak_until(_not(left), _not(right), span, ends))
         case BinaryOperator.SINCE:
-            return _since(left, right)
-        case BinaryOperator.THEN:
-            # a then b = a and next (a until b)
-            later = _until(left, right)
-            return [a and b for a, b in zip(left, later[1:] + later[-1:], strict=True)]
+            return _since(left, right, span)
 
 
-def _until(left: list[bool], right: list[bool]) -> list[bool]:
-    """Some later instant has ``right``, and every instant before it from here on has ``left``."""
-    values = list(right)
-    for instant in range(len(values) - 2, -1, -1):
-        values[instant] = right[instant] or (left[instant] and values[instant + 1])
+def _not(values: list[bool]) -> list[bool]:
+    return [not value for value in values]
+
+
+def _weak_until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list[bool]:
+    """As ``_until``, or ``left`` from here to the range's end."""
+    breaks = _until([True] * len(left), _not(left), Range(0, span.high), ends)
+    until = _until(left, right, span, ends)
+    return [a or not b for a, b in zip(until, breaks, strict=True)]
+
+
+def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list[bool]:
+    """Some instant within the range ahead has ``right``, all before it from here on ``left``."""
+    last = len(right) - 1
+    first_right: list[int | None] = [None] * (last + 2)
+    """The first instant from here on with ``right``."""
+    first_break: list[int | None] = [None] * (last + 2)
+    """The first instant from here on without ``left``."""
+    for instant in range(last, -1, -1):
+        first_right[instant] = instant if right[instant] else first_right[instant + 1]
+        first_break[instant] = first_break[instant + 1] if left[instant] else instant
+    values = []
+    for instant in range(last + 1):
+        earliest = instant + span.low
+        if earliest > last and not ends:
+            # Any such instant is like the last one.
+            found = earliest if right[last] else None
+        else:
+            found = first_right[min(earliest, last + 1)]
+        within = found is not None and (span.high is None or found <= instant + span.high)
+        broken = first_break[instant]
+        values.append(within and (broken is None or found is None or broken >= found))
     return values
 
 
-def _since(left: list[bool], right: list[bool]) -> list[bool]:
-    """Some instant up to here had ``right``, and every instant after it up to here ``left``."""
-    values: list[bool] = []
-    for a, b in zip(left, right, strict=True):
-        values.append(b or (a and bool(values) and values[-1]))
+def _since(left: list[bool], right: list[bool], span: Range) -> list[bool]:
+    """Some instant within the range back had ``right``, all after it up to here ``left``."""
+    values = []
+    latest: list[int | None] = []
+    """For each instant, the latest one up to it with ``right``."""
+    broken = -1
+    """The latest instant without ``left``."""
+    for instant, (a, b) in enumerate(zip(left, right, strict=True)):
+        latest.append(instant if b else latest[-1] if latest else None)
+        broken = broken if a else instant
+        found = latest[instant - span.low] if instant >= span.low else None
+        within = found is not None and (span.high is None or found >= instant - span.high)
+        values.append(within and found is not None and broken <= found)
     return values

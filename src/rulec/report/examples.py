@@ -8,11 +8,14 @@ from dataclasses import replace
 import click
 
 from rulec.logic.formula import Atom
+from rulec.logic.printing import in_words, number_in_words
 from rulec.report.diagnostics import render_diagnostics
 from rulec.report.excerpt import visible
 from rulec.rulebook.model import ExampleState
 from rulec.runtime.coverage import MissingEdge, RuleCoverage, percent
 from rulec.runtime.examples import ExampleRun, Outcome, surprise
+from rulec.runtime.numbers import exact
+from rulec.vocabulary import Quantity, Vocabulary
 
 MOST_MISSING = 5
 """So many missing edges of a rule are shown; JSON has them all."""
@@ -50,7 +53,10 @@ def as_text(
         lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):
-            lines += [f"{run.rulebook.name} {line}" for line in coverage_lines(rules)]
+            lines += [
+                f"{run.rulebook.name} {line}"
+                for line in coverage_lines(rules, run.rulebook.vocabulary)
+            ]
         together = percent(rule for rules in covered for rule in rules)
         lines.append(f"coverage {as_percent(together)}")
     return "\n".join([*lines, _summary(runs)])
@@ -89,15 +95,18 @@ def _summary(runs: Sequence[ExampleRun]) -> str:
     return f"{len(outcomes):,} {word}: {passed:,} passed, {len(outcomes) - passed:,} failed"
 
 
-def coverage_lines(rules: Sequence[RuleCoverage]) -> Iterator[str]:
+def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
     """A line for each rule with its numbers, and with it, indented, what is missing."""
     for one in rules:
         edges = f"{one.n_edges - len(one.missing_edges):,} of {one.n_edges:,} edges"
         values = f"{one.n_values - len(one.missing_values):,} of {one.n_values:,} values of atoms"
         lines = [f"{one.rule}: {edges}, {values} ({as_percent(percent([one]))})"]
         for atom, value in one.missing_values:
-            lines.append(f"`{atom}` is never {'true' if value else 'false'}")
-        lines += [f"missing: {missing_example(edge)}" for edge in one.missing_edges[:MOST_MISSING]]
+            lines.append(f"`{in_words(atom)}` is never {'true' if value else 'false'}")
+        lines += [
+            f"missing: {missing_example(edge, vocabulary)}"
+            for edge in one.missing_edges[:MOST_MISSING]
+        ]
         if len(one.missing_edges) > MOST_MISSING:
             more = len(one.missing_edges) - MOST_MISSING
             lines.append(f"and {more:,} more; --output-format json has them all")
@@ -109,15 +118,30 @@ def as_percent(number: float) -> str:
     return f"{min(number, 99.9) if number < 100 else 100:.1f} %"
 
 
-def missing_example(edge: MissingEdge) -> str:
-    """The example that would take an edge, as it would be written in the rule."""
-    states = "; ".join(" and ".join(_facts(state)) or "true" for state in edge.states)
-    return f"{'accept' if edge.accepted else 'reject'} {{ {states} }}"
+def missing_example(edge: MissingEdge, vocabulary: Vocabulary) -> str:
+    """The example that would take an edge, as it would be written in the rule.
+
+    What cannot be written as facts stands in a comment behind it.
+    """
+    states = "; ".join(
+        " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states
+    )
+    besides = "; ".join(
+        f"in state {number} {' and '.join(state.besides)}"
+        for number, state in enumerate(edge.states)
+        if state.besides
+    )
+    example = f"{'accept' if edge.accepted else 'reject'} {{ {states} }}"
+    return f"{example}  # where {besides}" if besides else example
 
 
-def _facts(state: ExampleState) -> Iterator[str]:
+def _facts(state: ExampleState, vocabulary: Vocabulary) -> Iterator[str]:
     for (name, variables), value in state.items():
-        if isinstance(value, str):
+        declaration = vocabulary.declarations[name]
+        if isinstance(declaration, Quantity):
+            number = number_in_words(exact(float(value)))
+            yield f"{Atom(name, variables)} = {number} {declaration.unit}"
+        elif isinstance(value, str):
             yield str(Atom(name, variables, value))
         else:
             yield f"{'' if value else 'not '}{Atom(name, variables)}"

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.printing import in_words
 from rulec.report.diagnostics_json import place_as_data
 from rulec.report.examples import missing_example
+from rulec.rulebook.model import Rulebook
 from rulec.runtime.coverage import RuleCoverage, percent
 from rulec.runtime.examples import ExampleRun, Outcome
 
@@ -51,25 +53,29 @@ def _coverage(
     return {
         "percent": round(percent(rule for rules in covered for rule in rules), 3),
         "rules": [
-            _rule(run.rulebook.name, one)
+            _rule(run.rulebook, one)
             for run, rules in zip(runs, covered, strict=True)
             for one in rules
         ],
     }
 
 
-def _rule(rulebook: str, one: RuleCoverage) -> dict[str, Any]:
+def _rule(rulebook: Rulebook, one: RuleCoverage) -> dict[str, Any]:
     return {
-        "rulebook": rulebook,
+        "rulebook": rulebook.name,
         "rule": one.rule,
         "percent": round(percent([one]), 3),
         "edges": one.n_edges,
         "missing_edges": [
-            {"source": edge.source, "target": edge.target, "example": missing_example(edge)}
+            {
+                "source": edge.source,
+                "target": edge.target,
+                "example": missing_example(edge, rulebook.vocabulary),
+            }
             for edge in one.missing_edges
         ],
         "values": one.n_values,
         "missing_values": [
-            {"atom": str(atom), "value": value} for atom, value in one.missing_values
+            {"atom": in_words(atom), "value": value} for atom, value in one.missing_values
         ],
     }

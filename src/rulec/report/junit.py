@@ -31,8 +31,9 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
         for one in run.outcomes:
             _case(suite, run.rulebook.name, one)
         if covered is not None:
+            lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             said = ElementTree.SubElement(suite, "system-out")
-            said.text = _text("\n".join(coverage_lines(covered[number])))
+            said.text = _text("\n".join(lines))
     ElementTree.indent(root)
     written = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{written}'

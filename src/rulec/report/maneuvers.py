@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from rulec.automata.compiled import CompiledRulebook
 from rulec.maneuvers import Maneuvers
 from rulec.partition import Cell, Envelope, NavigationGraph, envelope
 from rulec.runtime.cheapest import Maneuver
@@ -19,14 +18,12 @@ MOST_NAMED = 6
 MOST_DIGITS = 30
 
 
-def as_json(
-    found: Maneuvers, listed: Sequence[Maneuver] | None, rules: CompiledRulebook, seconds: float
-) -> str:
+def as_json(found: Maneuvers, listed: Sequence[Maneuver] | None, seconds: float) -> str:
     """The counts and, if maneuvers were asked for, each with cells, cost, margin and envelope."""
     graph = found.graph
     data: dict[str, Any] = {
         "scenario": graph.scenario.name,
-        "rulebook": rules.name,
+        "rulebook": found.rules.name,
         "partition": graph.partition,
         "adjacency": graph.adjacency,
         "step_s": graph.step_s,
@@ -68,11 +65,9 @@ def _bounds(bounds: Envelope) -> dict[str, Any]:
     }
 
 
-def as_text(
-    found: Maneuvers, listed: Sequence[Maneuver] | None, rules: CompiledRulebook, seconds: float
-) -> str:
+def as_text(found: Maneuvers, listed: Sequence[Maneuver] | None, seconds: float) -> str:
     """The counts in four lines, and a block for every maneuver that was asked for."""
-    graph = found.graph
+    graph, rules = found.graph, found.rules
     names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
     horizon = f"{_horizon_s(graph):g} s in steps of {graph.step_s:g} s"

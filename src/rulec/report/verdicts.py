@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import click
 
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.logic.printing import number_in_words
 from rulec.report import explanation
 from rulec.report.excerpt import visible
 from rulec.runtime.explanation import Explanation
@@ -18,26 +19,33 @@ MOST_VIOLATIONS = 20
 """So many are shown for a trace; JSON has them all."""
 
 
-def as_json(verdict: Verdict, explained: Sequence[Explanation] = ()) -> str:
+def as_json(
+    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
+) -> str:
     """One line of JSON for a trace, as docs/traces.md describes it.
 
     ``explained`` are explanations of the first violations, which get a field of their own.
     """
-    violations: list[dict[str, Any]] = [
-        {
-            "rule": violation.rule,
-            "binding": dict(violation.binding),
-            "step": violation.step,
-            "strength": violation.strength,
-        }
-        for violation in verdict.violations
-    ]
+    rules = {rule.name: rule for rule in rulebook.rules}
+    violations = [_as_data(violation, rules[violation.rule]) for violation in verdict.violations]
     for violation, why in zip(violations, explained, strict=False):
         violation["explanation"] = explanation.as_data(why)
     return json.dumps(
         {"trace": verdict.trace, "satisfied": verdict.satisfied, "violations": violations},
         ensure_ascii=False,
     )
+
+
+def _as_data(violation: Violation, rule: CompiledRule) -> dict[str, Any]:
+    whole = rule.weight.denominator == 1
+    return {
+        "rule": violation.rule,
+        "binding": dict(violation.binding),
+        "step": violation.step,
+        "strength": violation.strength,
+        "level": rule.level or None,
+        "weight": int(rule.weight) if whole else float(rule.weight),
+    }
 
 
 def not_judged_as_json(answer: NotJudged) -> str:
@@ -67,11 +75,12 @@ def as_text(
         if verdict.satisfied
         else click.style("violated", fg="red")
     )
-    cites = {rule.name: rule.cite for rule in rulebook.rules}
+    rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
     for number, violation in enumerate(shown):
-        lines.append(f"  {visible(_violation(violation, cites))}")
+        line = _violation(violation, rules[violation.rule], rulebook.name)
+        lines.append(f"  {visible(line)}")
         if number < len(explained):
             lines.append(explanation.as_text(explained[number]))
     if len(verdict.violations) > len(shown):
@@ -79,8 +88,7 @@ def as_text(
     return "\n".join(lines)
 
 
-def _violation(violation: Violation, cites: Mapping[str, str]) -> str:
-    cite = cites[violation.rule]
+def _violation(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
     where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
     when = (
         "not fulfilled when the trace ends"
@@ -88,8 +96,17 @@ def _violation(violation: Violation, cites: Mapping[str, str]) -> str:
         else f"beyond saving after state {violation.step}"
     )
     about = f" for {where}" if where else ""
-    article = f" [{cite}]" if cite else ""
-    return f"{violation.strength} rule {violation.rule}{article}{about}: {when}"
+    return f"{rule.strength} rule {_title(rule, rulebook)}{about}: {when}"
+
+
+def _title(rule: CompiledRule, rulebook: str) -> str:
+    """The rule as its head says it, as far as it says more than every other rule, and where."""
+    level = f" in {rule.level}" if rule.level else ""
+    weighs = rule.strength == "soft" and rule.weight != 1
+    weight = f" weight {number_in_words(rule.weight)}" if weighs else ""
+    book = rule.book if rule.book != rulebook else ""
+    place = ", ".join(filter(None, (book, rule.cite)))
+    return f"{rule.name}{level}{weight}{f' [{place}]' if place else ''}"
 
 
 def summary(satisfied: int, violated: int, not_judged: int) -> str:

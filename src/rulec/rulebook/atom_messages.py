@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
 from rulec.rulebook.declared import Declared
@@ -11,30 +12,21 @@ from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
 
+if TYPE_CHECKING:
+    from rulec.rulebook.scope import Scope
+
 _ATOM = "expected a signal or a value"
 _GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
 _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
 
 
-def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> Diagnostic:
+def explain(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     """Why a name is no atom: it is something else, or it is not known."""
-    name = use.name.text
+    name, declared = use.name.text, scope.declared
     item = declared.items.get(name)
     if isinstance(item, Enumeration):
         values = any_of([f"`{_call(value, item)}`" for value in item.values])
         return _not_an_atom(use, declared, "has several values", f"write {values}")
-    if isinstance(item, Quantity):
-        why = f"is a number (in {item.unit})"
-        return _not_an_atom(use, declared, why, "formulas are about signals and values only")
-    if name in variables:
-        example = next(iter(_about_one(declared)), "p")
-        return Diagnostic(
-            "R0303",
-            f"`{name}` is an object and cannot be true or false",
-            use.name.span.place,
-            expected=_ATOM,
-            help=f"say something about it, such as `{example}({name})`",
-        )
     if name in declared.types:
         return Diagnostic(
             "R0303",
@@ -44,7 +36,7 @@ def explain(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> 
             help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
             labels=(Label(declared.type_spans[name].place, f"`{name}` is declared here"),),
         )
-    return _unknown(use, declared, variables)
+    return _unknown(use, scope)
 
 
 def _not_an_atom(use: tree.AtomUse, declared: Declared, why: str, help_: str) -> Diagnostic:
@@ -59,18 +51,21 @@ def _not_an_atom(use: tree.AtomUse, declared: Declared, why: str, help_: str) ->
     )
 
 
-def _unknown(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) -> Diagnostic:
-    name = use.name.text
-    atoms = _atoms(declared)
+def _unknown(use: tree.AtomUse, scope: Scope) -> Diagnostic:
+    name, declared = use.name.text, scope.declared
+    atoms = declared.atoms()
+    quantities = [one for one, item in declared.items.items() if isinstance(item, Quantity)]
+    known = [*atoms, *quantities, *scope.provisions.names(), *scope.relations]
     glued = _glued(name, set(atoms))
     if name == "if":
         way_out = "write `p implies q` for `if p then q`"
     elif glued:
         way_out = f"write `{glued}`"
     else:
+        variables = list(scope.variables)
         way_out = (
             ("" if use.arguments else _short_form(name, declared, variables))
-            or did_you_mean(name, atoms)
+            or did_you_mean(name, known)
             or f"declare it, such as `signal {name}`, or `use` a vocabulary that has it"
         )
     return Diagnostic(
@@ -79,6 +74,28 @@ def _unknown(use: tree.AtomUse, declared: Declared, variables: Sequence[str]) ->
         use.name.span.place,
         expected=_ATOM,
         help=way_out,
+    )
+
+
+def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
+    """``near_side_of`` in a rulebook that does not say on which side traffic drives."""
+    return Diagnostic(
+        "R0211",
+        f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
+        use.name.span.place,
+        expected="left or right?",
+        help="write `traffic right` or `traffic left` in the rulebook's header",
+    )
+
+
+def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
+    """``near_side_of`` with a vocabulary that has no sides."""
+    return Diagnostic(
+        "R0211",
+        f"`{name}` means `{side}` here, which the vocabulary does not have",
+        use.name.span.place,
+        expected=_ATOM,
+        help="`use` a vocabulary that has `left_of` and `right_of`, such as `road`",
     )
 
 
@@ -92,19 +109,8 @@ def _short_form(name: str, declared: Declared, variables: Sequence[str]) -> str:
     if item is not None and tail in variables:
         number = len(item.parameters) or "no"
         return f"`{head}` is about {number} objects, so `_{tail}` cannot stand behind it"
-    near = nearest_name(head, _about_one(declared)) if tail in variables else None
+    near = nearest_name(head, declared.about_one()) if tail in variables else None
     return f"did you mean `{near}_{tail}`?" if near else ""
-
-
-def _atoms(declared: Declared) -> list[str]:
-    signals = (one for one, item in declared.items.items() if isinstance(item, Signal))
-    return [*signals, *declared.value_of]
-
-
-def _about_one(declared: Declared) -> list[str]:
-    """The atoms about one object."""
-    found = ((name, declared.behind_atom(name)) for name in _atoms(declared))
-    return [name for name, item in found if item is not None and len(item.parameters) == 1]
 
 
 def _glued(name: str, atoms: set[str]) -> str:
@@ -122,17 +128,13 @@ def _glued(name: str, atoms: set[str]) -> str:
 
 
 def wrong_number(
-    use: tree.AtomUse,
-    name: str,
-    item: Signal | Enumeration,
-    declared: Declared,
-    variables: Sequence[str],
+    use: tree.AtomUse, name: str, item: Signal | Enumeration | Quantity, scope: Scope
 ) -> Diagnostic:
     """A known atom with too few or too many objects."""
     needed, given = len(item.parameters), len(use.arguments)
     objects = {0: "no object", 1: "one object"}.get(needed, f"{needed} objects")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    arguments = (list(variables) + ["…"] * needed)[:needed]
+    arguments = (list(scope.variables) + ["…"] * needed)[:needed]
     written = f"{name}({', '.join(arguments)})" if needed else name
     return Diagnostic(
         "R0301",
@@ -140,7 +142,7 @@ def wrong_number(
         use.span.place,
         expected=f"expected {objects}",
         help=f"write `{written}`",
-        labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
+        labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
     )
 
 

@@ -56,6 +56,7 @@ _PLURALS = {
     tree.EnumerationItem: ("enumeration", "enumerations"),
     tree.SignalItem: ("signal", "signals"),
     tree.QuantityItem: ("quantity", "quantities"),
+    tree.FactItem: ("fact", "facts"),
 }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
 from rulec.syntax import tree
+from rulec.vocabulary.units import known_unit_names, unit_refusal
 
 
 def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
@@ -57,3 +58,31 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
         help="give it another name, or leave it out",
         labels=(Label(first.place, "first declared here"),),
     )
+
+
+def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
+    """A quantity in a unit that nobody knows, or that cannot be converted exactly."""
+    refusal = unit_refusal(item.unit)
+    if refusal is not None:
+        message = f"the unit `{item.unit}` of `{name.text}` cannot be used: {refusal.why}"
+        return Diagnostic(
+            "R0209",
+            message,
+            item.span.place,
+            help=refusal.instead,
+        )
+    return Diagnostic(
+        "R0209",
+        f"there is no unit `{item.unit}`",
+        item.span.place,
+        expected="expected a unit of measure",
+        help=unit_help(item.unit),
+    )
+
+
+def unit_help(unit: str) -> str:
+    """The way out of an unknown unit."""
+    if unit in ("step", "steps"):
+        return "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
+    near = did_you_mean(unit, known_unit_names())
+    return near or "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`"

@@ -11,10 +11,12 @@ from rulec.rulebook.declaration_messages import (
     no_such_value,
     twice,
     unknown_type,
+    unknown_unit,
     which_type,
 )
 from rulec.syntax import tree
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary.units import Unit, parse_unit
 
 
 @dataclass(slots=True)
@@ -32,6 +34,7 @@ class Declared:
     type_spans: dict[str, Span] = field(default_factory=dict)
     spans: dict[str, Span] = field(default_factory=dict)
     parameter_spans: dict[tuple[str, int], Span] = field(default_factory=dict)
+    units: dict[str, Unit | None] = field(default_factory=dict)
     suspects: set[str] = field(default_factory=set)
     uncertain: set[str] = field(default_factory=set)
     opaque: bool = False
@@ -41,6 +44,32 @@ class Declared:
     def vocabulary(self, name: str) -> Vocabulary:
         """The declarations as data; only of use when there were no mistakes."""
         return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
+
+    def unit(self, text: str) -> Unit | None:
+        """The unit of that text, read once; None if there is none such."""
+        if text not in self.units:
+            self.units[text] = parse_unit(text)
+        return self.units[text]
+
+    def unit_of(self, quantity: str) -> Unit | None:
+        """The unit of a quantity; None if it is not known, which has been reported."""
+        item = self.items[quantity]
+        return self.unit(item.unit) if isinstance(item, Quantity) else None
+
+    def unit_text(self, name: str) -> str:
+        """The unit of a quantity as written; empty for any other name."""
+        item = self.items.get(name)
+        return item.unit if isinstance(item, Quantity) else ""
+
+    def atoms(self) -> list[str]:
+        """The names of signals and of values."""
+        signals = (one for one, item in self.items.items() if isinstance(item, Signal))
+        return [*signals, *self.value_of]
+
+    def about_one(self) -> list[str]:
+        """The atoms about one object."""
+        found = ((name, self.behind_atom(name)) for name in self.atoms())
+        return [name for name, item in found if item is not None and len(item.parameters) == 1]
 
     def behind_atom(self, name: str) -> Signal | Enumeration | None:
         """The signal of that name, or the enumeration that has such a value."""
@@ -162,6 +191,8 @@ def _declare_item(
                 _add(declared, head.name, Signal(head.name.text, types, truth))
         case tree.QuantityItem(name, parameters, unit, number):
             types = _parameter_types(declared, name, parameters, roots)
+            if declared.unit(unit) is None:
+                declared.mistakes.append(unknown_unit(item, name))
             _add(declared, name, Quantity(name.text, types, unit, number))
         case tree.EnumerationItem(name, parameters, values, chosen):
             types = _parameter_types(declared, name, parameters, roots)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean
@@ -60,7 +61,7 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     folders = _vocabulary_folders(user, search_path)
     for folder in folders:
         candidate = folder / file
-        if _is_file(candidate) and (user is None or not _same(candidate, user)):
+        if _is_file(candidate) and (user is None or not is_same_file(candidate, user)):
             return candidate
     known = [path.stem for path in _vocabularies_in(folders)]
     raise RulecError(
@@ -72,6 +73,24 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
             help=_suggest(name, known),
         )
     )
+
+
+def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
+    """The file of a rulebook that another one extends: beside it, on the search path, or ours.
+
+    Raises:
+        RulecError: R0703 at the ``extends`` line.
+    """
+    beside: list[Path] = []
+    if user is not None:
+        # A rulebook in a folder of its own has the others beside that folder.
+        beside = [user.parent, user.parent.parent]
+    try:
+        return find_rulebook(name, [*beside, *search_path])
+    except RulecError as error:
+        (one,) = error.diagnostics
+        expected = "expected the name of a rulebook"
+        raise RulecError(replace(one, place=line.place, expected=expected)) from None
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
@@ -121,7 +140,8 @@ def _is_file(path: Path) -> bool:
         return False
 
 
-def _same(one: Path, other: Path) -> bool:
+def is_same_file(one: Path, other: Path) -> bool:
+    """Do two paths lead to the same file?"""
     try:
         return one.samefile(other)
     except OSError:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from hashlib import sha256
+from dataclasses import dataclass, field
+from datetime import date
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.rulebook.bases import Book, read_bases, source_file
 from rulec.rulebook.finding import (
     available_rulebooks,
     find_rulebook,
     find_vocabulary,
+    is_same_file,
     read_bytes,
 )
 from rulec.rulebook.model import Rulebook, SourceFile
@@ -38,7 +40,9 @@ class Loaded:
     warnings: tuple[Diagnostic, ...] = ()
 
 
-def load_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Rulebook:
+def load_rulebook(
+    reference: str | Path, search_path: Sequence[Path] = (), at: str = ""
+) -> Rulebook:
     """A rulebook as meant.
 
     Args:
@@ -46,28 +50,32 @@ def load_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Ru
             ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
             contains a ``/`` or ends in ``.rules``.
         search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
 
     Raises:
-        RulecError: with every mistake in the rulebook and in the vocabularies that it uses.
+        RulecError: with every mistake in the rulebook, in those that it extends, and in the
+            vocabularies that they use.
     """
-    return read_rulebook(reference, search_path).rulebook
+    return read_rulebook(reference, search_path, at).rulebook
 
 
-def read_rulebook(reference: str | Path, search_path: Sequence[Path] = ()) -> Loaded:
+def read_rulebook(reference: str | Path, search_path: Sequence[Path] = (), at: str = "") -> Loaded:
     """As ``load_rulebook``, with the warnings."""
     path = find_rulebook(reference, search_path)
     data = read_bytes(path)
-    return _load(decode(str(path), data), data, path, search_path)
+    return _load(decode(str(path), data), data, path, search_path, at)
 
 
-def parse_rulebook(text: str, name: str = "<text>", search_path: Sequence[Path] = ()) -> Rulebook:
+def parse_rulebook(
+    text: str, name: str = "<text>", search_path: Sequence[Path] = (), at: str = ""
+) -> Rulebook:
     """A rulebook whose text is at hand; messages call it ``name``.
 
     Raises:
         RulecError: with every mistake in it and in the vocabularies that it uses.
     """
     data = text.encode("utf-8", "surrogatepass")
-    return _load(Source(name, text), data, None, search_path).rulebook
+    return _load(Source(name, text), data, None, search_path, at).rulebook
 
 
 def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
@@ -77,9 +85,9 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
         RulecError: it is not found, or with every mistake in it.
     """
     asked = Source("<vocabulary>", name)
-    found = _Vocabularies(None, tuple(search_path))
+    found = _Vocabularies(tuple(search_path))
     use = tree.UseLine(tree.Name(name, Span(asked, 0, len(name))))
-    file = found.read(use)
+    file = found.read(use, None)
     if file is None or found.mistakes:
         raise RulecError(found.mistakes)
     vocabulary, mistakes = resolve_vocabulary(file)
@@ -89,7 +97,11 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
 
 
 def diagnose(
-    name: str, data: bytes, path: Path | None = None, search_path: Sequence[Path] = ()
+    name: str,
+    data: bytes,
+    path: Path | None = None,
+    search_path: Sequence[Path] = (),
+    at: str = "",
 ) -> tuple[Diagnostic, ...]:
     """Everything that there is to say about a rulebook or a vocabulary, errors and warnings.
 
@@ -97,24 +109,27 @@ def diagnose(
         name: what messages call it.
         data: its content.
         path: where it is, so that vocabularies beside it are found; None if that is nowhere.
-        search_path: folders of vocabularies.
+        search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
     """
     try:
         source = decode(name, data)
         file, mistakes = parse(source)
         if file.kind == "rulebook":
-            return _resolved(source, data, path, search_path, (file, mistakes)).warnings
+            return _resolved(source, data, path, search_path, (file, mistakes), at).warnings
         _, meanings = resolve_vocabulary(file)
     except RulecError as error:
         return error.diagnostics
     return _in_order(name, [*mistakes, *meanings])
 
 
-def _load(source: Source, data: bytes, path: Path | None, search_path: Sequence[Path]) -> Loaded:
+def _load(
+    source: Source, data: bytes, path: Path | None, search_path: Sequence[Path], at: str
+) -> Loaded:
     file, mistakes = parse(source)
     if file.kind == "vocabulary" and file.name is not None:
         raise RulecError(_not_a_rulebook(file))
-    return _resolved(source, data, path, search_path, (file, mistakes))
+    return _resolved(source, data, path, search_path, (file, mistakes), at)
 
 
 def _resolved(
@@ -123,17 +138,22 @@ def _resolved(
     path: Path | None,
     search_path: Sequence[Path],
     parsed: tuple[tree.File, tuple[Diagnostic, ...]],
+    at: str,
 ) -> Loaded:
     file, mistakes = parsed
-    found = _Vocabularies(path, tuple(search_path))
-    trees = [found.read(use) for use in _once(file.uses)]
+    based = read_bases(file, path, search_path)
+    found = _Vocabularies(tuple(search_path))
+    books = [*based.books, Book(file, path)]
+    trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
     rulebook, meanings = resolve(
         file,
         [one for one in trees if one is not None],
-        sources=(_record(source.name, data), *found.sources),
-        opaque=None in trees,
+        bases=[book.file for book in based.books],
+        sources=(source_file(source.name, data), *based.sources, *found.sources),
+        opaque=found.failed or based.failed,
+        at=at or (file.law.as_of if file.law else "") or date.today().isoformat(),  # noqa: DTZ011
     )
-    everything = _in_order(source.name, [*mistakes, *found.mistakes, *meanings])
+    everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
     if rulebook is None or any(one.severity == "error" for one in everything):
         raise RulecError(everything)
     return Loaded(rulebook, everything)
@@ -158,36 +178,39 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
     return tuple(sorted(mistakes, key=rank))
 
 
-def _record(name: str, data: bytes) -> SourceFile:
-    # A file's name may be no text at all; what goes into a compiled rulebook has to be.
-    text = Path(name).name.encode("utf-8", "backslashreplace").decode()
-    return SourceFile(text, sha256(data).hexdigest())
-
-
+@dataclass(slots=True)
 class _Vocabularies:
-    """Reads the vocabularies that one rulebook uses; collects records and mistakes."""
+    """Reads the vocabularies that rulebooks use, each once; collects records and mistakes.
 
-    def __init__(self, user: Path | None, search_path: tuple[Path, ...]) -> None:
-        self.user = user
-        self.search_path = search_path
-        self.sources: list[SourceFile] = []
-        self.mistakes: list[Diagnostic] = []
+    ``failed``: one of them could not be read.
+    """
 
-    def read(self, use: tree.UseLine) -> tree.File | None:
-        """The tree of a vocabulary; None if there is none to be had."""
+    search_path: tuple[Path, ...]
+    sources: list[SourceFile] = field(default_factory=list)
+    mistakes: list[Diagnostic] = field(default_factory=list)
+    failed: bool = False
+    read_already: list[Path] = field(default_factory=list)
+
+    def read(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
+        """The tree of a vocabulary; None if there is none to be had, or if it has been read."""
         name = use.name
         try:
-            path = find_vocabulary(name.text, name.span, self.user, self.search_path)
+            path = find_vocabulary(name.text, name.span, user, self.search_path)
+            if any(is_same_file(path, one) for one in self.read_already):
+                return None
             data = read_bytes(path, name.span)
             source = decode(str(path), data)
         except RulecError as error:
             self.mistakes += error.diagnostics
+            self.failed = True
             return None
+        self.read_already.append(path)
         file, mistakes = parse(source)
         if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
             self.mistakes.append(_not_the_vocabulary(use, file, path))
+            self.failed = True
             return None
-        self.sources.append(_record(path.name, data))
+        self.sources.append(source_file(path.name, data))
         self.mistakes += mistakes
         return file
 

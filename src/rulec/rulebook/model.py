@@ -45,13 +45,26 @@ class Example:
     """Where each state is written; empty for an example that was not read from a text."""
 
 
+ExemptionScope = Literal["initially", "at start", "throughout", "at some point", "at end"]
+
+
+@dataclass(frozen=True, slots=True)
+class Exemption:
+    """The rule does not count where ``formula`` holds as ``scope`` says; see ``exceptions``."""
+
+    formula: Formula
+    scope: ExemptionScope
+
+
 @dataclass(frozen=True, slots=True)
 class Rule:
     """One rule. Without variables it speaks of ego and the world alone.
 
     ``formula`` is all of it, exceptions included; its bounds may be in seconds. ``level`` is its
     place in the rulebook's priorities, empty if it has none. ``book`` is the rulebook that it is
-    written in. The states of its examples are ``step_s`` seconds apart.
+    written in. The states of its examples are ``step_s`` seconds apart. ``required`` is the formula
+    without its exemptions and the condition (``when``) under which it is in force; None where there
+    are none.
     """
 
     name: str
@@ -70,6 +83,9 @@ class Rule:
     in_force_until: str = ""
     book: str = ""
     step_s: Fraction = Fraction(1)
+    required: Formula | None = None
+    exemptions: tuple[Exemption, ...] = ()
+    condition: Formula | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +94,15 @@ class SourceFile:
 
     name: str
     sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """What holds in every state, for distinct objects of the variables' types."""
+
+    variables: tuple[Variable, ...]
+    formula: Formula
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,3 +137,4 @@ class Rulebook:
     priorities: frozenset[tuple[str, str]] = frozenset()
     remarks: tuple[Remark, ...] = ()
     at: str = ""
+    facts: tuple[Fact, ...] = ()

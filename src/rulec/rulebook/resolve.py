@@ -1,53 +1,82 @@
-"""From the trees of a rulebook and its vocabularies to the rulebook as meant."""
+"""From the trees of a rulebook, its bases and their vocabularies to the rulebook as meant."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Literal
 
-from rulec.diagnostics import Diagnostic, Label
-from rulec.rulebook.declared import declare
-from rulec.rulebook.model import Rule, Rulebook, SourceFile
-from rulec.rulebook.translate import translate_rule
+from rulec.diagnostics import Diagnostic
+from rulec.rulebook import rule_messages
+from rulec.rulebook.declared import Declared, declare
+from rulec.rulebook.facts import fact_of
+from rulec.rulebook.meaning import number
+from rulec.rulebook.meaning_messages import unknown_dimension
+from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
+from rulec.rulebook.overlay import Overlay, overlay
+from rulec.rulebook.parameters import parameter
+from rulec.rulebook.priorities import pre_order
+from rulec.rulebook.provisions import Provisions, in_force
+from rulec.rulebook.scope import Scope
+from rulec.rulebook.translate import check_definition, translate_rule
+from rulec.rulebook.uses import names_used
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.units import DIMENSIONS
 
 
 def resolve(
     file: tree.File,
     vocabularies: Sequence[tree.File] = (),
     *,
+    bases: Sequence[tree.File] = (),
     sources: tuple[SourceFile, ...] = (),
     opaque: bool = False,
+    at: str,
 ) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
     """The rulebook as meant, and what is wrong with it.
 
     Args:
         file: a rulebook's tree; what could not be read in it is not complained about again.
-        vocabularies: the trees of the vocabularies that it uses, in the order of its lines.
+        vocabularies: the trees of the vocabularies that it and its bases use, each once.
+        bases: the trees of the rulebooks that it extends, the most general first.
         sources: the files read, for the record.
-        opaque: a vocabulary could not be read, so that any name may be missing for that reason.
+        opaque: a vocabulary or a base could not be read, so that any name may be missing for that
+            reason.
+        at: the day (ISO) whose law it is.
 
     Returns:
         The rulebook, None if there is an error in it or if its tree is not whole; errors and
         warnings.
     """
-    declared = declare([*vocabularies, file], opaque=opaque)
-    mistakes = list(declared.mistakes)
+    books = [*bases, file]
+    declared = declare([*vocabularies, *books], opaque=opaque)
+    spans = {**declared.spans}
+    laid = overlay(books, spans, unsure=opaque or not all(one.complete for one in books))
+    provisions = Provisions(laid, at, _last_traffic(books))
+    levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
+    mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
+    mistakes += _provisions(declared, provisions)
+    facts: list[Fact] = []
+    for fact in (item for one in (*vocabularies, *books) for item in one.items):
+        if isinstance(fact, tree.FactItem):
+            known, found = fact_of(fact, declared, provisions)
+            mistakes += found
+            facts += [known] if known is not None else []
     rules: list[Rule | None] = []
-    first: dict[str, tree.RuleItem] = {}
-    for item in file.items:
-        if not isinstance(item, tree.RuleItem):
-            continue
-        if first.setdefault(item.name.text, item) is not item:
-            mistakes.append(_rule_twice(item, first[item.name.text]))
-        rule, found = translate_rule(item, declared)
+    for entry in laid.rules.values():
+        rule, found = translate_rule(entry, declared, provisions, levels)
         mistakes += found
-        rules.append(rule)
+        if in_force(entry.item.in_force, at):
+            rules.append(rule)
+    mistakes = list(dict.fromkeys(mistakes))
     good = [rule for rule in rules if rule is not None]
     wrong = any(one.severity == "error" for one in mistakes)
-    whole = all(_is_whole(one) for one in (*vocabularies, file))
+    whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
+    if whole and not wrong:
+        mistakes += _unused(file, books)
     if file.name is None or wrong or not whole or len(good) < len(rules):
         return None, tuple(mistakes)
+    semantics = [one.semantics.kind for one in books if one.semantics]
     rulebook = Rulebook(
         file.name.text,
         declared.vocabulary(file.name.text),
@@ -56,6 +85,14 @@ def resolve(
         file.law.text.value if file.law else "",
         file.law.as_of if file.law else "",
         sources,
+        semantics[-1] if semantics else "stutter",
+        provisions.traffic,
+        tuple(one.name.text for one in reversed(bases) if one.name),
+        levels,
+        priorities,
+        tuple(laid.remarks),
+        at,
+        tuple(facts),
     )
     return rulebook, tuple(mistakes)
 
@@ -63,9 +100,38 @@ def resolve(
 def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagnostic, ...]]:
     """A vocabulary by itself, and what is wrong with it."""
     declared = declare([file])
-    if file.name is None or declared.mistakes:
-        return None, tuple(declared.mistakes)
+    mistakes = list(declared.mistakes)
+    provisions = Provisions(Overlay(), "")
+    for item in file.items:
+        if isinstance(item, tree.FactItem):
+            mistakes += fact_of(item, declared, provisions)[1]
+    if file.name is None or mistakes:
+        return None, tuple(mistakes)
     return declared.vocabulary(file.name.text), ()
+
+
+def _last_traffic(books: Sequence[tree.File]) -> Literal["", "left", "right"]:
+    sides: list[Literal["left", "right"]] = [one.traffic.side for one in books if one.traffic]
+    return sides[-1] if sides else ""
+
+
+def _provisions(declared: Declared, provisions: Provisions) -> Iterator[Diagnostic]:
+    """What is wrong with parameters and definitions, whoever uses them."""
+    laid = provisions.overlay
+    mistakes: list[Diagnostic] = []
+    scope = Scope(declared, provisions, {}, mistakes)
+    for values in laid.parameters.values():
+        for value in values:
+            kind = value.item.dimension if isinstance(value.item, tree.ParamItem) else None
+            if kind is not None and kind.text not in DIMENSIONS:
+                mistakes.append(unknown_dimension(kind, list(DIMENSIONS)))
+        # Evaluated here once, without a use that would have to stand in the messages.
+        first = values[0].item.name
+        if any(in_force(value.item.in_force, provisions.at) for value in values):
+            parameter(tree.AtomUse(first, (), first.span), scope, number)
+    for definition in laid.definitions.values():
+        mistakes += check_definition(definition, declared, provisions)
+    yield from mistakes
 
 
 def _is_whole(file: tree.File) -> bool:
@@ -76,12 +142,18 @@ def _is_whole(file: tree.File) -> bool:
     return file.complete and not broken
 
 
-def _rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
-    return Diagnostic(
-        "R0205",
-        f"there are two rules `{again.name.text}`",
-        again.name.span.place,
-        expected="named again here",
-        help="give each rule a name of its own",
-        labels=(Label(first.name.span.place, "first named here"),),
-    )
+def _unused(file: tree.File, books: Sequence[tree.File]) -> Iterator[Diagnostic]:
+    """Options, parameters and definitions of the file itself that nothing speaks of."""
+    used = {name for book in books for item in book.items for name in names_used(item)}
+    for item in file.items:
+        match item:
+            case tree.OptionItem(name):
+                kind = "option"
+            case tree.ParamItem(name):
+                kind = "parameter"
+            case tree.DefineItem(name, again=False):
+                kind = "definition"
+            case _:
+                continue
+        if name.text not in used:
+            yield rule_messages.unused_provision(kind, name)

@@ -1,49 +1,122 @@
-"""What a rule's formula and examples can refer to, and atoms looked up in it."""
+"""What a formula can refer to, and names looked up in it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
-from rulec.logic.formula import Atom
+from rulec.logic.formula import Atom, Quantity
 from rulec.rulebook import atom_messages
 from rulec.rulebook.declared import Declared
+from rulec.rulebook.provisions import Provisions
 from rulec.syntax import tree
 from rulec.vocabulary import Enumeration, Signal
+from rulec.vocabulary import Quantity as QuantityDeclaration
+
+SIDES = {"near_side_of": {"right": "right_of", "left": "left_of"}}
+SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
+"""Relation -> traffic -> the absolute side that it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoundVariable:
-    """A rule's variable: its type, None if that is not known, and its place."""
+    """A variable: its type, None if that is not known, and its place.
+
+    ``actual`` is its name in the rule: inside a definition that is the argument's.
+    """
 
     type: str | None
     span: Span
+    actual: str
+
+
+@dataclass(frozen=True, slots=True)
+class Anything:
+    """A definition's parameter while the definition is checked by itself: object or relation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A definition that is being put in the place of its use."""
+
+    name: str
+    span: Span
+
+
+Declared_ = Signal | Enumeration | QuantityDeclaration
 
 
 @dataclass(slots=True)
 class Scope:
-    """One rule's view: the declarations and the rule's variables."""
+    """One rule's or definition's view: the declarations, provisions and its variables.
+
+    ``relations`` are the parameters of a definition that stand for relations. ``calls`` are the
+    definitions that are being put in, outermost first. ``in_count`` tells that the formula is the
+    body of a count, ``counted`` are the variables (actual names) of the counts around.
+    """
 
     declared: Declared
+    provisions: Provisions
     variables: dict[str, BoundVariable]
     mistakes: list[Diagnostic]
     used: set[str] = field(default_factory=set)
+    relations: dict[str, str | Anything] = field(default_factory=dict)
+    calls: tuple[Call, ...] = ()
+    counted: frozenset[str] = frozenset()
+    of_definition: bool = False
 
-    def atom(self, use: tree.AtomUse) -> Atom | None:
-        """The atom meant; None when that is not known, which is then reported."""
-        name = use.name.text
-        if self.declared.behind_atom(name) is not None:
+    @property
+    def in_count(self) -> bool:
+        """Is this the body of a count, which speaks of one state alone?"""
+        return bool(self.counted)
+
+    def report(self, mistake: Diagnostic) -> None:
+        """Note a mistake, with the uses of definitions that led to it."""
+        labels = [Label(call.span.place, f"`{call.name}` is used here") for call in self.calls]
+        if labels:
+            mistake = replace(mistake, labels=(*mistake.labels, *labels))
+        if mistake not in self.mistakes:
+            self.mistakes.append(mistake)
+
+    def behind(self, name: str) -> Declared_ | None:
+        """The signal or quantity of that name, or the enumeration that has such a value."""
+        found = self.declared.items.get(name)
+        if isinstance(found, QuantityDeclaration):
+            return found
+        return self.declared.behind_atom(name)
+
+    def absolute(self, use: tree.AtomUse, name: str) -> str | None:
+        """``near_side_of`` as the side that it is; other names as they are; None if reported."""
+        if name not in SIDES or self.behind(name) is not None:
+            return name
+        traffic = self.provisions.traffic
+        if not traffic:
+            self.report(atom_messages.no_traffic(use, name))
+            return None
+        side = SIDES[name][traffic]
+        if self.behind(side) is None:
+            if not self.declared.may_know(side):
+                self.report(atom_messages.no_sides(use, name, side))
+            return None
+        return side
+
+    def reference(self, use: tree.AtomUse) -> Atom | Quantity | None:
+        """The atom or quantity meant; None when that is not known, which is then reported."""
+        name = self.absolute(use, use.name.text)
+        if name is None:
+            return None
+        if self.behind(name) is not None:
             return self._checked(use, name, use.arguments)
         if not use.arguments and "_" in name:
             readings = self._readings(name)
             if len(readings) > 1:
-                self.mistakes.append(atom_messages.two_readings(use, readings))
+                self.report(atom_messages.two_readings(use, readings))
                 return None
             if readings:
                 head, variable = readings[0]
                 return self._checked(use, head, (tree.Name(variable, use.span),))
-        if not self.declared.may_know(name):
-            self.mistakes.append(atom_messages.explain(use, self.declared, list(self.variables)))
+        if not self.provisions.may_know(name) and not self.declared.may_know(name):
+            self.report(atom_messages.explain(use, self))
         return None
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
@@ -51,70 +124,79 @@ class Scope:
         found: list[tuple[str, str]] = []
         for position in (at for at, letter in enumerate(name) if letter == "_"):
             head, variable = name[:position], name[position + 1 :]
-            item = self.declared.behind_atom(head)
+            item = self.behind(head)
             if item is not None and len(item.parameters) == 1 and variable in self.variables:
                 found.append((head, variable))
         return found
 
     def _checked(
         self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
-    ) -> Atom | None:
-        item = self.declared.behind_atom(name)
+    ) -> Atom | Quantity | None:
+        item = self.behind(name)
         assert item is not None, "only called for known names"
-        self.used |= {one.text for one in arguments}
         if len(arguments) != len(item.parameters):
-            self.mistakes.append(
-                atom_messages.wrong_number(use, name, item, self.declared, list(self.variables))
-            )
+            self.used |= {one.text for one in arguments}
+            self.report(atom_messages.wrong_number(use, name, item, self))
             return None
-        fine = [
-            self._fits(one, wanted, item, position)
+        actual = [
+            self.object(one, wanted, (item.name, position))
             for position, (one, wanted) in enumerate(zip(arguments, item.parameters, strict=True))
         ]
-        if not all(fine):
+        found = tuple(one for one in actual if one is not None)
+        if len(found) < len(actual):
             return None
-        value = name if isinstance(item, Enumeration) else None
-        return Atom(item.name, tuple(one.text for one in arguments), value)
+        if isinstance(item, QuantityDeclaration):
+            return Quantity(item.name, found)
+        return Atom(item.name, found, name if isinstance(item, Enumeration) else None)
 
-    def _fits(
-        self, argument: tree.Name, wanted: str, item: Signal | Enumeration, position: int
-    ) -> bool:
+    def object(
+        self, argument: tree.Name, wanted: str | None, parameter: tuple[str, int] | None = None
+    ) -> str | None:
+        """The actual name of an object of a type; None if there is none such, which is reported.
+
+        ``parameter``: which parameter of which declaration asks for it.
+        """
+        self.used.add(argument.text)
+        if isinstance(self.relations.get(argument.text), Anything):
+            return argument.text
         variable = self.variables.get(argument.text)
         if variable is None:
-            self.mistakes.append(_unknown_variable(argument, list(self.variables)))
-            return False
-        if variable.type is None or self.declared.fits(variable.type, wanted):
-            return True
-        parameter = self.declared.parameter_spans[item.name, position]
-        self.mistakes.append(_wrong_type(argument, variable, wanted, item.name, parameter))
-        return False
+            self.report(_unknown_variable(argument, list(self.variables), self.of_definition))
+            return None
+        if wanted is None or variable.type is None or self.declared.fits(variable.type, wanted):
+            return variable.actual
+        where = None if parameter is None else self.declared.parameter_spans.get(parameter)
+        name = "" if parameter is None else parameter[0]
+        self.report(_wrong_type(argument, variable, wanted, name, where))
+        return None
 
 
-def _unknown_variable(name: tree.Name, known: list[str]) -> Diagnostic:
+def _unknown_variable(name: tree.Name, known: list[str], of_definition: bool) -> Diagnostic:
+    owner = "definition" if of_definition else "rule"
     if known:
-        way_out = f"the rule's variables are {named(known)}"
+        way_out = f"the {owner}'s variables are {named(known)}"
     else:
-        way_out = f"declare it behind the rule's name, such as `({name.text}: vehicle)`"
+        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: vehicle)`"
     return Diagnostic(
         "R0203",
-        f"the rule has no variable `{name.text}`",
+        f"the {owner} has no variable `{name.text}`",
         name.span.place,
-        expected="expected a variable of the rule",
+        expected=f"expected a variable of the {owner}",
         help=did_you_mean(name.text, known) or way_out,
     )
 
 
 def _wrong_type(
-    argument: tree.Name, variable: BoundVariable, wanted: str, item: str, parameter: Span
+    argument: tree.Name, variable: BoundVariable, wanted: str, item: str, parameter: Span | None
 ) -> Diagnostic:
+    labels = [Label(variable.span.place, f"`{argument.text}` is declared here")]
+    if parameter is not None:
+        labels.append(Label(parameter.place, f"`{item}` is about objects of type `{wanted}`"))
     return Diagnostic(
         "R0302",
         f"`{argument.text}` is of type `{variable.type}`, which is no `{wanted}`",
         argument.span.place,
         expected=f"expected a variable of type `{wanted}`",
         help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
-        labels=(
-            Label(variable.span.place, f"`{argument.text}` is declared here"),
-            Label(parameter.place, f"`{item}` is about objects of type `{wanted}`"),
-        ),
+        labels=tuple(labels),
     )

@@ -90,7 +90,8 @@ def _fits(value: Any, declaration: Declaration) -> bool:
             return isinstance(value, bool)
         case Quantity():
             number = isinstance(value, int | float) and not isinstance(value, bool)
-            return number and math.isfinite(value)
+            # Neither infinite nor nan; whole numbers may be larger than any float.
+            return number and -math.inf < value < math.inf
 
 
 def _wanted(declaration: Declaration) -> str:
@@ -116,8 +117,11 @@ def _shown(value: Any) -> str:
         return "given per object"
     if isinstance(value, str):
         text = json.dumps(value, ensure_ascii=False)
-    elif isinstance(value, int | float):
+    elif isinstance(value, float):
         text = f"{value:g}"
+    elif isinstance(value, int):
+        # Python refuses to write out whole numbers of many thousand digits.
+        text = str(value) if value.bit_length() < 200 else "a number of many digits"
     else:
         text = f"{value} ({type(value).__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"

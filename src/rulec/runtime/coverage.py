@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.machine import Machine, Read
-from rulec.logic.formula import Atom, atoms_of
-from rulec.rulebook.model import ExampleState, Rule
-from rulec.runtime.examples import ExampleRun, Outcome
-from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.machine import Machine
+from rulec.logic.formula import Comparison, Proposition, atoms_of
+from rulec.rulebook.model import Rule
+from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
+from rulec.runtime.moment import Moment, holds
+from rulec.runtime.verify import columns_of
+from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
+from rulec.vocabulary import Enumeration, Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +26,7 @@ class MissingEdge:
 
     source: int
     target: int
-    states: tuple[ExampleState, ...]
+    states: tuple[Wanted, ...]
     accepted: bool
 
 
@@ -31,15 +35,15 @@ class RuleCoverage:
     """What a rule's examples take and see.
 
     An edge is a state of its machine and a class of letters; the edges of the two states in which
-    the verdict is settled for good do not count. An atom's values are true and false, as far as it
-    can have them.
+    the verdict is settled for good do not count, nor does what no state of the world can be. The
+    values of an atom or a comparison are true and false, as far as it can have them.
     """
 
     rule: str
     n_edges: int
     missing_edges: tuple[MissingEdge, ...]
     n_values: int
-    missing_values: tuple[tuple[Atom, bool], ...]
+    missing_values: tuple[tuple[Proposition, bool], ...]
 
     @property
     def total(self) -> int:
@@ -68,46 +72,70 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [one for one in run.outcomes if one.rule is rule]
         if outcomes or run.pattern is None:
-            found.append(_coverage(rule, compiled.machine, outcomes, run.rulebook.vocabulary))
+            found.append(_coverage(rule, compiled, outcomes, run.compiled))
     return tuple(found)
 
 
 def _coverage(
-    rule: Rule, machine: Machine, outcomes: Sequence[Outcome], vocabulary: Vocabulary
+    rule: Rule, compiled: CompiledRule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
 ) -> RuleCoverage:
-    edges = list(_edges(machine))
+    machine, vocabulary = compiled.machine, rulebook.vocabulary
+    letters = _letters(machine)
+    paths = _shortest_paths(machine, letters)
+    edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
-    paths = _shortest_paths(machine)
-    letters = _letters(machine, vocabulary)
+    states = {
+        symbol: wanted(letter, machine, rule.formula, vocabulary)
+        for symbol, letter in letters.items()
+    }
     missing_edges = tuple(
         MissingEdge(
             source,
             machine.following[source][symbol],
-            tuple(letters[one] for one in (*paths[source], symbol)),
+            tuple(states[one] for one in (*paths[source], symbol)),
             machine.accepting[source][symbol],
         )
         for source, symbol in edges
         if (source, symbol) not in taken
     )
     values = [
-        (atom, v)
-        for atom in dict.fromkeys(atoms_of(rule.formula))
-        for v in _possible(atom, vocabulary)
+        (one, value)
+        for one in dict.fromkeys(atoms_of(rule.formula))
+        for value in _possible(one, machine, vocabulary)
     ]
     seen = {
-        (atom, _holds(atom, state, vocabulary))
-        for atom, _ in values
-        for one in outcomes
-        for state in one.example.states
+        (one, holds(one, own_names(rule), moment))
+        for moment in _moments(rule, outcomes, rulebook)
+        for one, _ in values
     }
     missing_values = tuple(value for value in values if value not in seen)
     return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
 
 
-def _edges(machine: Machine) -> Iterator[tuple[int, int]]:
-    for state, row in enumerate(machine.following):
-        if state not in (machine.dead, machine.safe):
-            for symbol in range(len(row)):
+def _moments(
+    rule: Rule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+) -> Iterator[Moment]:
+    for one in outcomes:
+        trace = example_trace(rule, one.example)
+        columns = columns_of(trace, rulebook)
+        yield from (columns.moment(number) for number in range(len(trace.states)))
+
+
+def _letters(machine: Machine) -> Mapping[int, int]:
+    """For every class that some state of the world is in, the first of its letters."""
+    first: dict[int, int] = {}
+    for letter, symbol in enumerate(machine.letters):
+        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
+            first[symbol] = letter
+    return first
+
+
+def _edges(
+    machine: Machine, reachable: Container[int], symbols: Iterable[int]
+) -> Iterator[tuple[int, int]]:
+    for state in range(len(machine.following)):
+        if state not in (machine.dead, machine.safe) and state in reachable:
+            for symbol in sorted(symbols):
                 yield state, symbol
 
 
@@ -118,51 +146,24 @@ def _taken(machine: Machine, word: Sequence[int]) -> Iterator[tuple[int, int]]:
         state = machine.following[state][symbol]
 
 
-def _shortest_paths(machine: Machine) -> Mapping[int, tuple[int, ...]]:
-    """For every state a shortest word of letter classes that leads to it."""
+def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
+    """For every state that can be reached a shortest word of letter classes that leads to it."""
     paths: dict[int, tuple[int, ...]] = {0: ()}
     waiting = [0]
     for state in waiting:
-        for symbol, target in enumerate(machine.following[state]):
+        for symbol in sorted(symbols):
+            target = machine.following[state][symbol]
             if target not in paths:
                 paths[target] = (*paths[state], symbol)
                 waiting.append(target)
     return paths
 
 
-def _letters(machine: Machine, vocabulary: Vocabulary) -> Mapping[int, ExampleState]:
-    """For every class the first of its letters, as what a state says."""
-    first: dict[int, int] = {}
-    for letter, symbol in enumerate(machine.letters):
-        first.setdefault(symbol, letter)
-    return {symbol: _said(letter, machine.reads, vocabulary) for symbol, letter in first.items()}
-
-
-def _said(letter: int, reads: Sequence[Read], vocabulary: Vocabulary) -> ExampleState:
-    said: dict[tuple[str, tuple[str, ...]], bool | str] = {}
-    for read in reads:
-        letter, digit = divmod(letter, read.size)
-        said[read.name, read.variables] = _value(read, digit, vocabulary)
-    return said
-
-
-def _value(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
-    declaration = vocabulary.declarations[read.name]
-    if not isinstance(declaration, Enumeration):
-        return bool(digit)
-    if digit < len(read.values):
-        return read.values[digit]
-    return next(value for value in declaration.values if value not in read.values)
-
-
-def _possible(atom: Atom, vocabulary: Vocabulary) -> tuple[bool, ...]:
-    declaration = vocabulary.declarations[atom.name]
+def _possible(
+    proposition: Proposition, machine: Machine, vocabulary: Vocabulary
+) -> tuple[bool, ...]:
+    if isinstance(proposition, Comparison):
+        return tuple(sorted(truths(proposition, machine), reverse=True))
+    declaration = vocabulary.declarations[proposition.name]
     only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
     return (True,) if only else (True, False)
-
-
-def _holds(atom: Atom, state: ExampleState, vocabulary: Vocabulary) -> bool:
-    declaration = vocabulary.declarations[atom.name]
-    assert not isinstance(declaration, Quantity), "quantities are no atoms"
-    value = state.get((atom.name, atom.arguments), declaration.default)
-    return bool(value) if atom.value is None else value == atom.value

@@ -10,8 +10,7 @@ from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Example, Rule, Rulebook
-from rulec.runtime.letters import Columns
-from rulec.runtime.verify import run
+from rulec.runtime.verify import columns_of, run
 from rulec.trace import Trace
 
 
@@ -21,7 +20,8 @@ class Outcome:
 
     ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
     the rule's machine. ``lost_after`` is the first state, from 0, after which no continuation could
-    save the rule; None if there is none.
+    save the rule; None if there is none. ``ends``: nothing comes after an example's last state,
+    rather than that state again and again.
     """
 
     rule: Rule
@@ -30,6 +30,7 @@ class Outcome:
     word: tuple[int, ...]
     accepted: bool
     lost_after: int | None
+    ends: bool = False
 
     @property
     def passed(self) -> bool:
@@ -84,15 +85,15 @@ def _outcome(
     rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
 ) -> Outcome:
     """The verdict for the binding that gives every variable its own name."""
-    states = example_trace(rule, example).states
-    own = {variable.name: variable.name for variable in rule.variables}
-    columns = Columns(states, compiled.vocabulary, "state {}".format)
-    word = columns.word(machine, own, 0, len(states) - 1)
-    return Outcome(rule, example, number, word, *run(machine.machine, word))
+    trace = example_trace(rule, example)
+    columns = columns_of(trace, compiled)
+    word = columns.word(machine, own_names(rule), 0, len(trace.states) - 1)
+    ends = compiled.semantics == "finite"
+    return Outcome(rule, example, number, word, *run(machine.machine, word), ends)
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
-    """The example as a trace whose objects are the rule's variables."""
+    """The example as a trace whose objects are the rule's variables and those that it adds."""
     states = []
     for mentioned in example.states:
         state: dict[str, Any] = {}
@@ -103,8 +104,14 @@ def example_trace(rule: Rule, example: Example) -> Trace:
                 inside = inside.setdefault(key, {})
             inside[last] = value
         states.append(state)
-    objects = {variable.name: variable.type for variable in rule.variables}
-    return Trace(example.label or rule.name, 1.0, objects, tuple(states))
+    objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
+    name, place = example.label or rule.name, at(example.span)
+    return Trace(name, float(rule.step_s), objects, tuple(states), place=place)
+
+
+def own_names(rule: Rule) -> dict[str, str]:
+    """The binding of its examples: every variable stands for the object of its own name."""
+    return {variable.name: variable.name for variable in rule.variables}
 
 
 def surprise(outcome: Outcome) -> Diagnostic:
@@ -120,7 +127,10 @@ def surprise(outcome: Outcome) -> Diagnostic:
             place = example.state_spans[outcome.lost_after].place
             labels = (Label(place, "beyond saving after this state"),)
     elif not outcome.accepted:
-        notes = ("the rule could still be kept, if the last state did not go on for ever",)
+        end = "the example did not end here"
+        if not outcome.ends:
+            end = "the last state did not go on for ever"
+        notes = (f"the rule could still be kept, if {end}",)
     return Diagnostic(
         "R0406",
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",

@@ -6,13 +6,28 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.logic.formula import Atom, Binary, Formula, Unary, atoms_of
-from rulec.logic.printing import in_words
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Count,
+    Formula,
+    Proposition,
+    Quantity,
+    Term,
+    Unary,
+    atoms_of,
+)
+from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
+from rulec.logic.timing import in_steps
 from rulec.runtime.binding import Binding, bindings
-from rulec.runtime.letters import value_in
+from rulec.runtime.moment import Moment, Unknown, counted, holds
+from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import Violation
+from rulec.runtime.verify import columns_of
 from rulec.trace import Trace, Value
+from rulec.vocabulary import Quantity as QuantityDeclaration
 from rulec.vocabulary import Vocabulary
 
 MOST_STATES = 10
@@ -21,19 +36,30 @@ MOST_STATES = 10
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Something that the rule reads, such as ``position(v1)``, and its value in each state."""
+    """Something that the rule reads, such as ``position(v1)``, and its value in each state.
+
+    ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
+    ``changed``: does the rule tell the value in the decisive state from the one before?
+    """
 
     text: str
     values: tuple[Value, ...]
+    changed: bool
+    unit: str = ""
+    objects: tuple[tuple[str, ...], ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of the formula, ``depth`` operators inside it, and whether it holds in each state."""
+    """A part of the formula, ``depth`` operators inside it, and whether it holds in each state.
+
+    ``changed``: is its value in the decisive state another than in the one before?
+    """
 
     text: str
     depth: int
     values: tuple[bool, ...]
+    changed: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,25 +83,29 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     """Explain one of the violations that ``verify`` found in this trace by this rulebook."""
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     binding = _binding(violation, rule, trace, rulebook.vocabulary)
+    columns = columns_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)
     decisive = binding.last if violation.step is None else violation.step
     states = _shown(stretch, decisive)
-    values = {
-        atom: [_value(atom, binding, trace, number, rulebook.vocabulary) for number in stretch]
-        for atom in dict.fromkeys(atoms_of(rule.formula))
-    }
+    seen = _Seen(
+        [columns.moment(number) for number in stretch],
+        binding.objects,
+        [number - binding.first for number in states],
+        decisive - binding.first,
+    )
+    truths = {atom: seen.truths(atom) for atom in dict.fromkeys(atoms_of(rule.formula))}
     word = [
-        frozenset(atom for atom, column in values.items() if column[n] == (atom.value or True))
-        for n in range(len(stretch))
+        frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
     ]
-    columns = [number - binding.first for number in states]
+    formula = in_steps(rule.formula, exact(trace.step_s))
+    values = values_of_parts(formula, word, rulebook.semantics)
     return Explanation(
         rule,
         violation,
         states,
         decisive,
-        tuple(_facts(values, binding, columns)),
-        tuple(_parts(rule.formula, values_of_parts(rule.formula, word), columns, 0)),
+        tuple(_facts(truths, seen)),
+        tuple(_parts(rule.formula, formula, values, seen, 0)),
     )
 
 
@@ -94,37 +124,90 @@ def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
     return tuple(sorted({stretch[0], *range(first, last + 1)}))
 
 
-def _value(
-    atom: Atom, binding: Binding, trace: Trace, number: int, vocabulary: Vocabulary
-) -> Value:
-    items = [binding.objects[variable] for variable in atom.arguments]
-    declaration = vocabulary.declarations[atom.name]
-    value = value_in(trace.states[number], atom.name, items, declaration)
-    assert value is not None, "verify has read this value"
-    return value
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What a binding's states say; verify has read all of it, so nothing is unknown.
+
+    ``shown`` are the indices of the moments to show, ``decisive`` is one of them.
+    """
+
+    moments: Sequence[Moment]
+    bound: Mapping[str, str]
+    shown: Sequence[int]
+    decisive: int
+
+    def truths(self, proposition: Proposition) -> list[bool]:
+        """Is it the case, in each moment?"""
+        return [holds(proposition, self.bound, moment) is True for moment in self.moments]
+
+    def values(self, name: str, arguments: Sequence[str]) -> list[Value]:
+        """The value of a declaration in each moment."""
+        items = tuple(self.bound[variable] for variable in arguments)
+        found = [moment.value(name, items) for moment in self.moments]
+        return [value for value in found if not isinstance(value, Unknown)]
+
+    def counted(self, term: Count) -> list[tuple[str, ...]]:
+        """The objects that count in each moment."""
+        found = [counted(term, self.bound, moment) for moment in self.moments]
+        return [objects for objects in found if not isinstance(objects, Unknown)]
+
+    def changes(self, values: Sequence[object]) -> bool:
+        """Is the value in the decisive moment another than in the one before?"""
+        return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
 
 
-def _facts(
-    values: dict[Atom, list[Value]], binding: Binding, columns: Sequence[int]
-) -> Iterator[Fact]:
-    seen = set()
-    for atom, column in values.items():
-        items = tuple(binding.objects[variable] for variable in atom.arguments)
-        fact = str(Atom(atom.name, items))
-        if fact not in seen:
-            seen.add(fact)
-            yield Fact(fact, tuple(column[n] for n in columns))
+def _facts(truths: Mapping[Proposition, list[bool]], seen: _Seen) -> Iterator[Fact]:
+    """What is read, in the order in which the formula first speaks of it."""
+    changed: dict[Atom | Term, bool] = {}
+    for proposition, column in truths.items():
+        if isinstance(proposition, Comparison):
+            for _, term in proposition.terms:
+                # A number always changes a little; what counts is whether it passes a limit.
+                changed[term] = changed.get(term, False) or seen.changes(column)
+        else:
+            changed[Atom(proposition.name, proposition.arguments)] = False
+    for read, passes in changed.items():
+        match read:
+            case Atom(name, arguments):
+                values = seen.values(name, arguments)
+                yield _fact(read, values, seen, changed=seen.changes(values))
+            case Quantity(name, arguments):
+                values = seen.values(name, arguments)
+                yield _fact(read, values, seen, changed=passes and seen.changes(values))
+            case Count():
+                objects = seen.counted(read)
+                yield Fact(
+                    term_in_words(read),
+                    tuple(len(objects[n]) for n in seen.shown),
+                    passes and seen.changes([len(one) for one in objects]),
+                    objects=tuple(objects[n] for n in seen.shown),
+                )
+
+
+def _fact(read: Atom | Quantity, values: Sequence[Value], seen: _Seen, *, changed: bool) -> Fact:
+    items = tuple(seen.bound[variable] for variable in read.arguments)
+    declaration = seen.moments[0].vocabulary.declarations[read.name]
+    unit = declaration.unit if isinstance(declaration, QuantityDeclaration) else ""
+    text = str(Atom(read.name, items))
+    return Fact(text, tuple(values[n] for n in seen.shown), changed, unit)
 
 
 def _parts(
-    formula: Formula, holds: Mapping[Formula, list[bool]], columns: Sequence[int], depth: int
+    written: Formula,
+    stepped: Formula,
+    truths: Mapping[Formula, list[bool]],
+    seen: _Seen,
+    depth: int,
 ) -> Iterator[Part]:
-    yield Part(in_words(formula), depth, tuple(holds[formula][n] for n in columns))
-    match formula:
-        case Unary(_, operand):
-            yield from _parts(operand, holds, columns, depth + 1)
-        case Binary(_, left, right):
-            yield from _parts(left, holds, columns, depth + 1)
-            yield from _parts(right, holds, columns, depth + 1)
+    """The parts as they are written, with the values of the same formula with bounds in steps."""
+    values = truths[stepped]
+    shown = tuple(values[n] for n in seen.shown)
+    yield Part(in_words(written), depth, shown, seen.changes(values))
+    match written, stepped:
+        case Unary(_, operand), Unary(_, same):
+            yield from _parts(operand, same, truths, seen, depth + 1)
+        case Binary(_, left, right), Binary(_, same_left, same_right):
+            yield from _parts(left, same_left, truths, seen, depth + 1)
+            yield from _parts(right, same_right, truths, seen, depth + 1)
         case _:
             return

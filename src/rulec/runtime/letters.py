@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from types import MappingProxyType
 
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import Read
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.runtime.moment import Moment, Unknown, total, value_in
+from rulec.runtime.numbers import Scale, scale
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
+
+NOBODY: Mapping[str, str] = MappingProxyType({})
+ALWAYS_THERE: Mapping[str, tuple[int, int]] = MappingProxyType({})
 
 
 class Columns:
     """States that have passed ``check_state``, read column by column.
 
     What some objects contribute to letters is looked up once, whatever rules and bindings ask.
-    ``where`` names a state in messages, ``place`` is where they were read.
+    ``where`` names a state in messages, ``place`` is where they were read. ``objects`` and
+    ``present`` are a trace's.
     """
 
     def __init__(
@@ -25,12 +31,24 @@ class Columns:
         vocabulary: Vocabulary,
         where: Callable[[int], str],
         place: Place | None = None,
+        objects: Mapping[str, str] = NOBODY,
+        present: Mapping[str, tuple[int, int]] = ALWAYS_THERE,
     ) -> None:
         self._states = states
         self._vocabulary = vocabulary
         self._where = where
         self._place = place
+        self._objects = objects
+        self._present = present
         self._known: dict[tuple[object, ...], list[int]] = {}
+        self._moments: dict[int, Moment] = {}
+
+    def moment(self, number: int) -> Moment:
+        """A state with the objects that are there."""
+        if number not in self._moments:
+            there = present_in(number, self._objects, self._present)
+            self._moments[number] = Moment(self._states[number], there, self._vocabulary)
+        return self._moments[number]
 
     def word(
         self, rule: CompiledRule, objects: Mapping[str, str], first: int, last: int
@@ -43,8 +61,11 @@ class Columns:
         machine = rule.machine
         numbers, stride = [0] * (last - first + 1), 1
         for read in machine.reads:
-            items = tuple([objects[variable] for variable in read.variables])
-            digits = self._digits(read, items, first, last, rule.name)
+            if isinstance(read, Read):
+                items = tuple([objects[variable] for variable in read.variables])
+                digits = self._digits(read, items, first, last, rule.name)
+            else:
+                digits = self._counted_off(scale(read), objects, first, last, rule.name)
             numbers = [n + stride * digit for n, digit in zip(numbers, digits, strict=True)]
             stride *= read.size
         return tuple([machine.letters[number] for number in numbers])
@@ -57,34 +78,64 @@ class Columns:
         if key not in self._known:
             declaration = self._vocabulary.declarations[read.name]
             self._known[key] = [
-                self._digit(read, items, number, declaration, rule)
+                read.digit(self._value(read.name, items, number, declaration, rule))
                 for number in range(first, last + 1)
             ]
         return self._known[key]
 
-    def _digit(
-        self, read: Read, items: tuple[str, ...], number: int, declaration: Declaration, rule: str
-    ) -> int:
-        value = value_in(self._states[number], read.name, items, declaration)
+    def _counted_off(
+        self, read: Scale, objects: Mapping[str, str], first: int, last: int, rule: str
+    ) -> list[int]:
+        """The digits of a number: how many thresholds it passes."""
+        items = tuple([objects[variable] for variable in read.variables])
+        key = (read, items, first, last)
+        if key not in self._known:
+            numbers = range(first, last + 1)
+            if read.quantity is None:
+                bound = dict(zip(read.variables, items, strict=True))
+                self._known[key] = [self._digit(read, bound, number, rule) for number in numbers]
+            else:
+                name = read.quantity.name
+                arguments = tuple([objects[variable] for variable in read.quantity.arguments])
+                declaration = self._vocabulary.declarations[name]
+                values = [self._value(name, arguments, n, declaration, rule) for n in numbers]
+                self._known[key] = [read.digit(value) for value in values]
+        return self._known[key]
+
+    def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
+        found = total(read.read.terms, bound, self.moment(number))
+        if isinstance(found, Unknown):
+            raise self._missing(found.name, found.objects, number, rule)
+        return read.read.digit(found)
+
+    def _value(
+        self, name: str, items: tuple[str, ...], number: int, declaration: Declaration, rule: str
+    ) -> Value:
+        value = value_in(self._states[number], name, items, declaration)
         if value is None:
-            of = f" of `{', '.join(items)}`" if items else ""
-            raise RulecError(
-                Diagnostic(
-                    "R0504",
-                    f"{self._where(number)} does not say the `{read.name}`{of}, "
-                    f"which rule `{rule}` needs",
-                    self._place,
-                    help="supply it in every state, or declare a default in the vocabulary",
-                )
+            raise self._missing(name, items, number, rule)
+        return value
+
+    def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
+        of = f" of `{', '.join(items)}`" if items else ""
+        return RulecError(
+            Diagnostic(
+                "R0504",
+                f"{self._where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
+                self._place,
+                help="supply it in every state, or declare a default in the vocabulary",
             )
-        return read.digit(value)
+        )
 
 
-def value_in(
-    state: State, name: str, objects: Sequence[str], declaration: Declaration
-) -> Value | None:
-    """The value that a state gives, or the declared default; None if there is neither."""
-    value: Any = state.get(name)
-    for item in objects:
-        value = value.get(item) if value is not None else None
-    return declaration.default if value is None else value
+def present_in(
+    number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
+) -> Mapping[str, str]:
+    """The objects that are there in a state, with their types; ``present`` as in a trace."""
+    if not present:
+        return objects
+    return {
+        name: kind
+        for name, kind in objects.items()
+        if name not in present or present[name][0] <= number <= present[name][1]
+    }

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.machine import Machine
 from rulec.runtime.binding import bindings
 from rulec.runtime.checking import check_objects, check_state
-from rulec.runtime.letters import Columns
+from rulec.runtime.letters import Columns, present_in
+from rulec.runtime.numbers import exact
+from rulec.runtime.verify import check_step
 from rulec.trace import TraceGraph
 
 JointState = tuple[int, ...]
@@ -73,19 +76,32 @@ def count_paths(graph: TraceGraph) -> int:
     return sum(counts.get(goal, 0) for goal in set(graph.goals))
 
 
-def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
+def instances(
+    graph: TraceGraph, rulebook: CompiledRulebook, step_s: Fraction | None = None
+) -> list[Instance]:
     """Every hard rule with every binding of its variables to the graph's objects.
 
+    ``step_s`` is the graph's step where that is no decimal, a third of a second for one.
+
     Raises:
-        RulecError: R0502 to R0505 if the graph does not supply what the rules read.
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
+            rule was compiled for another step.
     """
     vocabulary = rulebook.vocabulary
+    rules = [rule for rule in rulebook.rules if rule.strength == "hard"]
+    for rule in rules:
+        check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
     for layer, states in enumerate(graph.states):
         for state in states:
             check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
     columns = [
-        Columns(states, vocabulary, f"a cell of layer {layer}".format)
+        Columns(
+            states,
+            vocabulary,
+            f"a cell of layer {layer}".format,
+            objects=present_in(layer, graph.objects, graph.present),
+        )
         for layer, states in enumerate(graph.states)
     ]
     return [
@@ -98,8 +114,7 @@ def instances(graph: TraceGraph, rulebook: CompiledRulebook) -> list[Instance]:
                 for layer in range(binding.first, binding.last + 1)
             ),
         )
-        for rule in rulebook.rules
-        if rule.strength == "hard"
+        for rule in rules
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states))
     ]
 

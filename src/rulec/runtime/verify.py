@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
 
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.machine import Machine
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.logic.printing import number_in_words
 from rulec.runtime.binding import bindings
 from rulec.runtime.checking import check_objects, check_state
 from rulec.runtime.letters import Columns
+from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.check import check_trace
 
+RulebookFor = Callable[[Fraction], CompiledRulebook]
+"""Gives the rulebook whose machines judge traces of a step (s). Raises RulecError."""
 
-def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+
+def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
     """Judge a trace by every rule, for every binding of its variables.
 
     Raises:
-        RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary, with
-            the trace's own place.
+        RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
+            R0507 if a rule was compiled for traces of another step, with the trace's own place.
     """
     check_trace(trace)
+    rulebook = made_for(trace, rulebook)
+    for rule in rulebook.rules:
+        if rule.step_s is not None:
+            check_step(rule, exact(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
-    columns = Columns(trace.states, rulebook.vocabulary, "state {}".format, trace.place)
+    columns = columns_of(trace, rulebook)
     violations = []
     for rule in rulebook.rules:
         # Objects that did the same are judged once.
@@ -44,7 +55,55 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     return Verdict(trace.id, tuple(violations))
 
 
-def judge(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
+def columns_of(trace: Trace, rulebook: CompiledRulebook) -> Columns:
+    """The columns of a trace that has been checked."""
+    where = "state {}".format
+    vocabulary = rulebook.vocabulary
+    return Columns(trace.states, vocabulary, where, trace.place, trace.objects, trace.present)
+
+
+def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> CompiledRulebook:
+    """The rulebook with the machines for a trace's step. Raises RulecError."""
+    if isinstance(rulebook, CompiledRulebook):
+        return rulebook
+    try:
+        return rulebook(exact(trace.step_s))
+    except RulecError as error:
+        # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
+        raise RulecError([_at(trace.place, one) for one in error.diagnostics]) from None
+
+
+def _at(place: Place | None, problem: Diagnostic) -> Diagnostic:
+    if place is None:
+        return problem
+    here = () if problem.place is None else (Label(problem.place, "asked for here"),)
+    return replace(problem, place=place, labels=(*here, *problem.labels))
+
+
+def check_step(
+    rule: CompiledRule, step_s: Fraction, what: str = "this", place: Place | None = None
+) -> None:
+    """A rule with bounds in seconds judges states as far apart as it was compiled for.
+
+    Raises RulecError R0507; ``what`` names in it whose step this is.
+    """
+    if rule.step_s is None or rule.step_s == step_s:
+        return
+    step = number_in_words(step_s)
+    raise RulecError(
+        Diagnostic(
+            "R0507",
+            f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
+            f"{what} has steps of {step} s",
+            place,
+            help=f"compile its source with `--step {step}`",
+        )
+    )
+
+
+def judge(
+    item: Trace | RulecError, rulebook: CompiledRulebook | RulebookFor
+) -> Verdict | NotJudged:
     """As ``verify``, for one of many: what cannot be judged is an answer too.
 
     ``item`` may be, in place of a trace, the error that kept it from being read.
@@ -61,13 +120,14 @@ def run(machine: Machine, word: Sequence[int]) -> tuple[bool, int | None]:
     """Run a machine over a non-empty word of letter classes.
 
     Returns:
-        Whether it accepts, and the index of the letter that led into the dead state, if any. A
-        machine that starts out dead is lost with the first letter.
+        Whether it accepts, and the index of the letter with which it was lost, however the word
+        goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
     """
     following, dead = machine.following, machine.dead
     state = before = 0
     for index, symbol in enumerate(word):
         before, state = state, following[state][symbol]
-        if state == dead:
+        # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+        if state == dead and not machine.accepting[before][symbol]:
             return False, index
     return machine.accepting[before][word[-1]], None

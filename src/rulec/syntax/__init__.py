@@ -6,7 +6,7 @@ The way through, which ``parser`` walks:
           -> split_file, split_rule: pieces, each parsed by itself, so that one mistake costs one
              error; landmarks tell where one begins, even in a file that is wrong
           -> grammar: each piece by Lark, or where it cannot go on, which messages explain
-          -> build, literals: the pieces' nodes -> assemble: rules and the file
+          -> building, literals: the pieces' nodes -> assemble: rules and the file
 
 ``tree`` is what comes out, ``printer`` the way back, ``keywords`` the words that all of them know.
 """

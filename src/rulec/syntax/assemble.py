@@ -7,7 +7,7 @@ from typing import Final, Literal, TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.build import Clause, RuleHead
+from rulec.syntax.building import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 
 Said = tuple[str, Clause | None, Span]
@@ -41,7 +41,8 @@ def assemble_rule(
         if isinstance(part, tuple):
             first = said.setdefault(part[0], part)
             if first is not part and part[0] != "unless":
-                mistakes.append(_twice(f"`{part[0]}`", part[2], first[2]))
+                what = "in force" if part[0] == "in" else part[0]
+                mistakes.append(_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
     if "require" not in said and complete and not head.override:
@@ -139,11 +140,11 @@ def _first(parts: Sequence[Part], kind: type[_Kind]) -> _Kind | None:
 
 
 def _may_use(item: tree.BrokenItem) -> bool:
-    """Was it meant as a ``use`` line? Then any name may be missing because of it."""
+    """Was it meant as ``use`` or ``extends``? Then any name may be missing because of it."""
     if item.word in ITEM_WORDS:
-        return item.word == "use"
+        return item.word in ("use", "extends")
     near = nearest_name(item.word, ITEM_WORDS | CLAUSE_WORDS)
-    return near == "use" or (near is None and len(item.names) == 2)
+    return near in ("use", "extends") or (near is None and len(item.names) == 2)
 
 
 def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:

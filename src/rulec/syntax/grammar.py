@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
+import lark
 from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
-from lark.parsers.lalr_interactive_parser import InteractiveParser
+from lark.exceptions import UnexpectedInput, UnexpectedToken
+from lark.grammar import Rule
+from lark.lexer import TerminalDef
 
 from rulec.resources import grammar_file
+from rulec.syntax import tables
 
 Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
 
@@ -69,14 +72,26 @@ def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Misma
         # quadratic time in all.
         tree = _lark().parse(text[begin:end], start=start)
     except UnexpectedInput as error:
-        return Mismatch(begin + _position(error, end - begin), _accepted(error))
+        position = begin + _position(error, end - begin)
+        return Mismatch(position, _accepted(start, text[begin:position]))
     return _neutral(tree, begin)
 
 
 @cache
 def _lark() -> Lark:
+    """The parser, from its tables; made anew if they are of another grammar or another Lark."""
+    grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
+    try:
+        text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
+        ready = tables.from_text(text, tables.stamp(grammar, lark.__version__))
+    except (OSError, ValueError):
+        ready = None
+    return _made(grammar) if ready is None else Lark.load(ready)
+
+
+def _made(grammar: str) -> Lark:
     return Lark(
-        grammar_file("rulec.lark").read_text(encoding="utf-8"),
+        grammar,
         parser="lalr",
         lexer="contextual",
         start=list(STARTS),
@@ -85,18 +100,28 @@ def _lark() -> Lark:
     )
 
 
+def tables_of(grammar: str) -> str:
+    """The text of ``grammar/rulec.tables.json``."""
+    data, memo = _made(grammar).memo_serialize([TerminalDef, Rule])
+    serialized = {"data": data, "memo": memo}
+    return tables.to_text(tables.stamp(grammar, lark.__version__), serialized)
+
+
 def _position(error: UnexpectedInput, end: int) -> int:
     if isinstance(error, UnexpectedToken) and error.token.type == "$END":
         return end
     return end if error.pos_in_stream is None else error.pos_in_stream
 
 
-def _accepted(error: UnexpectedInput) -> frozenset[str]:
-    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
-    state = getattr(error, "interactive_parser", None)
-    if isinstance(state, InteractiveParser):
-        return frozenset(state.accepts())  # type: ignore[no-untyped-call]
-    return frozenset(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
+def _accepted(start: Start, good: str) -> frozenset[str]:
+    """What could follow the part that can be read.
+
+    It is read anew: what the error itself knows was found after the parser had made up its mind,
+    seeing the wrong token, and leaves out much of what could have come.
+    """
+    state = _lark().parse_interactive(good, start=start)
+    state.exhaust_lexer()
+    return frozenset(state.accepts())  # type: ignore[no-untyped-call]
 
 
 def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:

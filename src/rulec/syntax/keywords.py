@@ -26,6 +26,14 @@ CLAUSE_WORDS: Final = frozenset(
 )
 """The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
 
+CONTEXTUAL: Final = frozenset(
+    (
+        *("left", "right", "stutter", "finite", "on", "off", "verified", "secondary", "unverified"),
+        *("weight", "force", "from", "at"),
+    )
+)
+"""Words in their place only; elsewhere they may be names."""
+
 OPERATOR_WORDS: Final = frozenset(
     (
         *("not", "and", "or", "implies", "iff", "xor", "then"),
@@ -44,7 +52,7 @@ RESERVED: Final = (
     | OPERATOR_LETTERS
     | frozenset(("as", "of", "is", "one", "in", "default", "true", "false"))
     | frozenset(("some", "every", "count", "if", "else"))
-    | frozenset(("at", "initially", "throughout", "because"))
+    | frozenset(("initially", "throughout", "because"))
 )
 """What cannot be a name."""
 

@@ -4,17 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, RESERVED, RULE_WORDS
+from rulec.diagnostics import nearest_name
+from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
+    ITEM_WORDS,
+    OPERATOR_WORDS,
+    RESERVED,
+    RULE_WORDS,
+)
 from rulec.syntax.scanner import Token
 
 _COMPLETE_WORDS = frozenset(("true", "false", "throughout", "initially"))
 _OPEN_SYMBOLS = frozenset(
     (
-        *("(", ",", ":", ";", "{", "[", ".."),
+        *("(", ",", ":", ";", "{", "[", "..", "]"),
         *("!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>"),
         *("=", "=>", "<", "<=", "!=", ">=", ">", "+", "-", "*", "/"),
     )
 )
+
+_FORMULA_SIGNS = _OPEN_SYMBOLS - {",", ":", ";", "{"}
+_PAIRS = (
+    *(("force", ("from",)), ("silent", ("on",)), ("traffic", ("left", "right"))),
+    *(("at", ("start", "end")), ("some", ("point",))),
+)
+"""A word, and those that it goes on with although each might be a name."""
 
 _TEXTS = ("string", "quoted", "unterminated")
 
@@ -71,19 +85,55 @@ class Landmarks:
             return False
         follows_on = self.wants_more(index - 1) and not token.first
         if token.text in ITEM_WORDS:
-            if token.text == "rule" and (not token.first or self._heads_a_rule(index - 1)):
-                return False
-            if token.text in RULE_WORDS and self.is_word(index - 1, "override"):
-                return False
-            return not follows_on
-        if token.text in RESERVED:
+            return not follows_on and not self._is_part_of_item(index)
+        if token.text in RESERVED or self.goes_on(index):
             return False
         if not self.wants_more(index - 1):
             return token.first or self._begins_enumeration(index, "one")
         if not token.first or self.is_word(index - 1, "type"):
             return False
+        return (
+            self._is_glued(index) or self.begins_misspelt(index) or self._begins_enumeration(index)
+        )
+
+    def _is_part_of_item(self, index: int) -> bool:
+        """An item's word that stands inside another item."""
+        token = self.tokens[index]
+        if token.text == "rule":
+            return not token.first or self._heads_a_rule(index - 1)
+        if token.text in RULE_WORDS:
+            return self.is_word(index - 1, "override")
+        if token.text == "extends":
+            # `type car extends vehicle` is a mistake about the type.
+            return not token.first and self.is_word(index - 2, "type")
+        if token.text == "step" and not token.first:
+            # `next[1 step]`: a unit.
+            return self.is_symbol(index + 1, "]") or self.is_symbol(index + 1, "..")
+        return False
+
+    def goes_on(self, index: int) -> bool:
+        """Does a word that might be a name go on with what came before, on a line of its own?"""
+        if self.is_word(index, "weight"):
+            return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "number"
+        if self.is_word(index, "at"):
+            return self.is_word(index + 1, "start", "some", "end")
+        return any(
+            self.is_word(index - 1, before) and self.is_word(index, *words)
+            for before, words in _PAIRS
+        ) or (self.is_word(index - 1, "on") and self.is_word(index - 2, "silent"))
+
+    def _is_glued(self, index: int) -> bool:
+        """``sgnal p`` behind something that has to go on: two names where one could stand."""
         glued = self.is_name(index + 1) and not self.tokens[index + 1].first
-        return glued or self.begins_misspelt(index) or self._begins_enumeration(index)
+        glued = glued and not self.is_word(index + 1, "weight")
+        if not glued or not self._in_formula(index - 1):
+            return glued
+        return nearest_name(self.tokens[index].text, ITEM_WORDS) is not None
+
+    def _in_formula(self, index: int) -> bool:
+        """Could a formula go on behind it? There two names may be another mistake."""
+        token = self.tokens[index]
+        return token.text in _FORMULA_SIGNS or self.is_word(index, *OPERATOR_WORDS)
 
     def begins_item_inside(self, index: int) -> bool:
         """Does an item begin here although braces are still open?
@@ -95,7 +145,7 @@ class Landmarks:
         if token.kind != "word":
             return False
         if self.is_word(index + 1, "rule") and (self._heads_a_rule(index) or token.first):
-            return not self.is_word(index - 1, "override")
+            return not self.is_word(index - 1, "override", *RULE_WORDS)
         if not token.first or self._heads_a_rule(index - 1):
             return False
         if token.text in ITEM_WORDS:
@@ -116,14 +166,18 @@ class Landmarks:
         """A clause's word on a line of its own, or where the text before is complete."""
         token = self.tokens[index]
         if token.kind != "word" or token.text not in CLAUSE_WORDS:
-            return token.first and self._begins_in_force(index)
+            return self._begins_in_force(index)
         if token.first or not self.wants_more(index - 1):
             return True
         return self.is_symbol(index - 1, "{") and not self._stands_alone(index)
 
     def _begins_in_force(self, index: int) -> bool:
-        """``in force`` on a line of its own."""
-        return self.is_word(index, "in") and self.is_word(index + 1, "force")
+        """``in force``, which is no level of the name ``force``."""
+        if not (self.is_word(index, "in") and self.is_word(index + 1, "force")):
+            return False
+        if self.is_symbol(index + 2, "{") or self.is_word(index + 2, "weight"):
+            return False
+        return self.tokens[index].first or not self.wants_more(index - 1)
 
     def _stands_alone(self, index: int) -> bool:
         """``{ accept; …`` or ``{ accept }``: a clause's word where an atom should be."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
-from rulec.syntax import tree
+from rulec.syntax import building, tree
 from rulec.syntax.assemble import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
-from rulec.syntax.build import Builder, Clause
+from rulec.syntax.building import Clause, Values
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
-from rulec.syntax.messages.mismatch import explain, too_deep, too_long, unknown_clause
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.split_file import FileSplitter
@@ -21,7 +21,8 @@ from rulec.syntax.text import checked
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""
 
-_BEHIND_NAME = ("is", "in", "default", "(")
+_BEHIND_NAME = ("is", "in", "default", "(", "=", ":")
+_NAMING_PROVISIONS = ("option", "param", "define")
 
 _NOTHING = tree.File("rulebook", None, complete=False)
 """The tree of a file that cannot be read at all."""
@@ -64,7 +65,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     source = checked(Source(name, text))
     tokens = scan(source)
     reader = _Reader(source, tokens)
-    formula = reader.read("formula", Piece("formula", 0, len(tokens)), Builder.formula)
+    formula = reader.read("formula", Piece("formula", 0, len(tokens)), building.formula)
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula
@@ -88,6 +89,13 @@ def _position(diagnostic: Diagnostic) -> tuple[int, int]:
     return (0, 0) if diagnostic.place is None else diagnostic.place.start
 
 
+def _messages() -> ModuleType:
+    """What can be said about a mistake; a file without one starts faster without it."""
+    from rulec.syntax.messages import mismatch
+
+    return mismatch
+
+
 @dataclass(frozen=True, slots=True)
 class _Reader:
     """Parses piece by piece; None stands for a piece whose mistake is in ``mistakes``."""
@@ -97,28 +105,29 @@ class _Reader:
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def read(
-        self, start: Start, piece: Piece, build: Callable[[Builder, Branch], _Built]
+        self, start: Start, piece: Piece, make: Callable[[Values, Branch], _Built]
     ) -> _Built | None:
-        """What ``build`` makes of a piece that matches ``start``."""
+        """What ``make`` makes of a piece that matches ``start``."""
         if piece.reported:
             return None
         span = span_of(self.source, self.tokens, piece)
         if piece.last - piece.first > MAX_PIECE:
-            self.mistakes.append(too_long(self._first_token(piece), MAX_PIECE))
+            self.mistakes.append(_messages().too_long(self._first_token(piece), MAX_PIECE))
             return None
         match parse_piece(start, self.source.text, span.start, span.end):
             case Mismatch() as mismatch:
-                self.mistakes.append(explain(self.source, self.tokens, piece, mismatch))
+                why = _messages().explain(self.source, self.tokens, piece, mismatch)
+                self.mistakes.append(why)
                 return None
             case TooDeep():
-                self.mistakes.append(too_deep(self._first_token(piece)))
+                self.mistakes.append(_messages().too_deep(self._first_token(piece)))
                 return None
             case branch:
-                builder = Builder(self.source)
-                built = build(builder, branch)
+                values = Values(self.source)
+                built = make(values, branch)
         if piece.then is not None:
             self.mistakes.append(piece.then)
-        self.mistakes.extend(builder.mistakes)
+        self.mistakes.extend(values.mistakes)
         return built
 
     def _first_token(self, piece: Piece) -> Span:
@@ -126,18 +135,19 @@ class _Reader:
         return Span(self.source, token.start, token.end)
 
     def item(self, piece: Piece) -> Part:
-        return self.read("item", piece, Builder.item) or self._broken(piece)
+        return self.read("item", piece, building.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:
         words = self.tokens[piece.first : piece.last]
         names = {token.text for token in words if token.kind == "word"} - RESERVED
         first = words[0].text
-        nameless = first in DECLARATION_WORDS and (len(words) < 2 or words[1].text in _BEHIND_NAME)
+        names_one = first in (*DECLARATION_WORDS, *_NAMING_PROVISIONS)
+        nameless = names_one and (len(words) < 2 or words[1].text in _BEHIND_NAME)
         span = span_of(self.source, self.tokens, piece)
         return tree.BrokenItem(frozenset(names), span, first, nameless)
 
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
-        head = self.read("rule_head", pieces.head, Builder.rule_head)
+        head = self.read("rule_head", pieces.head, building.rule_head)
         parts = [
             self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
             for part in pieces.body
@@ -157,13 +167,13 @@ class _Reader:
         keyword = self.tokens[piece.first].text
         span = self._first_token(piece)
         if piece.kind == "junk":
-            self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
+            self.mistakes.append(_messages().unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
-        return keyword, self.read("clause", piece, Builder.clause), span
+        return keyword, self.read("clause", piece, building.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.Example | None:
-        head = self.read("example_head", pieces.head, Builder.example_head)
-        states = [self.read("state", piece, Builder.state) for piece in pieces.states]
+        head = self.read("example_head", pieces.head, building.example_head)
+        states = [self.read("state", piece, building.state) for piece in pieces.states]
         if head is None or not states or None in states:
             return None
         span = span_of(self.source, self.tokens, pieces)

@@ -17,8 +17,8 @@ def check_trace(trace: Trace) -> None:
     """
     if not trace.states:
         raise _error("R0506", "the trace has no states; it needs at least one to judge", trace)
-    if not (trace.step_s > 0 and math.isfinite(trace.step_s)):
-        message = f"`step_s` is {trace.step_s:g}; it has to be a number of seconds above 0"
+    if not 0 < trace.step_s < math.inf:
+        message = f"`step_s` is {float(trace.step_s):g}; it has to be a number of seconds above 0"
         raise _error("R0501", message, trace)
     for number, state in enumerate(trace.states):
         if not isinstance(state, Mapping):

@@ -70,4 +70,15 @@ COMPILING = {
         "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
         "compiled",
     ),
+    "R0407": Explanation(
+        "a bound is not a multiple of the step",
+        "A bound in seconds becomes a number of states, with the time from one state of a trace "
+        "to the next, its step. If a bound falls between two states, nobody knows what held "
+        "there. Choose a bound that is a multiple of the step, or traces with a finer one.",
+        "rulebook example\nsignal wet default false\n"
+        "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+        "rulebook example\nstep 0.5 s\nsignal wet default false\n"
+        "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+        "compiled",
+    ),
 }

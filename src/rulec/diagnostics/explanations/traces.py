@@ -4,6 +4,15 @@ from rulec.diagnostics.explanations.explanation import Explanation
 
 _GOOD = '{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "b"}}]}\n'
 
+_TWO_STEPS = """\
+cat > soon.rules <<.
+rulebook soon
+signal p
+hard rule soon { require eventually[<= 1 s] p }
+.
+echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
+"""
+
 TRACES = {
     "R0501": Explanation(
         "a line is not a trace in JSON",
@@ -48,10 +57,22 @@ TRACES = {
     ),
     "R0506": Explanation(
         "a trace has no states",
-        "A verdict on a trace is a verdict on its last state, repeated for ever. Without any "
-        "state there is nothing to judge.",
+        "A trace says what was the case, state by state. Without any state there is nothing to "
+        "judge.",
         '{"objects": {"v1": "vehicle"}, "states": []}\n',
         _GOOD,
         "trace",
+    ),
+    "R0507": Explanation(
+        "a trace has another step than a rule was compiled for",
+        "A bound in seconds is so many states of a trace, how many depends on the seconds from one "
+        "to the next, `step_s`. A compiled rulebook knows the number for one step only. `rulec "
+        "compile --step` chooses it; from the source of the rulebook, every trace is judged by its "
+        "own step.",
+        _TWO_STEPS + "rulec compile soon.rules --step 1 -o build > log\n"
+        "rulec verify trace.jsonl -r build/soon.json",
+        _TWO_STEPS + "rulec compile soon.rules --step 0.5 -o build > log\n"
+        "rulec verify trace.jsonl -r build/soon.json",
+        "command",
     ),
 }

@@ -3,49 +3,87 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 from rulec.diagnostics import any_of
 from rulec.syntax.keywords import PRECEDENCE, UNARY_OPERATORS, token_kind
 
-_OPERANDS = frozenset(map(token_kind, UNARY_OPERATORS)) | {
-    *("LPAR", "TRUE", "FALSE", "NAME"),
-    *("SOME", "EVERY", "COUNT", "NUMBER", "MINUS"),
-}
-_OPERATORS = frozenset(map(token_kind, PRECEDENCE))
-_COMPARISONS = frozenset(("LESS", "AT_MOST", "EQUALS", "NOT_EQUAL", "AT_LEAST", "GREATER"))
-_ARITHMETIC = frozenset(("PLUS", "MINUS", "TIMES", "OVER"))
-_WORDS = {
+_QUANTITIES: Final = frozenset(
+    ("NAME", "NUMBER", "LPAR", "MINUS", "TRUE", "FALSE", "SOME", "EVERY", "COUNT")
+)
+_OPERANDS: Final = _QUANTITIES | frozenset(map(token_kind, UNARY_OPERATORS))
+_OPERATORS: Final = frozenset(map(token_kind, PRECEDENCE))
+COMPARISONS: Final = frozenset(("LESS", "AT_MOST", "EQUALS", "NOT_EQUAL", "AT_LEAST", "GREATER"))
+_ARITHMETIC: Final = frozenset(("PLUS", "MINUS", "TIMES", "OVER"))
+SCOPES: Final = frozenset(("INITIALLY", "AT_START", "THROUGHOUT", "AT_SOME_POINT", "AT_END"))
+
+_PHRASES: Final = {
     "NAME": "a name",
     "STRING": "a text in double quotes",
     "DATE": "a date such as 2006-03-28",
     "NUMBER": "a number",
     "UNIT": "a unit such as km/h",
-    "LPAR": "`(`",
-    "RPAR": "`)`",
-    "COMMA": "`,`",
-    "COLON": "`:`",
-    "AND": "`and`",
-    "NOT": "`not`",
     "$END": "nothing more",
 }
-_ORDER = ("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT", "RPAR", "LPAR", "COLON", "COMMA")
+_SPELLINGS: Final = {
+    "ON_TOPIC": "on",
+    "LPAR": "(",
+    "RPAR": ")",
+    "LSQB": "[",
+    "RSQB": "]",
+    "LBRACE": "{",
+    "RBRACE": "}",
+    "COMMA": ",",
+    "COLON": ":",
+    "SEMICOLON": ";",
+    "TO": "..",
+    "LESS": "<",
+    "AT_MOST": "<=",
+    "EQUALS": "=",
+    "NOT_EQUAL": "!=",
+    "AT_LEAST": ">=",
+    "GREATER": ">",
+    "PLUS": "+",
+    "MINUS": "-",
+    "TIMES": "*",
+    "OVER": "/",
+}
+"""How the tokens are written whose names in the grammar are not their words in capitals."""
+
+_ORDER: Final = (
+    *("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT"),
+    *("RPAR", "RSQB", "LPAR", "LSQB", "COLON", "COMMA", "EQUALS", "AT_MOST"),
+)
+
+
+def spelling(kind: str) -> str:
+    """How a word or a sign of the grammar is written: ``AT_END`` is ``at end``."""
+    return _SPELLINGS.get(kind) or kind.lower().replace("_", " ")
 
 
 def in_words(accepted: Iterable[str]) -> str:
-    """``expected an atom, `not`, or `(``` for the grammar's names of tokens."""
+    """``expected a name, a number, or `(``` for the grammar's names of tokens."""
     rest = set(accepted)
     before: list[str] = []
     behind: list[str] = []
     if rest >= _OPERANDS:
-        before = ["an atom", "`not`", "`(`"]
-        rest -= _OPERANDS
+        # A bound may come first, but nobody who misses an operand looks for it.
+        before = ["an atom", "a number", "`not`", "`(`"]
+        rest -= _OPERANDS | {"LSQB"}
+    elif rest >= _QUANTITIES:
+        before = ["a name", "a number", "`(`"]
+        rest -= _QUANTITIES
     if rest >= _OPERATORS:
         behind = ["an operator such as `and`"]
-        rest -= _OPERATORS | _COMPARISONS | _ARITHMETIC | {"LPAR", "UNIT"}
+        rest -= _OPERATORS | COMPARISONS | _ARITHMETIC | {"LPAR", "UNIT", "IF", "IN"}
+    if rest >= SCOPES:
+        behind.insert(0, "a scope such as `throughout`")
+        rest -= SCOPES
+    rest.discard("MINUS" if "NUMBER" in rest else "")
     rest.discard("$END" if before or behind or len(rest) > 1 else "")
     ranked = sorted(rest, key=lambda kind: (_rank(kind), kind))
-    parts = [*before, *(_WORDS.get(kind, f"`{kind.lower()}`") for kind in ranked), *behind]
-    return f"expected {any_of(parts or [_WORDS['$END']])}"
+    parts = [*before, *(_PHRASES.get(kind, f"`{spelling(kind)}`") for kind in ranked), *behind]
+    return f"expected {any_of(parts or [_PHRASES['$END']])}"
 
 
 def _rank(kind: str) -> int:
@@ -55,6 +93,11 @@ def _rank(kind: str) -> int:
 def wants_operand(accepted: frozenset[str]) -> bool:
     """Could a formula begin here?"""
     return accepted >= _OPERANDS
+
+
+def wants_quantity(accepted: frozenset[str]) -> bool:
+    """Could a quantity or a number stand here?"""
+    return accepted >= _QUANTITIES
 
 
 def wants_operator(accepted: frozenset[str]) -> bool:

@@ -6,9 +6,18 @@ from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
-from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
-from rulec.syntax.messages.advice import Scene, advise
-from rulec.syntax.messages.expectations import in_words, wants_operand
+from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
+    ITEM_WORDS,
+    OPERATOR_LETTERS,
+    PROVISION_WORDS,
+    RESERVED,
+)
+from rulec.syntax.messages.advice import advise
+from rulec.syntax.messages.expectations import in_words
+from rulec.syntax.messages.in_items import other_word
+from rulec.syntax.messages.in_rules import other_clause
+from rulec.syntax.messages.scene import Scene
 from rulec.syntax.pieces import Piece, span_of
 from rulec.syntax.scanner import Token
 
@@ -46,6 +55,9 @@ _WHAT = {
     "accept": "the example",
     "reject": "the example",
 }
+_CLAUSE_BEGINS = CLAUSE_WORDS | {"throughout", "initially"}
+"""What may stand first on a line of a rule: clauses, and the scope of the exception above."""
+
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
 
 
@@ -54,9 +66,8 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
     found = inside[at] if at < len(inside) else None
-    before = inside[at - 1] if at else None
-    first = inside[0].text if inside else ""
-    scene = Scene(piece.kind, first, found, before, mismatch.accepted)
+    scene = Scene(source, piece.kind, inside, at, mismatch.accepted)
+    first = scene.first
     end = span_of(source, tokens, piece).end
     span = Span(source, end, end) if found is None else _span(source, found)
     if found is not None and found.kind == "unterminated":
@@ -78,8 +89,8 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         message,
         span.place,
         expected=in_words(mismatch.accepted),
-        help=advise(scene) or _parenthesis_help(scene),
-        labels=_open_parenthesis(source, inside[:at], scene),
+        help=advise(scene),
+        labels=_open_parenthesis(source, scene),
     )
 
 
@@ -92,8 +103,8 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
         "R0104",
         f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
-        expected="expected `cite`, `says`, `require`, `accept`, or `reject`",
-        help=did_you_mean(found.text, CLAUSE_WORDS) or formula,
+        expected="expected a clause such as `require` or `accept`",
+        help=did_you_mean(found.text, _CLAUSE_BEGINS) or other_clause(found.text) or formula,
     )
 
 
@@ -101,7 +112,7 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     found, *others = inside
     way_out = ""
     if found.kind == "word":
-        way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS)
+        way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS) or other_word(found.text)
         named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
         if not (way_out or named or found.text in RESERVED):
             way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
@@ -149,7 +160,9 @@ def _is_word_for_name(scene: Scene) -> bool:
         return False
     if "NAME" not in scene.accepted:
         return False
-    if wants_operand(scene.accepted):
+    if found.text in ("because", "rule") and scene.first in PROVISION_WORDS:
+        return False  # the name before it is missing, or `rule` stands where it need not
+    if scene.operand or scene.quantity:
         return found.text in ITEM_WORDS | CLAUSE_WORDS
     return scene.kind != "state" or found.text in ITEM_WORDS | CLAUSE_WORDS
 
@@ -175,20 +188,11 @@ def _unterminated(span: Span) -> Diagnostic:
     )
 
 
-def _parenthesis_help(scene: Scene) -> str:
-    unmatched = scene.found is not None and scene.found.text == ")"
-    if unmatched and scene.kind in ("clause", "formula") and not wants_operand(scene.accepted):
-        return "delete the `)`, or open it before"
-    return ""
-
-
-def _open_parenthesis(source: Source, before: list[Token], scene: Scene) -> tuple[Label, ...]:
-    if "RPAR" not in scene.accepted or scene.kind not in ("clause", "formula"):
-        return ()
-    opened: list[Token] = []
-    for token in before:
-        if token.kind == "symbol" and token.text == "(":
-            opened.append(token)
-        elif token.kind == "symbol" and token.text == ")":
-            opened.pop()
-    return tuple(Label(_span(source, one).place, "this is still open") for one in opened[-1:])
+def _open_parenthesis(source: Source, scene: Scene) -> tuple[Label, ...]:
+    signs = {"RPAR": ("(", ")"), "RSQB": ("[", "]")}
+    for kind, (opening, closing) in signs.items():
+        opened = scene.opened(opening, closing) if kind in scene.accepted else None
+        if opened is not None and scene.kind in ("clause", "formula", "item"):
+            place = _span(source, scene.tokens[opened]).place
+            return (Label(place, "this is still open"),)
+    return ()

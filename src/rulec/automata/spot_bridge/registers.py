@@ -1,0 +1,105 @@
+"""The past brought into an automaton: beside it, registers that hold what was."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import spot
+
+import buddy  # isort: skip - only once spot has been imported
+
+from rulec.automata.spot_bridge.wording import Wording
+from rulec.logic.formula import Formula, atoms_of
+from rulec.logic.past import Register
+
+_Values = tuple[int, ...]
+
+
+def with_registers(automaton: Any, registers: Sequence[Register], wording: Wording) -> Any:
+    """The automaton beside the registers, whose atoms are no propositions any more.
+
+    A state is one of the automaton and one of each register. These and a letter decide what the
+    registers say, by that the automaton's edge, and the registers' next states: so it stays
+    deterministic and complete. Once a finite word is over the registers are back at their start.
+    """
+    operands = _Operands(automaton, registers, wording)
+    propositions = automaton.get_dict()
+    product = spot.make_twa_graph(propositions)
+    fresh = {wording.said(one.atom).ap_name() for one in registers}
+    for proposition in automaton.ap():
+        if proposition.ap_name() not in fresh:
+            product.register_ap(proposition)
+    going = buddy.bddtrue
+    if wording.alive is not None:
+        going = buddy.bdd_ithvar(product.register_ap(wording.alive))
+    product.copy_acceptance_of(automaton)
+    product.set_init_state(product.new_state())
+    empty = tuple(one.at_first for one in registers)
+    numbers = {(automaton.get_init_state_number(), empty): 0}
+    reached = list(numbers)
+    over = (-going, operands.nothing, empty)
+    for state, values in reached:
+        source = numbers[state, values]
+        choices = [(letters & going, said, later) for letters, said, later in operands.on(values)]
+        for edge in automaton.out(state):
+            for letters, said, later in [*choices, over]:
+                both = buddy.bdd_restrict(edge.cond, said) & letters
+                if both == buddy.bddfalse:
+                    continue
+                target = (edge.dst, later)
+                if target not in numbers:
+                    numbers[target] = product.new_state()
+                    reached.append(target)
+                product.new_edge(source, numbers[target], both, edge.acc)
+    product.merge_edges()
+    return product
+
+
+class _Operands:
+    """What registers make of letters."""
+
+    def __init__(self, automaton: Any, registers: Sequence[Register], wording: Wording) -> None:
+        def condition(formula: Formula) -> Any:
+            for atom in atoms_of(formula):
+                automaton.register_ap(wording.said(atom).ap_name())
+            return spot.formula_to_bdd(wording.said(formula), automaton.get_dict(), automaton)
+
+        self._registers = [
+            (one, condition(one.left), condition(one.right), condition(one.atom))
+            for one in registers
+        ]
+        self.nothing = buddy.bddtrue
+        """That no register says anything, as a condition on their atoms."""
+        for *_, atom in self._registers:
+            self.nothing &= -atom
+        self._known: dict[_Values, list[tuple[Any, Any, _Values]]] = {}
+
+    def on(self, values: _Values) -> list[tuple[Any, Any, _Values]]:
+        """For registers in these states: (letters, what they then say, their next states)."""
+        if values not in self._known:
+            found: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
+            for value, (register, left, right, atom) in zip(values, self._registers, strict=True):
+                found = [
+                    (letters & more, said & (atom if later & 1 else -atom), (*others, later))
+                    for letters, said, others in found
+                    for later, more in _steps(
+                        register,
+                        value,
+                        buddy.bdd_restrict(left, said),
+                        buddy.bdd_restrict(right, said),
+                    ).items()
+                    if (letters & more) != buddy.bddfalse
+                ]
+            self._known[values] = found
+        return self._known[values]
+
+
+def _steps(register: Register, value: int, left: Any, right: Any) -> dict[int, Any]:
+    """The register's next states, each with the letters that lead there."""
+    steps: dict[int, Any] = {}
+    for is_left, when_left in ((True, left), (False, -left)):
+        for is_right, when_right in ((True, right), (False, -right)):
+            later = register.after(value, is_left, is_right)
+            steps[later] = steps.get(later, buddy.bddfalse) | (when_left & when_right)
+    return steps

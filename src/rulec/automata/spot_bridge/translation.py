@@ -1,0 +1,181 @@
+"""The way from a formula to its deterministic automaton."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import spot
+
+from rulec.automata.letters import fresh_name, knowledge, names_of, propositions_of
+from rulec.automata.machine import NumberRead, Read
+from rulec.automata.spot_bridge.checks import check, tried
+from rulec.automata.spot_bridge.progression import Progression
+from rulec.automata.spot_bridge.registers import with_registers
+from rulec.automata.spot_bridge.wording import F, Wording
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Formula,
+    Proposition,
+    Unary,
+    UnaryOperator,
+)
+from rulec.logic.past import Memory, definition, remembered
+from rulec.logic.semantics import Semantics
+from rulec.logic.timing import reach
+
+_SHAPE = ("parity", "det", "complete")
+_NOT, _AND, _OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+
+_SMALL = 6
+"""Bounds of so many steps together leave a formula that Spot can translate without its bounds."""
+
+_CHECK_CPU_S = 0.1
+_TRY_CPU_S = 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class Translation:
+    """A formula's automaton, a ``twa_graph``: deterministic and complete, with parity acceptance.
+
+    ``names`` are those of its propositions. ``alive`` is None if it reads infinite words, else the
+    proposition that is true as long as a finite word lasts. ``is_checked``: Spot has compared it
+    with the formula both ways.
+    """
+
+    automaton: Any
+    names: dict[Proposition, str]
+    alive: str | None
+    is_checked: bool
+
+
+def translate(
+    formula: Formula, reads: Sequence[Read | NumberRead], semantics: Semantics = "stutter"
+) -> Translation:
+    """The automaton of ``formula``, whose bounds are in steps, over the letters that there are.
+
+    Its language is that of the formula and of ``knowledge(reads)`` holding at every instant, its
+    propositions are the formula's. Raises CheckError where Spot, or rulec, got it wrong.
+    """
+    propositions = propositions_of(formula)
+    past = remembered(formula)
+    fresh = [*(one.atom for one in past.registers), *(one.atom for one in past.memories)]
+    names = names_of([*propositions, *fresh])
+    alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
+    wording = Wording(names, alive)
+    facts = knowledge(reads, propositions)
+    meant = past.present
+    if facts != Constant(True):
+        meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, facts))
+    steps = reach(meant)
+    if past.memories:
+        automaton = _guessed(meant, past.memories, wording)
+    else:
+        automaton = _combined(meant, True, wording)
+    is_small = steps <= _SMALL or bool(past.memories)
+    check(automaton, meant, wording, past.memories, None if is_small else _CHECK_CPU_S)
+    if past.registers:
+        automaton = _shaped(with_registers(automaton, past.registers, wording))
+    return Translation(
+        automaton,
+        {one: names[one] for one in propositions},
+        alive,
+        is_checked=is_small and not past.registers,
+    )
+
+
+def _shaped(automaton: Any) -> Any:
+    """The same language, smaller if possible, with parity acceptance."""
+    if spot.is_deterministic(automaton) and spot.is_weak_automaton(automaton):
+        automaton = spot.minimize_wdba(automaton)
+    return spot.postprocess(automaton, *_SHAPE)
+
+
+def _guessed(formula: Formula, memories: Sequence[Memory], wording: Wording) -> Any:
+    """The automaton of the formula without these memories, which the future has a say in.
+
+    What they are is guessed and projected away, which takes a determinisation.
+    """
+    defined = [wording.said(definition(one)) for one in memories]
+    guessing = wording.translated(wording.language([wording.said(formula), *defined]), "small")
+    projection = spot.remove_ap()
+    for memory in memories:
+        projection.add_ap(wording.said(memory.atom).ap_name())
+    return spot.postprocess(projection.strip(guessing), *_SHAPE)
+
+
+def _combined(formula: Formula, wanted: bool, wording: Wording) -> Any:
+    """The automaton of the formula or its negation; if it has bounds, from those of its parts."""
+    if reach(formula) == 0:
+        return _by_spot(formula, wanted, wording)
+    match formula:
+        case Unary(UnaryOperator.NOT, operand):
+            return _combined(operand, not wanted, wording)
+        case Binary(BinaryOperator.AND | BinaryOperator.OR as operator, left, right):
+            one, other = _combined(left, wanted, wording), _combined(right, wanted, wording)
+            join = spot.product if (operator is _AND) is wanted else spot.product_or
+            return _shaped(join(one, other))
+        case Binary(BinaryOperator.IMPLIES, left, right):
+            return _combined(Binary(_OR, Unary(_NOT, left), right), wanted, wording)
+        case Binary(BinaryOperator.IFF | BinaryOperator.XOR as operator, left, right):
+            whole = _by_progression(formula, wanted, wording)
+            if whole is not None:
+                return whole
+            same = (operator is BinaryOperator.IFF) is wanted
+            other = right if same else Unary(_NOT, right)
+            yes = Binary(_AND, left, other)
+            no = Binary(_AND, Unary(_NOT, left), Unary(_NOT, other))
+            return _combined(Binary(_OR, yes, no), True, wording)
+    whole = _by_progression(formula, wanted, wording)
+    return _by_trial(_language(formula, wanted, wording), wording) if whole is None else whole
+
+
+def _by_progression(formula: Formula, wanted: bool, wording: Wording) -> Any | None:
+    """None for a formula that no finite part of an infinite word decides."""
+    progression = Progression(formula if wanted else Unary(_NOT, formula), wording)
+    if wording.alive is not None:
+        return _shaped(progression.finite(wording.alive))
+    if progression.is_safety or progression.is_cosafety:
+        return _shaped(progression.infinite())
+    return None
+
+
+def _by_spot(formula: Formula, wanted: bool, wording: Wording) -> Any:
+    return wording.translated(_language(formula, wanted, wording), *_SHAPE)
+
+
+def _language(formula: Formula, wanted: bool, wording: Wording) -> Any:
+    said = wording.said(formula)
+    return wording.language([said if wanted else F.Not(said)])
+
+
+def _by_trial(language: Any, wording: Wording) -> Any:
+    """The language's automaton by the first way that does not take too long.
+
+    Its bounds are nested nexts to Spot; of an automaton and its complement's one is often far
+    smaller, as long as it need not be deterministic.
+    """
+
+    def plain() -> Any:
+        return wording.translated(language, *_SHAPE)
+
+    def itself() -> Any:
+        return spot.postprocess(_determinised(language, wording), *_SHAPE)
+
+    def complement() -> Any:
+        return spot.postprocess(spot.dualize(_determinised(F.Not(language), wording)), *_SHAPE)
+
+    ways: tuple[Callable[[], Any], ...] = (plain, itself, complement)
+    for one in ways:
+        if tried(one, _TRY_CPU_S) is not None:
+            return one()
+    return plain()
+
+
+def _determinised(language: Any, wording: Wording) -> Any:
+    guessing = wording.translated(language, "BA", "low")
+    # Not pretty; with components, simulation, and without stutter invariance.
+    return spot.tgba_determinize(guessing, False, True, True, False)

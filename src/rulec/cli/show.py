@@ -1,0 +1,176 @@
+"""``rulec show``: a rule in English, as a formula, as an automaton, and by examples."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.arguments import complete_rulebooks, complete_rules, json_option
+
+if TYPE_CHECKING:
+    from rulec.automata.compiled import CompiledRulebook
+    from rulec.report.automaton import Automaton
+    from rulec.rulebook.model import Rule, Rulebook
+
+FORMATS = ("text", "dot", "svg")
+
+SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
+
+WIDTH = 100
+"""The width of a page that goes to no terminal."""
+
+
+@click.command()
+@click.argument("rulebook", shell_complete=complete_rulebooks)
+@click.argument("rule", required=False, shell_complete=complete_rules)
+@click.option(
+    "--automaton",
+    "automaton_format",
+    type=click.Choice(FORMATS),
+    help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False),
+    metavar="FILE",
+    help="Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
+)
+@json_option
+def command(
+    rulebook: str,
+    rule: str | None,
+    automaton_format: str | None,
+    output: str | None,
+    json_output: bool,
+) -> None:
+    """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
+
+    The sentence in English is made from the formula, and has one reading only. Without RULE every
+    rule is shown in brief, a rulebook's only one in full.
+    """
+    from rulec.report import rule_page
+
+    if output is not None and automaton_format is None and not json_output:
+        automaton_format = SUFFIXES.get(Path(output).suffix)
+    if json_output and automaton_format is not None:
+        raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
+    book, compiled = _read(rulebook)
+    chosen = _chosen(book, rule)
+    width = _width(output)
+    if chosen is None and automaton_format is not None:
+        raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
+    page = None
+    if chosen is not None:
+        one = _compiled(book, chosen, compiled)
+        page = rule_page.page_of(chosen, one.rules[0], one.vocabulary)
+    rules = book.rules if chosen is None else (chosen,)
+    if json_output:
+        text = rule_page.as_json(book.name, rules, book.vocabulary, page)
+    elif page is None:
+        text = "\n\n\n".join(
+            rule_page.summary(each, book.name, book.vocabulary, width) for each in rules
+        )
+    elif automaton_format is None:
+        text = rule_page.as_text(page, book.name, book.vocabulary, width)
+    else:
+        name = f"{book.name} {page.rule.name}"
+        text = _automaton(page.automaton, automaton_format, name, width)
+    _put(text, output)
+
+
+def _read(reference: str) -> tuple[Rulebook, CompiledRulebook | None]:
+    """A rulebook as meant; one that was compiled long ago comes with its machines."""
+    from rulec.automata.compiled_file import read_compiled
+    from rulec.rulebook.loader import load_rulebook
+    from rulec.rulebook.model import Rule, Rulebook
+    from rulec.settings import search_path
+
+    if Path(reference).suffix != ".json":
+        return load_rulebook(reference, search_path()), None
+    compiled = read_compiled(Path(reference))
+    rules = tuple(
+        Rule(
+            one.name,
+            one.strength,
+            one.variables,
+            one.formula,
+            one.cite,
+            one.says,
+            level=one.level,
+            weight=one.weight,
+            source=one.source,
+            certainty=one.certainty,
+            book=one.book or compiled.name,
+        )
+        for one in compiled.rules
+    )
+    return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
+
+
+def _chosen(book: Rulebook, name: str | None) -> Rule | None:
+    from rulec.diagnostics import nearest_name
+
+    if name is None:
+        return book.rules[0] if len(book.rules) == 1 else None
+    by_name = {rule.name: rule for rule in book.rules}
+    if name not in by_name:
+        near = nearest_name(name, by_name)
+        way_out = f"did you mean `{near}`?" if near else f"it has {_names(book)}"
+        raise click.UsageError(f"{book.name} has no rule `{name}`; {way_out}")
+    return by_name[name]
+
+
+def _names(book: Rulebook) -> str:
+    from rulec.diagnostics.wording import named
+
+    return named([rule.name for rule in book.rules])
+
+
+def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
+    """The rulebook with this rule alone, compiled."""
+    from rulec.workflow import compile_rulebook
+
+    if compiled is None:
+        return compile_rulebook(replace(book, rules=(rule,)))
+    own = tuple(one for one in compiled.rules if one.name == rule.name)
+    return replace(compiled, rules=own)
+
+
+def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
+    from rulec.report import automaton_dot, automaton_drawing, automaton_svg, automaton_text
+
+    if output_format == "text":
+        return automaton_text.as_text(automaton, width)
+    if output_format == "dot":
+        return automaton_dot.as_dot(automaton, name)
+    if automaton_drawing.is_too_large(automaton):
+        raise click.ClickException(
+            f"an automaton of {len(automaton.fates):,} states and {len(automaton.transitions):,} "
+            "transitions is too large to draw; see it with --automaton text, or lay it out "
+            "yourself from --automaton dot"
+        )
+    return automaton_svg.as_svg(automaton, name)
+
+
+def _width(output: str | None) -> int:
+    if output is not None or not sys.stdout.isatty():
+        return WIDTH
+    return max(40, shutil.get_terminal_size((WIDTH, 24)).columns)
+
+
+def _put(text: str, output: str | None) -> None:
+    from rulec.files import written_whole
+    from rulec.report.console import print_result
+
+    if output is None:
+        print_result(text)
+        return
+    with written_whole(Path(output)) as stream:
+        stream.write(f"{click.unstyle(text)}\n".encode())
+    print_result(f"wrote {output}")

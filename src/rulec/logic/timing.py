@@ -1,0 +1,154 @@
+"""How far operators look: bounds in seconds as steps of a trace, and ranges of instants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Bound,
+    Comparison,
+    Constant,
+    Formula,
+    Same,
+    Unary,
+    UnaryOperator,
+)
+
+PAST: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+    (
+        UnaryOperator.ONCE,
+        UnaryOperator.HISTORICALLY,
+        UnaryOperator.PREVIOUSLY,
+        UnaryOperator.WEAK_PREVIOUSLY,
+        BinaryOperator.SINCE,
+    )
+)
+"""The operators that look back."""
+
+BOOLEAN: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+    (
+        UnaryOperator.NOT,
+        BinaryOperator.AND,
+        BinaryOperator.OR,
+        BinaryOperator.IMPLIES,
+        BinaryOperator.IFF,
+        BinaryOperator.XOR,
+    )
+)
+"""The operators that look at the present alone."""
+
+DISTANCE: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+    (
+        UnaryOperator.NEXT,
+        UnaryOperator.WEAK_NEXT,
+        UnaryOperator.PREVIOUSLY,
+        UnaryOperator.WEAK_PREVIOUSLY,
+    )
+)
+"""The operators that look at a single instant: without a bound, at the one beside this."""
+
+
+class NotAMultipleError(ValueError):
+    """A bound in seconds, ``offending``, falls between two instants of a trace."""
+
+    def __init__(self, offending: Fraction, step_s: Fraction) -> None:
+        super().__init__(f"{offending} s is not a multiple of {step_s} s")
+        self.offending = offending
+        self.step_s = step_s
+
+
+class Range(NamedTuple):
+    """The instants that an operator looks at: those ``low`` to ``high`` steps away, both included.
+
+    ``high`` is None where there is no end. A range may be empty.
+    """
+
+    low: int
+    high: int | None
+
+
+def range_of(formula: Unary | Binary) -> Range:
+    """The range of the formula's operator.
+
+    That of ``then`` is the range of its ``until``: the first phase lasts one instant or more.
+    ValueError for a bound in seconds, or in parts of a step.
+    """
+    bound, operator = formula.bound, formula.operator
+    least = int(operator is BinaryOperator.THEN)
+    if bound is None:
+        return Range(1, 1) if operator in DISTANCE else Range(least, None)
+    if bound.unit == "s":
+        raise ValueError("a bound in seconds has no meaning without the step of a trace")
+    low, high = _whole(bound.low), None if bound.high is None else _whole(bound.high)
+    return Range(max(low, least), high)
+
+
+def _whole(steps: Fraction) -> int:
+    if steps.denominator != 1:
+        raise ValueError(f"{steps} steps are no whole number")
+    return steps.numerator
+
+
+def speaks_of_seconds(formula: Formula) -> bool:
+    """Has it a bound in seconds? If not, the step of a trace makes no difference to it."""
+    bounds = (one.bound for one in operations_of(formula))
+    return any(bound is not None and bound.unit == "s" for bound in bounds)
+
+
+def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
+    """The operations in a formula, each before its operands; bodies of counts have no say."""
+    waiting = [formula]
+    while waiting:
+        match waiting.pop():
+            case Unary(_, operand) as one:
+                yield one
+                waiting.append(operand)
+            case Binary(_, left, right) as one:
+                yield one
+                waiting += [right, left]
+
+
+def in_steps(formula: Formula, step_s: Fraction) -> Formula:
+    """The formula for traces whose states are ``step_s`` seconds apart, every bound in steps.
+
+    Raises:
+        NotAMultipleError: for the first bound, from left to right, that is no multiple of the step.
+        ValueError: if the step is not above 0.
+    """
+    if step_s <= 0:
+        raise ValueError("a step lasts more than 0 s")
+    match formula:
+        case Unary(operator, operand, bound):
+            steps = _steps(bound, step_s)
+            return Unary(operator, in_steps(operand, step_s), steps)
+        case Binary(operator, left, right, bound):
+            first = in_steps(left, step_s)
+            steps = _steps(bound, step_s)
+            return Binary(operator, first, in_steps(right, step_s), steps)
+        case Atom() | Comparison() | Same() | Constant():
+            return formula
+
+
+def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
+    if bound is None or bound.unit == "steps":
+        return bound
+    for seconds in (bound.low, bound.high):
+        if seconds is not None and (seconds / step_s).denominator != 1:
+            raise NotAMultipleError(seconds, step_s)
+    high = None if bound.high is None else bound.high / step_s
+    return replace(bound, low=bound.low / step_s, high=high, unit="steps")
+
+
+def reach(formula: Formula) -> int:
+    """All bounds of the formula together, in steps: 0 if it has none but the unbounded operators'.
+
+    Each counts as far as it looks. ValueError for a bound in seconds.
+    """
+    ranges = [range_of(one) for one in operations_of(formula) if one.bound is not None]
+    return sum(low if high is None else high for low, high in ranges)

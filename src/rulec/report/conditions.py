@@ -1,0 +1,153 @@
+"""Conditions on an automaton's edges in short words, and states as an example writes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rulec.automata.compiled import CompiledRule
+from rulec.automata.machine import NumberRead, Read
+from rulec.diagnostics.wording import any_of
+from rulec.logic.english import comparison_text, number_text, terms_text
+from rulec.logic.formula import Atom, Comparison, Quantity, Relation, atoms_of
+from rulec.report.excerpt import visible
+from rulec.rulebook.model import ExampleState
+from rulec.runtime.edges import Cube
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Quantity as DeclaredQuantity
+
+_DENIAL: dict[Relation, Relation] = {
+    "<": ">=",
+    ">=": "<",
+    "<=": ">",
+    ">": "<=",
+    "=": "!=",
+    "!=": "=",
+}
+
+_SIGN = re.compile(r"<=|>=|!=|<|>|=")
+
+
+class Wording:
+    """The words of one rule: its reads, and how it says its comparisons."""
+
+    def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
+        self._reads = rule.machine.reads
+        self._vocabulary = vocabulary
+        self._said: dict[tuple[object, ...], str] = {}
+        for one in atoms_of(rule.formula):
+            if isinstance(one, Comparison):
+                text = comparison_text(one)
+                self._said[one.terms, one.relation, one.limit] = text
+                self._said.setdefault((one.terms, _DENIAL[one.relation], one.limit), _denied(text))
+
+    def condition(self, cubes: Sequence[Cube]) -> str:
+        """What holds of exactly the letters of these cubes; ``true`` of all."""
+        texts = []
+        for cube in cubes:
+            literals = [
+                self._literal(read, allowed)
+                for read, allowed in zip(self._reads, cube, strict=True)
+                if len(allowed) < read.size
+            ]
+            simple = [f"({one})" if loose and len(literals) > 1 else one for one, loose in literals]
+            text = " and ".join(simple) or "true"
+            loose = len(literals) > 1 or any(one for _, one in literals)
+            texts.append(f"({text})" if loose and len(cubes) > 1 else text)
+        return " or ".join(texts) or "false"
+
+    def _literal(self, read: Read | NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
+        """The words for some digits of a read; do they need parentheses among others?"""
+        if isinstance(read, NumberRead):
+            return self._number(read, allowed)
+        if not read.values:
+            atom = str(Atom(read.name, read.variables))
+            return (atom if 1 in allowed else f"not {atom}"), False
+        return self._enumeration(read, allowed)
+
+    def _enumeration(self, read: Read, allowed: frozenset[int]) -> tuple[str, bool]:
+        declaration = self._vocabulary.declarations[read.name]
+        assert isinstance(declaration, Enumeration), "only an enumeration has values"
+        inside = [value for value in declaration.values if read.digit(value) in allowed]
+        outside = [value for value in declaration.values if read.digit(value) not in allowed]
+        if len(inside) == 1:
+            return str(Atom(read.name, read.variables, inside[0])), False
+        if len(outside) == 1:
+            return f"not {Atom(read.name, read.variables, outside[0])}", False
+        subject = Atom(read.name, read.variables)
+        if len(inside) <= len(outside):
+            return f"{subject} is {any_of(inside)}", True
+        if len(outside) == 2:
+            return f"{subject} is neither {outside[0]} nor {outside[1]}", True
+        return f"{subject} is none of {', '.join(outside)}", True
+
+    def _number(self, read: NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
+        left_out = [digit for digit in range(read.size) if digit not in allowed]
+        if len(left_out) == 1 and 0 < left_out[0] < read.size - 1:
+            lower, upper = read.thresholds[left_out[0] - 1], read.thresholds[left_out[0]]
+            if lower.limit == upper.limit:
+                return self._compared(read, "!=", lower.limit), False
+        runs = [self._run(read, run) for run in _runs(sorted(allowed))]
+        return " or ".join(runs), len(runs) > 1 or " and " in runs[0]
+
+    def _run(self, read: NumberRead, run: range) -> str:
+        """The words for neighbouring digits."""
+        lower = read.thresholds[run[0] - 1] if run[0] else None
+        upper = read.thresholds[run[-1]] if run[-1] < len(read.thresholds) else None
+        if lower and upper and lower.limit == upper.limit:
+            return self._compared(read, "=", lower.limit)
+        bounds = []
+        if lower:
+            bounds.append(self._compared(read, ">=" if lower.inclusive else ">", lower.limit))
+        if upper:
+            bounds.append(self._compared(read, "<" if upper.inclusive else "<=", upper.limit))
+        return " and ".join(bounds)
+
+    def _compared(self, read: NumberRead, relation: Relation, limit: Fraction) -> str:
+        said = self._said.get((read.terms, relation, limit))
+        if said is not None:
+            return said
+        return f"{terms_text(read.terms)} {relation} {number_text(limit)}{self._unit(read)}"
+
+    def _unit(self, read: NumberRead) -> str:
+        match read.terms:
+            case ((_, Quantity(name)),):
+                declaration = self._vocabulary.declarations[name]
+                return f" {declaration.unit}" if isinstance(declaration, DeclaredQuantity) else ""
+        return ""
+
+    def state(self, state: ExampleState) -> str:
+        """A state of an example; what it does not mention has its default."""
+        facts = []
+        for (name, variables), value in state.items():
+            declaration = self._vocabulary.declarations[name]
+            if value == declaration.default:
+                continue
+            if isinstance(value, str):
+                facts.append(str(Atom(name, variables, value)))
+            elif isinstance(declaration, DeclaredQuantity):
+                number = number_text(Fraction(repr(float(value))))
+                facts.append(f"{Atom(name, variables)} = {number} {declaration.unit}")
+            else:
+                facts.append(f"{'' if value else 'not '}{Atom(name, variables)}")
+        return visible(" and ".join(facts)) or "true"
+
+
+def _runs(digits: Sequence[int]) -> list[range]:
+    runs: list[range] = []
+    for digit in digits:
+        if runs and runs[-1].stop == digit:
+            runs[-1] = range(runs[-1].start, digit + 1)
+        else:
+            runs.append(range(digit, digit + 1))
+    return runs
+
+
+def _denied(text: str) -> str:
+    """The comparison that holds where this one does not."""
+    signs = _SIGN.findall(text)
+    if len(signs) != 1:
+        return f"not ({text})"
+    denial: Relation = _DENIAL[signs[0]]
+    return text.replace(signs[0], denial)

@@ -1,0 +1,66 @@
+"""A formula in the words of a rulebook, broken at its operators where it is too wide for a line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+INDENT = "  "
+
+_BOUND = r"(\[[^]]*\])?"
+
+# From the loosest to the tightest, as the grammar has them. `weak until` is one operator.
+_OPERATORS = [
+    re.compile(rf"(?<!\bweak)(?<!\bstrong) (?={words} )")
+    for words in (
+        "iff",
+        "implies",
+        f"then{_BOUND}",
+        "xor",
+        "or",
+        "and",
+        f"(weak until|strong release|until|release|since){_BOUND}",
+    )
+]
+
+
+def formula_lines(text: str, width: int) -> list[str]:
+    """The lines of a formula that is given as one line.
+
+    It is broken before the operators that bind loosest, and behind parentheses that hold too much
+    for a line. Only what has no operator outside of brackets may be wider than ``width``.
+    """
+    return list(_lines(text, width))
+
+
+def _lines(text: str, width: int) -> Iterator[str]:
+    if len(text) <= width:
+        yield text
+        return
+    outside = _outside(text)
+    for operator in _OPERATORS:
+        cuts = [one.start() for one in operator.finditer(text) if outside[one.start()]]
+        if cuts:
+            starts = [0, *(cut + 1 for cut in cuts)]
+            for start, end in zip(starts, [*cuts, len(text)], strict=True):
+                first, *rest = _lines(text[start:end], width if not start else width - len(INDENT))
+                yield first if not start else f"{INDENT}{first}"
+                yield from (f"{INDENT}{line}" for line in rest)
+            return
+    opening = text.find("(")
+    if opening >= 0 and text.endswith(")") and all(not one for one in outside[opening + 1 : -1]):
+        yield text[: opening + 1]
+        for line in _lines(text[opening + 1 : -1], width - len(INDENT)):
+            yield f"{INDENT}{line}"
+        yield ")"
+        return
+    yield text
+
+
+def _outside(text: str) -> list[bool]:
+    """For every character: does it stand outside of all parentheses and brackets?"""
+    depth, found = 0, []
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        found.append(depth == 0)
+    return found

@@ -1,0 +1,170 @@
+"""A rule's examples as meant: the values that each state gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from rulec.diagnostics import Span
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Count,
+    Formula,
+    Quantity,
+    Term,
+    Unary,
+    atoms_of,
+)
+from rulec.rulebook import example_messages as say
+from rulec.rulebook.declaration_messages import twice, unknown_type
+from rulec.rulebook.declared import Declared
+from rulec.rulebook.meaning import literal
+from rulec.rulebook.model import Example, ExampleState, Variable
+from rulec.rulebook.scope import BoundVariable, Scope
+from rulec.syntax import tree
+
+Key = tuple[str, tuple[str, ...]]
+"""A declaration, and the objects that it is asked about."""
+
+
+def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> Example:
+    """The example; what is wrong with it is reported."""
+    variables = dict(scope.variables)
+    for one in example.objects:
+        name, kind = one.name, one.type
+        assert kind is not None, "the grammar asks for a type"
+        known = kind.text in scope.declared.types
+        if not known and not scope.declared.may_know_type(kind.text):
+            scope.report(unknown_type(kind, list(scope.declared.types)))
+        if name.text in variables:
+            scope.report(twice("object", name, variables[name.text].span))
+        variables[name.text] = BoundVariable(kind.text if known else None, one.span, name.text)
+    inside = replace(scope, variables=variables, used=set())
+    kinds = {name: one.type for name, one in variables.items() if one.type is not None}
+    needed: dict[Key, Atom | Quantity] = {}
+    if formula is not None:
+        for what in _needed(formula, kinds, scope.declared):
+            needed.setdefault((what.name, what.arguments), what)
+    return Example(
+        example.accepts,
+        tuple(_state(state, needed, inside) for state in example.states),
+        example.label,
+        tuple(Variable(one.name.text, one.type.text) for one in example.objects if one.type),
+        example.span,
+        tuple(state.span for state in example.states),
+    )
+
+
+def _needed(
+    formula: Formula, kinds: Mapping[str, str], declared: Declared
+) -> Iterator[Atom | Quantity]:
+    """What a state has to say for the formula to be judged, being without a default."""
+    for one in atoms_of(formula):
+        found = (one,) if isinstance(one, Atom) else _in_terms(one, kinds, declared)
+        yield from (what for what in found if declared.items[what.name].default is None)
+
+
+def _in_terms(
+    comparison: Comparison, kinds: Mapping[str, str], declared: Declared
+) -> Iterator[Atom | Quantity]:
+    for _, term in comparison.terms:
+        yield from _in_term(term, kinds, declared)
+
+
+def _in_term(term: Term, kinds: Mapping[str, str], declared: Declared) -> Iterator[Atom | Quantity]:
+    if isinstance(term, Quantity):
+        yield term
+        return
+    for name, kind in kinds.items():
+        if declared.fits(kind, term.type):
+            # What is asked of the object that stands in the count's place.
+            about = _with_object(term.body, term.variable, name)
+            yield from _needed(about, {**kinds}, declared)
+
+
+def _with_object(formula: Formula, variable: str, name: str) -> Formula:
+    """The formula with an object's name in a variable's place."""
+
+    def renamed(arguments: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(name if one == variable else one for one in arguments)
+
+    match formula:
+        case Atom():
+            return replace(formula, arguments=renamed(formula.arguments))
+        case Comparison():
+            terms = tuple(
+                (coefficient, replace(term, arguments=renamed(term.arguments)))
+                if isinstance(term, Quantity)
+                else (coefficient, _count_with(term, variable, name))
+                for coefficient, term in formula.terms
+            )
+            return replace(formula, terms=terms)
+        case Unary(_, operand):
+            return replace(formula, operand=_with_object(operand, variable, name))
+        case Binary(_, left, right):
+            sides = (_with_object(one, variable, name) for one in (left, right))
+            return replace(formula, left=next(sides), right=next(sides))
+        case _:
+            return formula
+
+
+def _count_with(count: Count, variable: str, name: str) -> Count:
+    return replace(count, body=_with_object(count.body, variable, name))
+
+
+def _state(
+    state: tree.ExampleState, needed: Mapping[Key, Atom | Quantity], scope: Scope
+) -> ExampleState:
+    said: dict[Key, bool | str | float] = {}
+    places: dict[Key, Span] = {}
+    unclear = False
+    for fact in state.literals:
+        found = scope.reference(fact.atom)
+        value = None if found is None else _value(fact, found, scope)
+        if found is None or value is None:
+            unclear = True
+            continue
+        key = (found.name, found.arguments)
+        if said.setdefault(key, value) != value:
+            scope.report(say.contradiction(fact, found, places[key]))
+        places.setdefault(key, fact.span)
+    missing = [what for key, what in needed.items() if key not in said]
+    if missing and not unclear:
+        scope.report(say.left_open(state, missing[0], scope.declared))
+    return said
+
+
+def _value(
+    fact: tree.StateLiteral, found: Atom | Quantity, scope: Scope
+) -> bool | str | float | None:
+    """What a fact says of the thing it names; None if it has a mistake, which is reported."""
+    if isinstance(found, Quantity):
+        return _number(fact, found, scope)
+    if fact.value is not None:
+        scope.report(say.not_a_number(fact, found, scope.declared))
+        return None
+    if found.value is not None and fact.negated:
+        scope.report(say.denied(fact, found, scope.declared))
+        return None
+    return not fact.negated if found.value is None else found.value
+
+
+def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | None:
+    """A quantity's value, in the unit of its declaration."""
+    unit = scope.declared.unit_of(found.name)
+    if fact.value is None:
+        scope.report(say.without_number(fact, found, scope.declared))
+        return None
+    minus = isinstance(fact.value, tree.Minus)
+    node = fact.value.operand if isinstance(fact.value, tree.Minus) else fact.value
+    assert isinstance(node, tree.Number), "the grammar has no other"
+    given = literal(node, scope)
+    if given is None or unit is None:
+        return None
+    if given.dimension not in (None, unit.dimension):
+        scope.report(say.other_dimension(fact, found, given, unit))
+        return None
+    value = float(given.cases[0][1].constant / unit.factor)
+    return -value if minus else value

@@ -1,0 +1,70 @@
+"""Levels of priority: a pre-order from the ``priority`` lines of rulebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.syntax import tree
+
+Order = frozenset[tuple[str, str]]
+"""All pairs (higher, lower), transitive; levels that are equal stand in both orders."""
+
+
+def pre_order(
+    lines: Sequence[tree.PriorityLine],
+) -> tuple[tuple[str, ...], Order, list[Diagnostic]]:
+    """The levels in the order in which they are named, their pre-order, and what is wrong.
+
+    A line that contradicts those before it is reported and left out.
+    """
+    levels: dict[str, tree.Name] = {}
+    order: set[tuple[str, str]] = set()
+    strict: set[tuple[str, str]] = set()
+    mistakes: list[Diagnostic] = []
+    for line in lines:
+        for (higher, lower), sign in zip(pairwise(line.levels), line.relations, strict=True):
+            above, below = higher.text, lower.text
+            pairs = {(above, below)} if sign == ">" else {(above, below), (below, above)}
+            demanded = strict | ({(above, below)} if sign == ">" else set())
+            larger = _closed(order | pairs)
+            broken = next((pair for pair in demanded if pair[::-1] in larger), None)
+            if broken is not None or above == below:
+                mistakes.append(_contradiction(higher, lower, sign, levels))
+                continue
+            order, strict = larger, demanded
+        for name in line.levels:
+            levels.setdefault(name.text, name)
+    return tuple(levels), frozenset(order), mistakes
+
+
+def _closed(pairs: set[tuple[str, str]]) -> set[tuple[str, str]]:
+    """The transitive closure, without pairs of a level with itself."""
+    closed = set(pairs)
+    names = {name for pair in pairs for name in pair}
+    for middle in names:
+        above = [one for one, other in closed if other == middle]
+        below = [other for one, other in closed if one == middle]
+        closed |= {(one, other) for one in above for other in below if one != other}
+    return closed
+
+
+def _contradiction(
+    higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
+) -> Diagnostic:
+    labels = tuple(
+        Label(levels[name.text].span.place, f"`{name.text}` was placed here")
+        for name in (higher, lower)
+        if name.text in levels
+    )
+    same = higher.text == lower.text
+    return Diagnostic(
+        "R0321",
+        f"`{higher.text} {sign} {lower.text}` contradicts "
+        + ("itself" if same else "the order so far"),
+        lower.span.place,
+        expected="this closes a circle" if not same else "a level compared with itself",
+        help="leave one of the lines out; levels of one rank are written `a = b`",
+        labels=labels,
+    )

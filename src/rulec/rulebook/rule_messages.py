@@ -1,0 +1,80 @@
+"""What is said about rules and definitions as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.diagnostics import Diagnostic, did_you_mean, named
+from rulec.syntax import tree
+
+
+def too_deep(item: tree.RuleItem, limit: int) -> Diagnostic:
+    """A formula that is too deep once definitions are put in."""
+    return Diagnostic(
+        "R0111",
+        f"the formula of `{item.name.text}` is nested more than {limit} levels deep, definitions "
+        "and exceptions included",
+        item.name.span.place,
+        help="split it into several rules",
+    )
+
+
+def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
+    """A rule at a level that no ``priority`` line names."""
+    if known:
+        way_out = did_you_mean(level.text, known) or f"known are {named(known)}"
+    else:
+        way_out = f"name it in the header, such as `priority {level.text} > courtesy`"
+    return Diagnostic(
+        "R0215",
+        f"there is no level of priority `{level.text}`",
+        level.span.place,
+        expected="expected a level of a `priority` line",
+        help=way_out,
+    )
+
+
+def weightless(weight: tree.Number) -> Diagnostic:
+    """A weight of 0."""
+    return Diagnostic(
+        "R0322",
+        f"a weight of {weight.text} says that the rule does not count",
+        weight.span.place,
+        expected="expected a number above 0",
+        help="leave the rule out, or give it a weight",
+    )
+
+
+def no_step(line: tree.StepLine) -> Diagnostic:
+    """A step that is no time above 0."""
+    return Diagnostic(
+        "R0322",
+        "the step is no time above 0",
+        line.amount.span.place,
+        expected="expected a time",
+        help="write it as such as `step 0.5 s`",
+    )
+
+
+def unused_parameter(item: tree.DefineItem, parameter: tree.Parameter) -> Diagnostic:
+    """A definition's parameter that its body says nothing about."""
+    return Diagnostic(
+        "R0207",
+        f"the definition of `{item.name.text}` says nothing about `{parameter.name.text}`",
+        parameter.span.place,
+        expected="not used behind `=`",
+        help="leave it out, or speak of it",
+        severity="warning",
+    )
+
+
+def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
+    """An option, a parameter or a definition that nothing uses."""
+    return Diagnostic(
+        "R0208",
+        f"no rule uses the {kind} `{name.text}`",
+        name.span.place,
+        expected="not used",
+        help="leave it out, or speak of it in a rule",
+        severity="warning",
+    )

@@ -1,0 +1,71 @@
+"""The names that a tree speaks of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rulec.syntax import tree
+
+
+def names_used(item: tree.Item) -> Iterator[str]:
+    """Every name in the formulas of an item, with repetitions; not in its examples."""
+    match item:
+        case tree.RuleItem(require=require, when=when, unless=unless):
+            for formula in (require, when, *(one.formula for one in unless)):
+                if formula is not None:
+                    yield from names_in(formula)
+        case tree.DefineItem(body=body):
+            yield from names_in(body)
+        case tree.ParamItem(value=value) | tree.SetItem(value=value):
+            if not isinstance(value, bool):
+                yield from names_in(value)
+        case _:
+            return
+
+
+def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
+    """Every name in a formula with its arguments, with repetitions; not those in bounds."""
+    match formula:
+        case tree.AtomUse():
+            yield formula
+        case tree.Prefix(operand=operand) | tree.Minus(operand) | tree.Aggregate(body=operand):
+            yield from atoms_in(operand)
+        case (
+            tree.Infix(left=left, right=right)
+            | tree.Compare(left=left, right=right)
+            | tree.Arithmetic(left=left, right=right)
+        ):
+            yield from atoms_in(left)
+            yield from atoms_in(right)
+        case tree.Conditional(value, condition, otherwise):
+            for part in (value, condition, otherwise):
+                yield from atoms_in(part)
+        case tree.Truth() | tree.Number():
+            return
+
+
+def names_in(formula: tree.Formula) -> Iterator[str]:
+    """Every name in a formula, those in bounds included, with repetitions."""
+    for use in atoms_in(formula):
+        yield use.name.text
+        yield from (one.text for one in use.arguments)
+    for bound in _bounds(formula):
+        for side in (bound.low, bound.high):
+            if isinstance(side, tree.AtomUse):
+                yield side.name.text
+
+
+def _bounds(formula: tree.Formula) -> Iterator[tree.Bound]:
+    match formula:
+        case tree.Prefix(operand=operand, bound=bound):
+            if bound is not None:
+                yield bound
+            yield from _bounds(operand)
+        case tree.Infix(left=left, right=right, bound=bound):
+            if bound is not None:
+                yield bound
+            yield from _bounds(left)
+            yield from _bounds(right)
+        case _:
+            # In anything else there is no temporal operator.
+            return

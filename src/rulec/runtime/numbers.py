@@ -1,0 +1,102 @@
+"""Numbers as they are written, and which of a rule's thresholds they pass."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import inf, nextafter
+
+from rulec.automata.machine import NumberRead, Threshold
+from rulec.logic.formula import Quantity, Relation
+from rulec.runtime.terms import variables_of
+from rulec.trace import Value
+
+_EXACT_IN_FLOATS = 1 << 53
+"""Whole numbers up to this size are floats, too, and their decimals are themselves."""
+
+
+def exact(value: Fraction | float) -> Fraction:
+    """The number that is written: 0.1 is a tenth, not the binary fraction next to it."""
+    return _decimal(value) if isinstance(value, float) else Fraction(value)
+
+
+@lru_cache(maxsize=1 << 14)
+def _decimal(value: float) -> Fraction:
+    # A subclass, such as numpy's, may have its own idea of repr.
+    return Fraction(float.__repr__(value))
+
+
+def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
+    """Does a number stand in a relation to a limit?"""
+    match relation:
+        case "<":
+            return number < limit
+        case "<=":
+            return number <= limit
+        case "=":
+            return number == limit
+        case "!=":
+            return number != limit
+        case ">=":
+            return number >= limit
+        case ">":
+            return number > limit
+
+
+def floor_of(threshold: Threshold) -> float:
+    """The smallest float whose decimal passes a threshold; infinity if no finite one does.
+
+    Decimals of floats are in the order of the floats, so these and no others are at least it.
+    """
+    try:
+        found = float(threshold.limit)
+    except OverflowError:
+        return inf if threshold.limit > 0 else -inf
+    # The nearest float: what is looked for is it, or a few steps away.
+    while found > -inf and _passes(nextafter(found, -inf), threshold):
+        found = nextafter(found, -inf)
+    while not _passes(found, threshold):
+        found = nextafter(found, inf)
+    return found
+
+
+def _passes(value: float, threshold: Threshold) -> bool:
+    if value in (inf, -inf):
+        return value > 0
+    number = Fraction(repr(value))
+    return number >= threshold.limit if threshold.inclusive else number > threshold.limit
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scale:
+    """A number that a rule reads, made ready for many states.
+
+    ``variables`` are those that it depends on. ``quantity`` is the quantity that it is, None if it
+    is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
+    """
+
+    read: NumberRead
+    variables: tuple[str, ...]
+    quantity: Quantity | None
+    floors: tuple[float, ...]
+
+    def digit(self, value: Value) -> int:
+        """The digit of the quantity's value."""
+        assert not isinstance(value, str), "check_state has refused it"
+        if isinstance(value, float) or -_EXACT_IN_FLOATS <= value <= _EXACT_IN_FLOATS:
+            return bisect_right(self.floors, value)
+        return self.read.digit(Fraction(value))
+
+
+@lru_cache(maxsize=1 << 12)
+def scale(read: NumberRead) -> Scale:
+    """What ``Scale`` says of a read."""
+    variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
+    quantity = None
+    if len(read.terms) == 1:
+        ((coefficient, term),) = read.terms
+        if coefficient == 1 and isinstance(term, Quantity):
+            quantity = term
+    return Scale(read, tuple(variables), quantity, tuple(map(floor_of, read.thresholds)))

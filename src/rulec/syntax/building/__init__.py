@@ -1,0 +1,27 @@
+"""From what the grammar matched to the syntax tree: one function for each kind of piece."""
+
+from rulec.syntax.building.formulas import formula
+from rulec.syntax.building.items import item
+from rulec.syntax.building.rules import (
+    Clause,
+    ExampleHead,
+    RuleHead,
+    clause,
+    example_head,
+    rule_head,
+    state,
+)
+from rulec.syntax.building.values import Values
+
+__all__ = [
+    "Clause",
+    "ExampleHead",
+    "RuleHead",
+    "Values",
+    "clause",
+    "example_head",
+    "formula",
+    "item",
+    "rule_head",
+    "state",
+]

@@ -1,0 +1,100 @@
+"""A rule's head, its clauses, the states of its examples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.syntax import tree
+from rulec.syntax.building.formulas import amount, atom, parameters
+from rulec.syntax.building.items import in_force, value_of, weight
+from rulec.syntax.building.values import Values, branches, leaves
+from rulec.syntax.grammar import Branch, Leaf
+
+_SCOPES: dict[str, tree.Scope] = {
+    "INITIALLY": "initially",
+    "AT_START": "at start",
+    "THROUGHOUT": "throughout",
+    "AT_SOME_POINT": "at some point",
+    "AT_END": "at end",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RuleHead:
+    """``hard rule NAME (variables) in level weight number``, or ``override rule NAME …``."""
+
+    strength: Literal["hard", "soft"] | None
+    name: tree.Name
+    variables: tuple[tree.Parameter, ...]
+    level: tree.Name | None
+    weight: tree.Number | None
+    override: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleHead:
+    """``accept "label" (objects)`` or ``reject …``."""
+
+    accepts: bool
+    label: str
+    objects: tuple[tree.Parameter, ...]
+
+
+Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
+"""What a clause says; a text for ``certainty``."""
+
+
+def rule_head(values: Values, node: Branch) -> RuleHead:
+    """A rule's head."""
+    name, *level = values.names(node)
+    hard, soft = leaves(node, "HARD"), leaves(node, "SOFT")
+    return RuleHead(
+        "hard" if hard else "soft" if soft else None,
+        name,
+        parameters(values, node),
+        level[0] if level else None,
+        weight(values, node),
+        bool(leaves(node, "OVERRIDE")),
+    )
+
+
+def clause(values: Values, node: Branch) -> Clause:
+    """What a clause says."""
+    match node.kind:
+        case "require_clause" | "when_clause":
+            return value_of(values, node)
+        case "unless_clause":
+            *_, last = node.children
+            scope = None
+            if isinstance(last, Leaf):
+                scope = _SCOPES[last.kind]
+            return tree.Unless(value_of(values, node), scope, values.span(node))
+        case "certainty_clause":
+            return node.children[1].text if isinstance(node.children[1], Leaf) else ""
+        case "in_force":
+            return in_force(values, node)
+        case _:
+            return values.text(node)
+
+
+def example_head(values: Values, node: Branch) -> ExampleHead:
+    """An example's head."""
+    label = values.text(node).value if leaves(node, "STRING") else ""
+    return ExampleHead(bool(leaves(node, "ACCEPT")), label, parameters(values, node))
+
+
+def state(values: Values, node: Branch) -> tree.ExampleState:
+    """A state of an example."""
+    literals = tuple(_literal(values, one) for one in branches(node, "literal"))
+    return tree.ExampleState(literals, values.span(node))
+
+
+def _literal(values: Values, node: Branch) -> tree.StateLiteral:
+    (use,) = branches(node, "atom")
+    value: tree.Number | tree.Minus | None = None
+    for number in branches(node, "number"):
+        value = amount(values, number)
+        if leaves(node, "MINUS"):
+            value = tree.Minus(value, value.span)
+    return tree.StateLiteral(atom(values, use), bool(leaves(node, "NOT")), value, values.span(node))

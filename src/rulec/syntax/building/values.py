@@ -1,0 +1,89 @@
+"""Names, texts, dates and numbers, and the places of nodes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from rulec.diagnostics import Diagnostic, Source, Span
+from rulec.syntax import tree
+from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.literals import misleads, why_not_a_day
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """Makes the values of one source; mistakes inside them are added to ``mistakes``."""
+
+    source: Source
+    mistakes: list[Diagnostic] = field(default_factory=list)
+
+    def span(self, node: Branch | Leaf) -> Span:
+        """The characters of a node."""
+        return Span(self.source, node.start, node.end)
+
+    def name(self, leaf: Leaf) -> tree.Name:
+        """An identifier."""
+        return tree.Name(leaf.text, self.span(leaf))
+
+    def names(self, node: Branch) -> tuple[tree.Name, ...]:
+        """The identifiers directly below a node."""
+        return tuple(self.name(leaf) for leaf in leaves(node, "NAME"))
+
+    def text(self, node: Branch) -> tree.Text:
+        """The node's text in quotes, its escapes and characters checked."""
+        leaf = leaf_of(node, "STRING")
+        span = self.span(leaf)
+        value: list[str] = []
+        characters = enumerate(leaf.text[1:-1], leaf.start + 1)
+        for position, character in characters:
+            if character == "\\":
+                _, escaped = next(characters)
+                if escaped not in '"\\':
+                    self._mistake("R0106", position, 2, f"`\\{escaped}` means nothing in a text")
+                value.append(escaped)
+            elif misleads(character):
+                self._mistake("R0107", position, 1, "a text may not hold this invisible character")
+            else:
+                value.append(character)
+        return tree.Text("".join(value), span)
+
+    def date(self, leaf: Leaf) -> str:
+        """ISO text of a date that exists."""
+        wrong = why_not_a_day(leaf.text)
+        if wrong:
+            why = f"`{leaf.text}` is no date"
+            self._mistake("R0110", leaf.start, len(leaf.text), why, wrong)
+        return "" if wrong else leaf.text
+
+    def number(self, leaf: Leaf) -> float:
+        """A finite number; 0 in place of one that is too large."""
+        number = float(leaf.text)
+        if not math.isfinite(number):
+            self._mistake("R0112", leaf.start, len(leaf.text), "this number is too large")
+            return 0.0
+        return number
+
+    def _mistake(self, code: str, position: int, length: int, message: str, hint: str = "") -> None:
+        helps = {
+            "R0106": '`\\"` is a quote and `\\\\` a backslash',
+            "R0107": "delete it, or type it as words",
+            "R0112": "write a number below 1e308",
+        }
+        place = Span(self.source, position, position + length).place
+        self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))
+
+
+def leaves(node: Branch, kind: str) -> list[Leaf]:
+    """The tokens of a kind directly below a node."""
+    return [child for child in node.children if isinstance(child, Leaf) and child.kind == kind]
+
+
+def leaf_of(node: Branch, kind: str) -> Leaf:
+    """The first of these; there must be one."""
+    return leaves(node, kind)[0]
+
+
+def branches(node: Branch, kind: str) -> list[Branch]:
+    """The matched rules of a kind directly below a node."""
+    return [child for child in node.children if isinstance(child, Branch) and child.kind == kind]

@@ -1,0 +1,246 @@
+"""Help inside formulas and expressions."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from rulec.syntax.keywords import (
+    OPERATOR_WORDS,
+    PREFIX_LETTERS,
+    RESERVED,
+    SYMBOLS,
+    UNARY_OPERATORS,
+)
+from rulec.syntax.messages.expectations import COMPARISONS
+from rulec.syntax.messages.scene import Scene
+
+_OTHER_SPELLINGS: Final = {
+    "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
+    "iff": ("<=>", "===", "↔", "⇔", "⟺", "≡"),
+    "and": ("∧",),
+    "or": ("∨",),
+    "not": ("¬", "~"),
+    "always": ("□", "◻", "globally"),
+    "eventually": ("◇", "◊", "⋄", "finally"),
+    "next": ("○", "◯", "@"),
+    "until": ("𝒰",),
+    "once": ("◆", "⧫"),
+    "historically": ("■", "◼"),
+    "previously": ("●",),
+    "since": ("𝒮",),
+}
+_MEANT: Final = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
+_SIGNS: Final = {
+    "≤": "<=",
+    "=<": "<=",
+    "⩽": "<=",
+    "≥": ">=",
+    "⩾": ">=",
+    ">==": ">=",
+    "≠": "!=",
+    "<>": "!=",
+    "!==": "!=",
+    "×": "*",
+    "·": "*",
+    "÷": "/",
+    "−": "-",
+    "–": "-",
+}
+_RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
+_QUANTIFIERS: Final = {
+    **dict.fromkeys(("exists", "any", "∃", "there"), "some"),
+    **dict.fromkeys(("forall", "all", "each", "∀", "for"), "every"),
+    **dict.fromkeys(("number", "sum", "#"), "count"),
+}
+_AGGREGATES: Final = ("some", "every", "count")
+
+
+def advise_on_formula(scene: Scene) -> str:
+    """The way out of a mistake in a formula; empty where there is none to suggest."""
+    if not (scene.operand or scene.operator or scene.quantity or "AND" in scene.accepted):
+        return _arguments(scene)
+    for advice in (_conditionals, _numbers, _comparisons, _operators, _joined):
+        found = advice(scene)
+        if found:
+            return found
+    return ""
+
+
+def advise_on_aggregate(scene: Scene) -> str:
+    """At ``some``, ``every``, ``count``, and what others call them."""
+    text, before = scene.text, scene.text_before
+    word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
+    if word and (scene.operand or scene.operator) and scene.found is not None:
+        return f"write `{word} x: vehicle (…)`"
+    if before in _AGGREGATES and scene.accepted == {"NAME"}:
+        return f"it is written `{before} x: vehicle (…)`"
+    heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
+    if not heads or scene.at - heads[-1] > 4:
+        return ""
+    word = scene.text_at(heads[-1])
+    if text == "," and scene.accepted <= {"COLON", "LPAR"}:
+        return f"it has one variable; put one inside the other: `{word} x: T ({word} y: T (…))`"
+    if scene.accepted == {"LPAR"}:
+        return f"what is said of it stands in parentheses: `{word} x: vehicle (…)`"
+    if scene.accepted == {"COLON"}:
+        return f"it is written `{word} x: vehicle (…)`"
+    return ""
+
+
+def _arguments(scene: Scene) -> str:
+    """Between the parentheses of an atom."""
+    if scene.opened("(", ")") is None or scene.kind not in ("clause", "formula", "item"):
+        return ""
+    if scene.accepted == {"NAME"} and scene.text_before == "(" and scene.text == ")":
+        return "without arguments there are no parentheses"
+    if scene.accepted == {"NAME"} and scene.text_before == "," and scene.text == ")":
+        return "delete the `,`"
+    if scene.accepted == {"COMMA", "RPAR"} and scene.text == "(":
+        return "an argument is a name; it has no arguments of its own"
+    if scene.accepted == {"COMMA", "RPAR"} and scene.is_word():
+        return "separate the names by `,`"
+    return ""
+
+
+def _conditionals(scene: Scene) -> str:
+    text, before = scene.text, scene.text_before
+    otherwise = any(token.text == "else" for token in scene.tokens[scene.at :])
+    if text == "?" or (otherwise and text == "if"):
+        if scene.operator and text == "if":
+            return "a conditional stands in parentheses: `(1.5 m if built_up else 2 m)`"
+        return "a conditional is written `(1.5 m if built_up else 2 m)`"
+    if text == "if" and scene.operator:
+        return "write `q implies p` for `p if q`"
+    if text == "if" or before == "if":
+        return "write `p implies q` for `if p then q`"
+    if scene.accepted >= {"ELSE"}:
+        return "a conditional ends with what holds otherwise: `1.5 m if built_up else 2 m`"
+    return ""
+
+
+def _numbers(scene: Scene) -> str:
+    found, text = scene.found, scene.text
+    if found is None or not (scene.operator or scene.quantity):
+        return ""
+    around = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
+    if text == "," and around:
+        return f"write a point: `{scene.text_before}.{scene.text_behind}`"
+    if text == "." and scene.quantity and scene.is_number(scene.at + 1):
+        return f"write `0.{scene.text_behind}`"
+    grouped = "_" in scene.text_before or scene.is_number(scene.at)
+    if (scene.is_number(scene.at - 1) and grouped) or (text.startswith("'") and around):
+        return "a number's digits stand together, such as `1000`"
+    if not scene.operator:
+        return ""
+    if scene.is_number(scene.at) and (
+        scene.text_before == ")" or scene.text_before not in RESERVED
+    ):
+        return "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
+    factor = scene.is_word() and text not in RESERVED
+    if factor and scene.is_number(scene.at - 2) and scene.before and scene.before.kind == "word":
+        return f"write `{scene.text_before} * {text}` for a product"
+    return ""
+
+
+def _comparisons(scene: Scene) -> str:
+    text, before = scene.text, scene.text_before
+    numbers = scene.is_number(scene.at + 1) or scene.is_number(scene.at - 1)
+    if scene.operator and text == "=>" and numbers:
+        return "write `>=` for at least; `=>` would be `implies`"
+    if scene.operator and text == "==":
+        return "quantities are compared by `=`, formulas by `iff`"
+    if (scene.operator or scene.quantity) and text in _SIGNS:
+        return f"write `{_SIGNS[text]}`"
+    if before == "-" and text == ">":
+        return "write `->` without a space"
+    if before == "=" and text == "!":
+        return "write `!=`"
+    if text == "**" or (before == "^" and scene.is_number(scene.at)):
+        return "powers cannot be written; arithmetic is linear"
+    if scene.operator and text in _RELATIONS and not scene.accepted & COMPARISONS:
+        return _chain(scene)
+    if scene.operator and text in ("between", "in"):
+        return "write `a <= x and x <= b`"
+    if text == "+" and scene.quantity:
+        return "delete the `+`"
+    return ""
+
+
+def _chain(scene: Scene) -> str:
+    """``a < b < c``: the middle one has to be said twice."""
+    last = next((at for at in range(scene.at - 1, -1, -1) if scene.text_at(at) in _RELATIONS), None)
+    if last is None:
+        return ""
+
+    def part(first: int, behind: int) -> str:
+        return scene.source.text[scene.tokens[first].start : scene.tokens[behind - 1].end]
+
+    left, right = _back(scene, last), _forward(scene, scene.at + 1)
+    if left == last or last + 1 >= scene.at or right == scene.at + 1:
+        return "compare two at a time: `a < b and b < c`"
+    middle = part(last + 1, scene.at)
+    first, second = part(left, scene.at), part(scene.at, right)
+    whole = f"{first} and {middle} {second}"
+    return "compare two at a time: " + (
+        f"write `{whole}`" if len(whole) <= 60 and "\n" not in whole else "`a < b and b < c`"
+    )
+
+
+def _belongs(scene: Scene, at: int) -> bool:
+    token = scene.token(at)
+    if token is None:
+        return False
+    if token.kind == "word":
+        return token.text not in RESERVED
+    return token.kind == "number" or token.text in ("+", "-", "*", "/", ".", ",", "(", ")", "^")
+
+
+def _back(scene: Scene, at: int) -> int:
+    depth = 0
+    while _belongs(scene, at - 1):
+        depth += (scene.text_at(at - 1) == ")") - (scene.text_at(at - 1) == "(")
+        if depth < 0:
+            break
+        at -= 1
+    return at
+
+
+def _forward(scene: Scene, at: int) -> int:
+    depth = 0
+    while _belongs(scene, at):
+        depth += (scene.text_at(at) == "(") - (scene.text_at(at) == ")")
+        if depth < 0:
+            break
+        at += 1
+    return at
+
+
+def _operators(scene: Scene) -> str:
+    if scene.found is None:
+        return ""
+    text, before = scene.text, scene.text_before
+    if scene.operator and len(before) > 1 and set(before) <= set(PREFIX_LETTERS):
+        return f"`{before}` is read as one name; write `{' '.join(before)}`"
+    if text == "then" and before == "and":
+        return "`then` stands alone between two phases: write `p then q`"
+    word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
+    fits = scene.operand if word in UNARY_OPERATORS else "AND" in scene.accepted
+    if word is not None and text != word and fits:
+        symbol = SYMBOLS.get(word, word)
+        return f"write `{word}` or `{symbol}`" if symbol != word else f"write `{word}`"
+    if "weak" in (before, text):
+        return "`weak` stands before `until`, `next` or `previously`"
+    if "strong" in (before, text):
+        return "`strong` stands before `release`"
+    if scene.operand and text == "{":
+        return "a formula stands in parentheses, or alone, but not in braces"
+    if scene.operand and text in _RELATIONS and text != "=":
+        return "say what is compared, such as `speed <= 50 km/h`"
+    return ""
+
+
+def _joined(scene: Scene) -> str:
+    more = scene.token(scene.at + 1) is not None and scene.text_behind != ")"
+    if scene.operator and more and scene.text in (",", ";", "."):
+        return "formulas are joined by `and`"
+    return ""

@@ -1,0 +1,99 @@
+"""Help for a rule's head, its clauses, and the states of its examples."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
+from rulec.syntax.messages.expectations import SCOPES
+from rulec.syntax.messages.in_items import IN_FORCE, advise_on_dates
+from rulec.syntax.messages.scene import Scene
+
+_HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
+_REMOVING: Final = ("remove", "delete", "repeal", "abolish", "cancel", "skip", "disable")
+_RELATIONS: Final = ("<", "<=", "==", "!=", ">=", ">", ":", ":=")
+_OTHER_CLAUSES: Final = {
+    **dict.fromkeys(("weight", "in", "level", "priority"), _HEAD),
+    **dict.fromkeys(("from", "force", "since", "valid"), IN_FORCE),
+    **dict.fromkeys(("except", "exception", "exempt"), "an exception is written `unless formula`"),
+    **dict.fromkeys(("if", "given", "where"), "a condition is written `when formula`"),
+}
+_NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "where", "weight")
+
+
+def other_clause(word: str) -> str:
+    """What to write for a clause's word of other languages; empty if it is unknown."""
+    return _OTHER_CLAUSES.get(word, "")
+
+
+def advise_on_rule_head(scene: Scene) -> str:
+    """At a rule's head."""
+    if scene.kind != "rule_head":
+        return ""
+    text = scene.text
+    name = text if scene.is_word() and text not in RESERVED else "NAME"
+    if scene.at == 0 and text in _REMOVING:
+        return f'write `drop rule {scene.text_at(2) or "NAME"} because "…"`'
+    if scene.at == 0:
+        return "a rule begins with `hard rule` or `soft rule`"
+    if scene.text_before == "rule" and scene.accepted == {"NAME"}:
+        return "a rule has a name, which stands behind `rule`"
+    if text == "override" and scene.accepted == {"RULE"}:
+        return f"`override` comes first: `override {scene.first} rule`"
+    if "RULE" in scene.accepted:
+        return f"write `{' '.join(one.text for one in scene.tokens[: scene.at])} rule {name}`"
+    if (scene.text_before, text) == ("(", ")"):
+        return "a rule without variables has no parentheses"
+    if scene.accepted == {"COLON"}:
+        return "a variable is written with its type, such as `v: vehicle`"
+    return _HEAD if "RPAR" not in scene.accepted else ""
+
+
+def advise_on_clause(scene: Scene) -> str:
+    """At the word of a clause, or what is special to one."""
+    if scene.kind == "example_head":
+        return _example_head(scene)
+    if scene.kind != "clause":
+        return ""
+    scoped = scene.first == "unless"
+    if scoped and scene.text in ("initially", "throughout", "at") and scene.operand:
+        return "the scope stands behind the formula, such as `unless p throughout`"
+    if scoped and scene.accepted >= SCOPES and scene.is_word():
+        return "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
+    if scene.first == "require" and scene.operator and scene.text in ("throughout", "at"):
+        return "only an `unless` clause has a scope; write `always p` for all of the time"
+    if scene.operator and scene.text in _NO_OPERATORS:
+        return other_clause(scene.text)
+    return advise_on_dates(scene) if scene.first == "in" else ""
+
+
+def _example_head(scene: Scene) -> str:
+    if scene.accepted == {"COLON"}:
+        return "an object is written with its type, such as `v: vehicle`"
+    if scene.found is not None and scene.found.kind == "string" and scene.text_before == ")":
+        return f'the label stands before the objects: `{scene.first} "…" (v: vehicle)`'
+    if scene.is_word() and "STRING" in scene.accepted:
+        return 'put the text in double quotes: "…"'
+    return ""
+
+
+def advise_on_state(scene: Scene) -> str:
+    """In a state of an example."""
+    if scene.kind != "state":
+        return ""
+    text = scene.text
+    if scene.found is None and "NAME" in scene.accepted:
+        return "say what holds in this state; a `;` stands only between two states"
+    if text == ",":
+        return "states are separated by `;`, the facts of one state by `and`"
+    if text in ("or", "|", "||"):
+        return "a state says what holds; for another possibility write another example"
+    if text in OPERATOR_WORDS | OPERATOR_LETTERS:
+        return "a state holds atoms and `not` before a signal; no other operator"
+    if text == "=" and "not" in (scene.text_at(scene.at - 2), scene.text_at(0)):
+        return "a quantity has one value in a state; write `=` without `not`"
+    number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
+    sums = text in ("+", "-", "*", "/")
+    if number or sums or text in _RELATIONS or scene.is_number(scene.at):
+        return "a state gives a quantity one value, such as `speed = 50 km/h`"
+    return ""

@@ -1,0 +1,101 @@
+"""Where a piece cannot go on: what stands there, what stands around it, what could stand there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rulec.diagnostics import Source
+from rulec.syntax.messages.expectations import wants_operand, wants_operator, wants_quantity
+from rulec.syntax.scanner import Token
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A piece of some kind whose tokens can be read up to the one at ``at``, or all of them."""
+
+    source: Source
+    kind: str
+    tokens: Sequence[Token]
+    at: int
+    accepted: frozenset[str]
+
+    def token(self, index: int) -> Token | None:
+        """The token at an index of the piece; None outside of it."""
+        return self.tokens[index] if 0 <= index < len(self.tokens) else None
+
+    def text_at(self, index: int) -> str:
+        """The text of a token; empty outside of the piece."""
+        token = self.token(index)
+        return token.text if token else ""
+
+    @property
+    def found(self) -> Token | None:
+        """What cannot stand where it stands; None if the piece ends too early."""
+        return self.token(self.at)
+
+    @property
+    def before(self) -> Token | None:
+        """What stands before that."""
+        return self.token(self.at - 1)
+
+    @property
+    def first(self) -> str:
+        """The piece's first word."""
+        return self.text_at(0)
+
+    @property
+    def text(self) -> str:
+        """The text of ``found``."""
+        return self.text_at(self.at)
+
+    @property
+    def text_before(self) -> str:
+        """The text of ``before``."""
+        return self.text_at(self.at - 1)
+
+    @property
+    def text_behind(self) -> str:
+        """The text behind ``found``."""
+        return self.text_at(self.at + 1)
+
+    def is_number(self, index: int) -> bool:
+        """Does a number stand at an index?"""
+        token = self.token(index)
+        return token is not None and token.kind == "number"
+
+    def is_word(self) -> bool:
+        """Is ``found`` a word?"""
+        return self.found is not None and self.found.kind == "word"
+
+    def touches(self) -> bool:
+        """Does ``found`` stand right behind the token before, without a space?"""
+        return bool(self.found and self.before and self.before.end == self.found.start)
+
+    @property
+    def operand(self) -> bool:
+        """Could a formula begin here?"""
+        return wants_operand(self.accepted)
+
+    @property
+    def quantity(self) -> bool:
+        """Could a quantity or a number stand here?"""
+        return wants_quantity(self.accepted)
+
+    @property
+    def operator(self) -> bool:
+        """Could a binary operator stand here?"""
+        return wants_operator(self.accepted)
+
+    def opened(self, opening: str, closing: str) -> int | None:
+        """The index of the last ``opening`` before ``at`` that is not closed."""
+        depth = 0
+        for index in range(self.at - 1, -1, -1):
+            token = self.tokens[index]
+            if token.kind == "symbol" and token.text == closing:
+                depth += 1
+            elif token.kind == "symbol" and token.text == opening:
+                if depth == 0:
+                    return index
+                depth -= 1
+        return None

@@ -1,0 +1,139 @@
+"""Formulas as text, with the fewest parentheses or those of the file; names and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal
+
+from rulec.syntax import tree
+from rulec.syntax.keywords import (
+    ARITHMETIC_PRECEDENCE,
+    COMPARISON_PRECEDENCE,
+    MINUS_PRECEDENCE,
+    PRECEDENCE,
+    RIGHT_ASSOCIATIVE,
+    SYMBOLS,
+    UNARY_PRECEDENCE,
+)
+
+Style = Literal["words", "symbols", "written"]
+"""How operators are spelled: ``written`` is as in the file, parentheses included."""
+
+_INFINITE = 99
+
+
+def print_formula(node: tree.Formula, style: Style = "words") -> str:
+    """A formula or an expression on one line."""
+    match node:
+        case tree.AtomUse():
+            return print_atom(node)
+        case tree.Truth(value):
+            return "true" if value else "false"
+        case tree.Number(text, unit):
+            return f"{text} {unit}" if unit else text
+        case tree.Prefix(operator, operand, bound):
+            sign = _sign(operator, node.sign, style)
+            inside = _operand(operand, UNARY_PRECEDENCE, style)
+            return f"{sign}{_bound(bound)}{'' if sign == '!' else ' '}{inside}"
+        case tree.Infix(operator, left, right, bound):
+            mine = PRECEDENCE[operator]
+            to_right = operator in RIGHT_ASSOCIATIVE
+            first = _operand(left, mine + 1 if to_right else mine, style)
+            second = _operand(right, mine if to_right else mine + 1, style)
+            return f"{first} {_sign(operator, node.sign, style)}{_bound(bound)} {second}"
+        case tree.Compare(relation, left, right):
+            beside = COMPARISON_PRECEDENCE + 1
+            return f"{_operand(left, beside, style)} {relation} {_operand(right, beside, style)}"
+        case tree.Arithmetic(operator, left, right):
+            mine = ARITHMETIC_PRECEDENCE[operator]
+            return f"{_operand(left, mine, style)} {operator} {_operand(right, mine + 1, style)}"
+        case tree.Minus(operand):
+            return f"-{_operand(operand, MINUS_PRECEDENCE, style)}"
+        case tree.Conditional(value, condition, otherwise):
+            parts = (_operand(value, 1, style), _operand(condition, 1, style))
+            return f"{parts[0]} if {parts[1]} else {_operand(otherwise, 0, style)}"
+        case tree.Aggregate(kind, variable, body):
+            return f"{kind} {print_parameter(variable)} ({print_formula(body, style)})"
+
+
+def precedence(node: tree.Formula) -> int:
+    """How tightly the node's own operator binds; a larger number binds tighter."""
+    match node:
+        case tree.Conditional():
+            return 0
+        case tree.Infix():
+            return PRECEDENCE[node.operator]
+        case tree.Prefix():
+            return UNARY_PRECEDENCE
+        case tree.Compare():
+            return COMPARISON_PRECEDENCE
+        case tree.Arithmetic():
+            return ARITHMETIC_PRECEDENCE[node.operator]
+        case tree.Minus():
+            return MINUS_PRECEDENCE
+        case _:
+            return _INFINITE
+
+
+def needs_parentheses(node: tree.Formula, least: int, style: Style) -> bool:
+    """Does it bind less tightly than ``least``, or does the file have parentheses there?"""
+    written = style == "written" and getattr(node, "grouped", False)
+    return written or precedence(node) < least
+
+
+def _operand(node: tree.Formula, least: int, style: Style) -> str:
+    text = print_formula(node, style)
+    return f"({text})" if needs_parentheses(node, least, style) else text
+
+
+def _sign(operator: str, sign: str, style: Style) -> str:
+    if style == "written" and sign:
+        # `weak   next` is one sign.
+        return " ".join(sign.split())
+    return SYMBOLS[operator] if style == "symbols" else operator
+
+
+def _bound(bound: tree.Bound | None) -> str:
+    match bound:
+        case None:
+            return ""
+        case tree.Bound(low=None, high=high) if high is not None:
+            return f"[<= {print_formula(high)}]"
+        case tree.Bound(low=low, high=None) if low is not None:
+            return f"[>= {print_formula(low)}]"
+        case tree.Bound(low=low, high=high, exact=exact) if low is not None and high is not None:
+            return f"[{print_formula(low)}{'' if exact else f' .. {print_formula(high)}'}]"
+    raise ValueError("a bound has at least one side")
+
+
+def print_atom(atom: tree.AtomUse) -> str:
+    """An atom with its arguments."""
+    return atom.name.text + (f"({comma(atom.arguments)})" if atom.arguments else "")
+
+
+def comma(names: Iterable[tree.Name]) -> str:
+    """Names with commas between them."""
+    return ", ".join(name.text for name in names)
+
+
+def print_parameters(parameters: tuple[tree.Parameter, ...]) -> str:
+    """``(…)`` of a declaration or a rule's head; empty if there are none."""
+    if not parameters:
+        return ""
+    return f"({', '.join(map(print_parameter, parameters))})"
+
+
+def print_parameter(one: tree.Parameter) -> str:
+    """``name`` or ``name: type``."""
+    return one.name.text + (f": {one.type.text}" if one.type is not None else "")
+
+
+def print_text(text: tree.Text) -> str:
+    """A text in its quotes."""
+    return quoted(text.value)
+
+
+def quoted(value: str) -> str:
+    """A text's value in quotes, escaped."""
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

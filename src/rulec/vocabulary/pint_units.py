@@ -1,0 +1,106 @@
+"""All other units: the Pint library's, exactly."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from rulec.vocabulary.measure import Dimension, Refusal, Unit
+from rulec.vocabulary.unit_table import REFUSED
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+# Pint rounds these to 50 digits. As root units of their own they show in every unit that is made of
+# them, so that nothing rounded passes for exact.
+_IRRATIONAL = ("pi", "tansec", "ln10", "wien_x", "wien_u", "eulers_number")
+
+_BASES = {
+    "meter": "length",
+    "second": "time",
+    "gram": "mass",
+    "radian": "radian",
+    "kelvin": "temperature",
+    "ampere": "current",
+    "mole": "substance",
+    "candela": "luminosity",
+    "bit": "information",
+    "pixel": "pixels",
+}
+_INEXACT = (
+    "its size is no fraction of metres, seconds, kilograms and so on, so it cannot be exact",
+    "write the number in another unit",
+)
+_PLAIN_NUMBERS = ("count", "refractive_index_unit", "absorbance_unit")
+
+
+@lru_cache(maxsize=256)
+def pint_unit(name: str) -> Unit | Refusal | None:
+    """What Pint knows as ``name`` (no powers, no divisions); None if it does not know it."""
+    registry = _registry()
+    if registry is None:
+        return None
+    spelled = registry.parse_unit_name(name)
+    if not spelled:
+        return None
+    prefix, base_name, _plural = spelled[0]
+    if prefix and base_name in REFUSED:
+        return Refusal(name, REFUSED[base_name].why, REFUSED[base_name].instead)
+    try:
+        nothing, one, two = (
+            registry.Quantity(Fraction(n), name).to_root_units() for n in (0, 1, 2)
+        )
+    except Exception:
+        # Each kind of scale fails in its own way: logarithms, for one, do not take fractions.
+        return _no_multiple(name)
+    factor: Any = one.magnitude
+    if not isinstance(factor, Fraction) or nothing.magnitude or two.magnitude != 2 * factor:
+        return _no_multiple(name)
+    return _exact(name, factor, dict(one.unit_items()))
+
+
+@lru_cache(maxsize=1)
+def _registry() -> UnitRegistry[Any] | None:
+    """Pint's units; None where Pint is missing or broken, which must not keep `m` from working."""
+    try:
+        from importlib.resources import files
+
+        import pint
+
+        registry: UnitRegistry[Any] = pint.UnitRegistry(
+            None, non_int_type=Fraction, on_redefinition="ignore"
+        )
+        registry.load_definitions(str(files("pint") / "default_en.txt"))
+        for constant in _IRRATIONAL:
+            registry.define(f"{constant} = [{constant}]")
+    except Exception:  # an installation can be broken in any way
+        return None
+    return registry
+
+
+def _no_multiple(name: str) -> Refusal:
+    why = "its scale has a zero of its own or is logarithmic, so it is no multiple of other units"
+    return Refusal(name, why, "use a unit that starts from nothing, such as `K` for temperatures")
+
+
+def _exact(name: str, factor: Fraction, roots: dict[str, Any]) -> Unit | Refusal:
+    """The unit ``factor`` × the powers of Pint's ``roots``, in our base units."""
+    powers = {root: Fraction(power) for root, power in roots.items()}
+    for number in _PLAIN_NUMBERS:
+        powers.pop(number, None)
+    exponents: dict[str, int] = {}
+    turned = powers.pop("pi", Fraction(0))
+    if turned and turned == powers.get("radian"):  # π rad is 180 degrees
+        del powers["radian"]
+        if turned.denominator == 1:
+            factor *= Fraction(180) ** turned.numerator
+            exponents["angle"] = turned.numerator
+            turned = Fraction(0)
+    if turned or any(n.denominator != 1 or root not in _BASES for root, n in powers.items()):
+        return Refusal(name, *_INEXACT)
+    for root, power in powers.items():
+        exponents[_BASES[root]] = power.numerator
+    if "gram" in powers:
+        factor /= Fraction(1000) ** powers["gram"].numerator
+    return Unit(name, Dimension(tuple(exponents.items())), factor)

@@ -1,0 +1,84 @@
+"""Units of measure as rulebooks write them: `m`, `km/h`, `m/s^2`, `%`.
+
+Names and sizes are Pint's (case matters), exact as fractions. The common ones are in a table; Pint
+is loaded for the others only.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from rulec.vocabulary.measure import DIMENSIONS, NUMBER, Dimension, Refusal, Unit
+from rulec.vocabulary.pint_units import pint_unit
+from rulec.vocabulary.unit_table import COMPOSITE, REFUSED, UNITS
+
+__all__ = [
+    "DIMENSIONS",
+    "Dimension",
+    "Refusal",
+    "Unit",
+    "known_unit_names",
+    "parse_unit",
+    "unit_refusal",
+]
+
+# Pint's longest name has 41 letters; the limits keep hostile texts from costing time.
+_LONGEST = 64
+_HIGHEST_POWER = 9
+
+_RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+_FACTOR = re.compile(rf"([^\W\d]\w*?)(?:\^(-?[0-9]+)|([{_RAISED}]+))?")
+_FROM_RAISED = str.maketrans(_RAISED, "0123456789")
+
+
+def parse_unit(text: str) -> Unit | None:
+    """The unit that ``text`` writes: `%`, `°`, or names with integer powers chained by `/`.
+
+    `a/b/c` is `a/(b*c)`; `m²` is `m^2`. None if it is unknown, and if it is known but no exact
+    multiple of the base units, or not one unit only; `unit_refusal` then says why.
+    """
+    read = _read(text)
+    return read if isinstance(read, Unit) else None
+
+
+def unit_refusal(text: str) -> Refusal | None:
+    """Why a known unit cannot be used (`degC`, `dB`, `ton`); None if it can, or is unknown."""
+    read = _read(text)
+    return read if isinstance(read, Refusal) else None
+
+
+def known_unit_names() -> tuple[str, ...]:
+    """The common units, for "did you mean"; Pint knows a thousand more."""
+    return (*COMPOSITE, *UNITS)
+
+
+def _read(text: str) -> Unit | Refusal | None:
+    if len(text) > _LONGEST:
+        return None
+    if text in UNITS:  # also `%` and `°`, which cannot be parts of a chain
+        return UNITS[text]
+    dimension, factor = NUMBER, Fraction(1)
+    refused: Refusal | None = None
+    for place, part in enumerate(text.split("/")):
+        match = _FACTOR.fullmatch(part)
+        if match is None:
+            return None
+        one = _named(match[1])
+        if one is None:
+            return None
+        power = int(match[2] or (match[3] or "1").translate(_FROM_RAISED))
+        if abs(power) > _HIGHEST_POWER:
+            why = f"powers of units go from -{_HIGHEST_POWER} to {_HIGHEST_POWER}"
+            one = Refusal(part, why, "write a smaller power")
+        if isinstance(one, Refusal):
+            refused = refused or one
+            continue
+        signed = -power if place else power
+        dimension *= one.dimension**signed
+        factor *= one.factor**signed
+    return refused or Unit(text, dimension, factor)
+
+
+def _named(name: str) -> Unit | Refusal | None:
+    return UNITS.get(name) or REFUSED.get(name) or pint_unit(name)
