@@ -87,12 +87,12 @@ def test_provisions_and_declarations():
         "s(o) is one of x, y default x",
         "quantity g(o: c) in km/h default -1.5",
         "option o = on",
-        "param w : speed = 7 km/h in force from 2020-01-01 until 2021-01-01",
-        "set w = -2 m/s",
-        "set o = off",
+        "param  w : speed = 7 km/h in force from 2020-01-01 until 2021-01-01",
+        "set    w = -2 m/s",
+        "set    o = off",
         "define f(v: c, side) = side(v) and p",
         "redefine g = p",
-        'drop rule r because "B"',
+        'drop   rule r because "B"',
         'soften rule s in legal weight 2 because "B"',
         'silent on zip because "B"',
     ]
@@ -164,7 +164,7 @@ def test_line_ends_of_the_author_go_where_the_line_is_long_enough():
 
 def test_a_definition_stays_on_lines_of_its_own():
     rule = "\n\nhard rule r {\n  require p\n}\n"
-    for text in ("define f =\n    p or q", "define f = p or q"):
+    for text in ("define f =\n  p or q", "define f = p or q"):
         whole = f"rulebook b\n{text}{rule}"
         assert formatted(whole) == whole
 
@@ -201,8 +201,21 @@ def test_texts_are_never_parted_from_their_words():
     text = f'  says    "{"x" * 120}"\n  require p\n'
     assert clause(text) == text
     reason = "x" * 80
-    whole = f'rulebook b\nextends a\ndrop rule some_rule\n    because "{reason}"\n'
-    assert formatted(whole.replace("\n    because", " because")) == whole
+    whole = f'rulebook b\nextends a\n\ndrop rule some_rule\n     because "{reason}"\n'
+    assert formatted(whole.replace("\n     because", " because")) == whole
+
+
+def test_options_and_what_is_done_to_others_share_the_header_s_column():
+    text = (
+        "rulebook b\n"
+        "extends a\n"
+        "set     o = on\n"
+        "param   gap : length = 1.5 m\n"
+        'drop    rule r because "B"\n'
+        "signal p\n"
+        "set w = 1\n"
+    )
+    assert formatted(text) == text
 
 
 def test_blank_lines():

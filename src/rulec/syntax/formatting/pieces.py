@@ -21,13 +21,19 @@ from rulec.syntax.formatting.document import (
 from rulec.syntax.formatting.parentheses import without_spare_parentheses
 from rulec.syntax.formatting.spelling import Speller, first_leaf
 from rulec.syntax.grammar import Branch, Start, parse_piece
-from rulec.syntax.keywords import CLAUSE_WORDS, FILE_WORDS, HEADER_WORDS
+from rulec.syntax.keywords import CLAUSE_WORDS, FILE_WORDS, HEADER_WORDS, PROVISION_WORDS
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token
 
 Part = Piece | ExamplePieces | RulePieces
 
-_WORDS: Final = (frozenset(HEADER_WORDS) - frozenset(FILE_WORDS)) | CLAUSE_WORDS | {"in force"}
+_WORDS: Final = (
+    (frozenset(HEADER_WORDS) - frozenset(FILE_WORDS))
+    | (frozenset(PROVISION_WORDS) - {"define", "redefine"})
+    | (CLAUSE_WORDS | {"in force"})
+)
+"""What makes a column with others of its kind."""
+
 _LONGEST_WORD: Final = 7
 """Of the words that make a column: `certainty` or `semantics` would push all others away."""
 
@@ -56,19 +62,19 @@ class Pieces:
         return without_spare_parentheses(branch)
 
     def item(self, piece: Piece, column: int) -> Document:
-        """A header line, whose words end at ``column``, a declaration or a provision."""
+        """A header line or a provision, whose word ends at ``column``, or a declaration."""
         node = self.matched(piece)
+        column = max(column, len(self.word(piece)) + 1)
         match node.kind:
             case "fact_item":
                 return self.speller.worded(node, len("fact "))
             case "signal_item":
                 return self.speller.worded(node, len("signal "), deeper=0)
             case "define_item" | "param_item" | "set_item":
-                return self.speller.assigned(node, broken=self._breaks_behind_equals(node))
-            case "rulebook_line" | "vocabulary_line":
-                return self.speller.plain(node.children, node.kind)
-            case kind if kind.endswith("_line"):
-                return self.speller.worded(node, max(column, len(self.word(piece)) + 1))
+                broken = self._breaks_behind_equals(node)
+                return self.speller.assigned(node, column, broken=broken)
+            case _ if self.word(piece) in _WORDS:
+                return self.speller.worded(node, column, deeper=0)
             case _:
                 return self.speller.plain(node.children, node.kind)
 

@@ -117,13 +117,18 @@ class Speller:
         first = lead.flat if isinstance(lead, Break) else lead
         return run(start, Nest(column, run(first, self.plain(said, node.kind, deeper))))
 
-    def assigned(self, node: Branch, *, broken: bool) -> Document:
-        """``name = value``; the value is on lines of its own if ``broken`` off, or too long."""
+    def assigned(self, node: Branch, column: int, *, broken: bool) -> Document:
+        """``word name = value``, with the name at ``column``.
+
+        The value is on lines of its own if it is ``broken`` off, or too long.
+        """
         at = next(index for index, one in enumerate(node.children) if _is_equals(one)) + 1
-        head = self.plain(node.children[:at], node.kind)
+        word = self.spell(node.children[0])
+        assert isinstance(word, str), "a word is a leaf"
+        head = run(word.ljust(column), self.plain(node.children[1:at], node.kind))
         lead = self.gap(Break(), first_leaf(node.children[at]).start)
         return group(
-            head, Nest(4, run(lead, self.plain(node.children[at:], node.kind))), forced=broken
+            head, Nest(2, run(lead, self.plain(node.children[at:], node.kind))), forced=broken
         )
 
     def _chain(self, links: Sequence[Sequence[Node]]) -> Document:
