@@ -64,7 +64,7 @@ def compile_here(rulebook, step_s=None):
         (),
         "",
         spot_bridge.VERSION,
-        semantics=rulebook.semantics,
+        rulebook.semantics,
     )
 
 

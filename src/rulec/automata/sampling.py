@@ -12,8 +12,8 @@ from rulec.logic.semantics import Semantics, holds
 from rulec.logic.timing import operations_of, range_of
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
-_MOST_LETTERS = 30_000
-"""About so many are read altogether, if that is possible with the fewest words."""
+_EFFORT = 200_000
+"""About so many values are evaluated altogether, if that is possible with the fewest words."""
 
 
 def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
@@ -25,7 +25,9 @@ def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
     n_letters = count_letters(machine.reads)
     sets = letters_with(machine.reads, propositions_of(formula))
     bounds = _bounds(formula)
-    n_words = max(FEWEST_WORDS, min(MOST_WORDS, _MOST_LETTERS // (1 + max(bounds, default=0))))
+    size = 1 + sum(1 for _ in operations_of(formula))
+    affordable = _EFFORT // (size * (8 + max(bounds, default=0)))
+    n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
     for _ in range(n_words):
         numbers = list(_word(chance, n_letters, bounds))
         word: list[frozenset[Proposition]] = [

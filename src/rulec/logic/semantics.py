@@ -89,23 +89,25 @@ def _evaluate(
     formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
 ) -> list[bool]:
     """Truth values on a word that ends with its last instant, or goes on like it for ever."""
-    if formula not in known:
-        match formula:
-            case Atom() | Comparison():
-                values = [formula in letter for letter in word]
-            case Same():
-                raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
-            case Constant(value):
-                values = [value] * len(word)
-            case Unary(operator, operand):
-                inner = _evaluate(operand, word, ends, known)
-                values = _unary(operator, inner, range_of(formula), ends)
-            case Binary(operator, left, right):
-                first = _evaluate(left, word, ends, known)
-                second = _evaluate(right, word, ends, known)
-                values = _binary(operator, first, second, range_of(formula), ends)
-        known[formula] = values
-    return known[formula]
+    found = known.get(formula)
+    if found is not None:
+        return found
+    match formula:
+        case Atom() | Comparison():
+            values = [formula in letter for letter in word]
+        case Same():
+            raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+        case Constant(value):
+            values = [value] * len(word)
+        case Unary(operator, operand):
+            inner = _evaluate(operand, word, ends, known)
+            values = _unary(operator, inner, range_of(formula), ends)
+        case Binary(operator, left, right):
+            first = _evaluate(left, word, ends, known)
+            second = _evaluate(right, word, ends, known)
+            values = _binary(operator, first, second, range_of(formula), ends)
+    known[formula] = values
+    return values
 
 
 def _unary(operator: UnaryOperator, values: list[bool], span: Range, ends: bool) -> list[bool]:
