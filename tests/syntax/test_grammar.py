@@ -1,9 +1,10 @@
 """The grammar file as a whole: what the pieces add up to."""
 
+import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from lark import Lark
 from lark.exceptions import UnexpectedInput
 from syntax_trees import files
@@ -18,7 +19,11 @@ PROGRAMS = Path(__file__).parent.parent / "programs"
 
 @given(files)
 def test_the_whole_grammar_takes_what_is_printed(file):
-    WHOLE.parse(print_file(file))
+    text = print_file(file)
+    # Between pieces a line's end matters, which the grammar does not see: a name on the line behind
+    # a number could be its unit.
+    assume(not re.search(r"\d\s*\n\s*[^\W\d]\w*(\(.*\))? is one of", text))
+    WHOLE.parse(text)
 
 
 @pytest.mark.parametrize("path", sorted(PROGRAMS.glob("good/*.rules")), ids=lambda path: path.stem)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
     OPERATOR_WORDS,
     PREFIX_LETTERS,
     RESERVED,
@@ -240,7 +241,8 @@ def _operators(scene: Scene) -> str:
 
 
 def _joined(scene: Scene) -> str:
-    more = scene.token(scene.at + 1) is not None and scene.text_behind != ")"
+    behind = scene.token(scene.at + 1)
+    more = behind is not None and behind.text not in {")", *CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):
         return "formulas are joined by `and`"
     return ""

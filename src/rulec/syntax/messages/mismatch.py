@@ -116,6 +116,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     if found.kind == "word":
         way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS) or other_word(found.text)
         named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
+        if others and others[0].text in ("=", ":="):
+            way_out = way_out or f"write `param {found.text} = …` or `define {found.text} = …`"
         if not (way_out or named or found.text in RESERVED):
             way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
     return Diagnostic(
