@@ -21,7 +21,7 @@ def pre_order(
 ) -> tuple[tuple[str, ...], Order, list[Diagnostic]]:
     """The levels in the order in which they are named, their pre-order, and what is wrong.
 
-    A line that contradicts those before it is reported and left out.
+    What contradicts the lines before it is reported and left out.
     """
     levels: dict[str, tree.Name] = {}
     order: set[tuple[str, str]] = set()
@@ -39,7 +39,7 @@ def pre_order(
             for pair in pairs:
                 larger = _with_pair(larger, pair)
             broken = next((pair for pair in demanded if pair[::-1] in larger), None)
-            if broken is not None or above == below:
+            if broken is not None or (above == below and sign == ">"):
                 mistakes.append(_contradiction(higher, lower, sign, levels))
                 continue
             order, strict = larger, demanded

@@ -1,0 +1,228 @@
+"""Numbers in formulas: what a comparison says, and that its text says the same.
+
+Sizes of units are written out here, and the arithmetic is done here with fractions.
+"""
+
+from fractions import Fraction
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Quantity,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.rulebook.loader import parse_rulebook
+
+UNITS = {
+    "length": {"m": Fraction(1), "km": Fraction(1000), "cm": Fraction(1, 100)},
+    "time": {"s": Fraction(1), "min": Fraction(60), "ms": Fraction(1, 1000)},
+    "speed": {"m/s": Fraction(1), "km/h": Fraction(1000, 3600), "cm/min": Fraction(1, 6000)},
+    "number": {"": Fraction(1), "%": Fraction(1, 100)},
+}
+QUANTITIES = {
+    "gap": ("length", "m"),
+    "way": ("length", "km"),
+    "speed": ("speed", "km/h"),
+    "wind": ("speed", "m/s"),
+    "grade": ("number", "%"),
+    "rest": ("time", "min"),
+}
+PARAMETERS = {
+    "least": ("length", "1.5 m", lambda state: Fraction(3, 2)),
+    "pace": (
+        "speed",
+        "2 * 7 km/h - speed",
+        lambda state: Fraction(14000 - 1000 * state["speed"], 3600),
+    ),
+    "react": ("time", "1 s if wet else 0.5 s", lambda state: Fraction(1, 1 if state["wet"] else 2)),
+    "double": ("number", "1 + 1", lambda state: Fraction(2)),
+}
+BOOK = (
+    "rulebook r signal wet, dark default false\n"
+    + "\n".join(f"quantity {name} in {unit} default 0" for name, (_, unit) in QUANTITIES.items())
+    + "\n"
+    + "\n".join(f"param {name} : {kind} = {said}" for name, (kind, said, _) in PARAMETERS.items())
+)
+
+literals = st.builds(Fraction, st.integers(0, 400), st.sampled_from([1, 2, 10, 100]))
+
+
+def decimal(number):
+    hundredths = number.numerator * (100 // number.denominator)
+    return f"{hundredths // 100}.{hundredths % 100:02}"
+
+
+def _literal(kind):
+    units = st.sampled_from(sorted(UNITS[kind]))
+    return st.builds(
+        lambda number, unit: (
+            f"{decimal(number)} {unit}".strip(),
+            lambda state, value=number * UNITS[kind][unit]: value,
+        ),
+        literals,
+        units,
+    )
+
+
+def _measured(name):
+    kind, unit = QUANTITIES[name]
+    return (name, lambda state: state[name] * UNITS[kind][unit])
+
+
+def _leaves(kind):
+    named = [_measured(name) for name, (one, _) in QUANTITIES.items() if one == kind]
+    named += [(name, value) for name, (one, _, value) in PARAMETERS.items() if one == kind]
+    return _literal(kind) | st.sampled_from(named)
+
+
+def _sum(one, other, sign):
+    (left, first), (right, second) = one, other
+    return (
+        f"({left} {sign} {right})",
+        lambda state: first(state) + (1 if sign == "+" else -1) * second(state),
+    )
+
+
+def _bare_sum(one, other, sign):
+    """Without parentheses: sums are read from the left."""
+    (left, first), (right, second) = one, other
+    return (
+        f"{left} {sign} ({right})",
+        lambda state: first(state) + (1 if sign == "+" else -1) * second(state),
+    )
+
+
+def _opposite(one):
+    return f"-({one[0]})", lambda state: -one[1](state)
+
+
+def _times(one, factor, first):
+    text = f"{decimal(factor)} * ({one[0]})" if first else f"({one[0]}) * {decimal(factor)}"
+    return f"({text})", lambda state: factor * one[1](state)
+
+
+def _over(one, factor):
+    return f"(({one[0]}) / {decimal(factor)})", lambda state: one[1](state) / factor
+
+
+def _chosen(one, test, other):
+    return (
+        f"({one[0]} if {test} else {other[0]})",
+        lambda state: one[1](state) if _is_so(test, state) else other[1](state),
+    )
+
+
+def _is_so(test, state):
+    return not state[test[4:]] if test.startswith("not ") else state[test]
+
+
+tests = st.sampled_from(["wet", "dark", "not wet"])
+
+
+def sums(kind):
+    return st.recursive(
+        _leaves(kind),
+        lambda inner: (
+            st.builds(_sum, inner, inner, st.sampled_from("+-"))
+            | st.builds(_bare_sum, inner, inner, st.sampled_from("+-")).map(
+                lambda one: (f"({one[0]})", one[1])
+            )
+            | st.builds(_opposite, inner)
+            | st.builds(_times, inner, literals, st.booleans())
+            | st.builds(_over, inner, literals.filter(bool))
+            | st.builds(_chosen, inner, tests, inner)
+        ),
+        max_leaves=5,
+    )
+
+
+lengths = st.one_of(
+    sums("length"),
+    st.builds(
+        lambda time, speed: (
+            f"({time[0]}) * ({speed[0]})",
+            lambda state: time[1](state) * speed[1](state),
+        ),
+        _literal("time") | st.just(("react", PARAMETERS["react"][2])),
+        sums("speed"),
+    ),
+)
+pairs = st.one_of(
+    st.tuples(lengths, lengths), *(st.tuples(sums(kind), sums(kind)) for kind in UNITS)
+)
+RELATIONS = {
+    "<": lambda one, other: one < other,
+    "<=": lambda one, other: one <= other,
+    "=": lambda one, other: one == other,
+    "!=": lambda one, other: one != other,
+    ">=": lambda one, other: one >= other,
+    ">": lambda one, other: one > other,
+}
+states = st.fixed_dictionaries(
+    {name: st.integers(-300, 300).map(lambda value: Fraction(value, 4)) for name in QUANTITIES}
+    | {"wet": st.booleans(), "dark": st.booleans()}
+)
+
+
+def formula_of(text, declared=BOOK):
+    return parse_rulebook(f"{declared}\nhard rule r {{ require {text} }}").rules[0].formula
+
+
+def is_true(formula, state):
+    match formula:
+        case Constant(value):
+            return value
+        case Atom(name):
+            return state[name]
+        case Comparison(terms, relation, limit):
+            values = [factor * state[term.name] for factor, term in terms]
+            return RELATIONS[relation](sum(values), limit)
+        case Unary(UnaryOperator.NOT, operand):
+            return not is_true(operand, state)
+        case Binary(BinaryOperator.AND, left, right):
+            return is_true(left, state) and is_true(right, state)
+        case Binary(BinaryOperator.OR, left, right):
+            return is_true(left, state) or is_true(right, state)
+    raise AssertionError(formula)
+
+
+@given(pairs, st.sampled_from(sorted(RELATIONS)), st.lists(states, min_size=1, max_size=4))
+def test_a_comparison_says_what_is_written(pair, relation, some):
+    (left, first), (right, second) = pair
+    formula = formula_of(f"{left} {relation} {right}")
+    for state in some:
+        assert is_true(formula, state) == RELATIONS[relation](first(state), second(state))
+
+
+@given(pairs, st.sampled_from(sorted(RELATIONS)))
+def test_the_text_of_a_comparison_reads_as_the_comparison(pair, relation):
+    formula = formula_of(f"{pair[0][0]} {relation} {pair[1][0]}")
+    for one in atoms_of(formula):
+        if isinstance(one, Comparison):
+            assert formula_of(one.text) == one
+
+
+@given(pairs, st.sampled_from(sorted(RELATIONS)))
+def test_comparisons_are_in_one_form(pair, relation):
+    formula = formula_of(f"{pair[0][0]} {relation} {pair[1][0]}")
+    for one in atoms_of(formula):
+        if isinstance(one, Comparison):
+            texts = [term.name for _, term in one.terms if isinstance(term, Quantity)]
+            assert texts == sorted(set(texts))
+            assert one.terms[0][0] == 1
+            assert all(factor for factor, _ in one.terms)
+
+
+@given(st.sampled_from([0, 1, 3, "3.5", "1e-3", "2e5"]), st.sampled_from(["m", "km"]))
+def test_a_bare_zero_fits_every_kind_and_nothing_else_does(number, unit):
+    assert formula_of("gap > 0") == formula_of("gap > 0 km") == formula_of("gap - 0 > 0 * speed")
+    (comparison,) = atoms_of(formula_of(f"gap > {number} {unit}"))
+    assert comparison.limit == Fraction(number) * UNITS["length"][unit]

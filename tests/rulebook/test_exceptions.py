@@ -1,0 +1,166 @@
+"""Exceptions and conditions, read as they are defined: by all ways to cut a word into phases."""
+
+from itertools import combinations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.diagnostics import RulecError
+from rulec.logic.formula import Atom
+from rulec.logic.semantics import holds
+from rulec.rulebook.loader import parse_rulebook
+
+NAMES = "pqrs"
+SCOPES = ["initially", "at start", "throughout", "at some point", "at end"]
+
+# A state is the set of the names that are true in it; a condition is a set of states, and the text
+# that says so.
+names = st.sampled_from(NAMES)
+conditions = st.one_of(
+    names.map(lambda one: (one, lambda state: one in state)),
+    names.map(lambda one: (f"not {one}", lambda state: one not in state)),
+    st.tuples(names, names).map(
+        lambda two: (f"({two[0]} and {two[1]})", lambda state: {*two} <= state)
+    ),
+    st.tuples(names, names).map(
+        lambda two: (f"({two[0]} or {two[1]})", lambda state: not state.isdisjoint(two))
+    ),
+    st.just(("true", lambda _: True)),
+    st.just(("false", lambda _: False)),
+)
+words = st.lists(st.frozensets(names), min_size=1, max_size=7)
+bounds = st.one_of(
+    st.none(),
+    st.tuples(st.integers(0, 3), st.none()),
+    st.tuples(st.integers(0, 2), st.integers(2, 4)),
+)
+phases = st.lists(st.tuples(conditions, bounds), min_size=1, max_size=4)
+exceptions = st.lists(st.tuples(conditions, st.sampled_from(SCOPES)), max_size=3)
+semantics = st.sampled_from(["stutter", "finite"])
+
+
+def written(phases):
+    """`a then[1 steps .. 3 steps] b`; the last phase has no bound."""
+    text = ""
+    for (said, _), bound in phases[:-1]:
+        within = ""
+        if bound is not None:
+            low, high = bound
+            within = f"[>= {low} steps]" if high is None else f"[{low} steps .. {high} steps]"
+        text += f"{said} then{within} "
+    return text + phases[-1][0][0]
+
+
+def formula_of(require, exceptions, kind, when=None):
+    unless = " ".join(f"unless {said} {scope}" for (said, _), scope in exceptions)
+    condition = f"when {when[0]}" if when else ""
+    text = f"""rulebook r semantics {kind} signal {", ".join(NAMES)} default false
+    hard rule r {{ require {require} {unless} {condition} }}"""
+    return parse_rulebook(text).rules[0].formula
+
+
+def judged(formula, word, kind):
+    letters = [frozenset(Atom(name) for name in state) for state in word]
+    return holds(formula, letters, kind)
+
+
+def lasting(word, kind, further):
+    """The word, with its last state repeated as often as can make a difference."""
+    return word if kind == "finite" else [*word, *[word[-1]] * further]
+
+
+def sequences(phases, word):
+    """For every way in which the phases occur in the word: at which instants each one begins."""
+    for starts in combinations(range(len(word)), len(phases)):
+        fits = phases[-1][0][1](word[starts[-1]])
+        for ((_, holds_in), bound), begin, end in zip(phases, starts, starts[1:], strict=False):
+            low, high = bound or (0, None)
+            fits &= all(holds_in(state) for state in word[begin:end])
+            fits &= low <= end - begin and (high is None or end - begin <= high)
+        if fits:
+            yield starts
+
+
+def stretch(starts):
+    """The instants that a rule guards."""
+    if len(starts) == 1:
+        return [starts[0]]
+    if len(starts) == 2:
+        return [starts[1] - 1, starts[1]]
+    return list(range(starts[1], starts[-1]))
+
+
+def exempts(exception, guarded):
+    (_, holds_in), scope = exception
+    values = [holds_in(state) for state in guarded]
+    return {
+        "at start": values[0],
+        "throughout": all(values),
+        "at some point": any(values),
+        "at end": values[-1],
+    }[scope]
+
+
+def never_holds(phases, exceptions, word, when=None):
+    inside = [one for one in exceptions if one[1] != "initially"]
+    if any(holds_in(word[0]) for (_, holds_in), scope in exceptions if scope == "initially"):
+        return True
+    for starts in sequences(phases, word):
+        guarded = [word[at] for at in stretch(starts)]
+        in_force = when is None or all(when[1](state) for state in guarded)
+        if in_force and not any(exempts(one, guarded) for one in inside):
+            return False
+    return True
+
+
+@given(phases, exceptions, words, semantics, st.none() | conditions)
+def test_exceptions_of_a_sequence(phases, exceptions, word, kind, when):
+    bounded = any(bound for _, bound in phases[:-1])
+    if bounded:
+        exceptions = [one for one in exceptions if one[1] != "throughout"]
+    formula = formula_of(f"never ({written(phases)})", exceptions, kind, when)
+    long = lasting(word, kind, sum((bound or (1,))[0] + 1 for _, bound in phases) + 2)
+    assert judged(formula, word, kind) == never_holds(phases, exceptions, long, when)
+
+
+@given(conditions, exceptions, words, semantics, st.none() | conditions)
+def test_exceptions_of_what_always_holds(demand, exceptions, word, kind, when):
+    text, demanded = demand
+    formula = formula_of(f"always {text}", exceptions, kind, when)
+    broken = [((f"not {text}", lambda state: not demanded(state)), None)]
+    assert judged(formula, word, kind) == never_holds(broken, exceptions, word, when)
+
+
+@given(conditions, st.lists(conditions, max_size=2), words, semantics, st.none() | conditions)
+def test_exceptions_of_any_other_rule_look_at_the_first_state(demand, free, word, kind, when):
+    exceptions = [(one, "initially") for one in free]
+    formula = formula_of(f"eventually {demand[0]}", exceptions, kind, when)
+    exempt = any(holds_in(word[0]) for _, holds_in in free)
+    in_force = when is None or when[1](word[0])
+    expected = exempt or not in_force or any(demand[1](state) for state in word)
+    assert judged(formula, word, kind) == expected
+
+
+@given(phases.filter(lambda some: len(some) > 1), conditions)
+def test_the_scope_that_is_not_written_is_throughout(phases, exempt):
+    plain = [(one, None) for one, _ in phases]
+    require = f"never ({written(plain)})"
+    silent = formula_of(require, [(exempt, "")], "stutter")
+    assert silent == formula_of(require, [(exempt, "throughout")], "stutter")
+
+
+@pytest.mark.parametrize(
+    ("require", "unless", "code"),
+    [
+        ("eventually p", "unless q at end", "R0318"),
+        ("p implies never q", "unless q", "R0318"),
+        ("never (p then[<= 2 s] q then r)", "unless s", "R0318"),
+        ("never (p then q)", "unless p unless q unless r unless s unless not p", "R0323"),
+        ("never (" + "p then q then " * 20 + "r)", "unless p unless q unless r", "R0323"),
+    ],
+)
+def test_what_cannot_be_said(require, unless, code):
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook(f"rulebook r signal p, q, r, s hard rule r {{ require {require} {unless} }}")
+    assert [one.code for one in caught.value.diagnostics] == [code]

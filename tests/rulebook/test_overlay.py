@@ -1,0 +1,222 @@
+"""Rulebooks that extend others come to what one gets by merging them by hand."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.rulebook.loader import load_rulebook, parse_rulebook
+
+DAYS = ["2000-01-01", "2010-01-01", "2020-01-01"]
+WORDS = """
+signal near, wet default false
+quantity gap in m default 0
+"""
+REQUIRES = [
+    "always d0",
+    "always (o0 implies d1)",
+    "always gap > p0",
+    "never (near then d0 then gap < p1)",
+    "always (o1 or near)",
+]
+BODIES = ["near", "not near", "wet and gap > p0", "gap < p1", "o0"]
+CLAUSES = {
+    "cite": [f'"Art. {number}"' for number in range(3)],
+    "says": [f'"It says {number}."' for number in range(3)],
+    "source": ['"a law"', '"a court"'],
+    "certainty": ["verified", "secondary"],
+    "require": REQUIRES,
+    "unless": ["wet initially", "near initially"],
+    "when": ["wet", "not wet"],
+    "in force": ["from 2005-01-01", "until 2015-01-01", "from 2005-01-01 until 2010-01-01"],
+    "accept": ['"one" { near }', '"two" { wet; near }'],
+}
+
+STAYS = {"require": "always not wet"}
+
+
+@dataclass
+class Book:
+    """One rulebook: header lines, and what its items do."""
+
+    header: dict = field(default_factory=dict)
+    rules: dict = field(default_factory=dict)
+    overrides: dict = field(default_factory=dict)
+    dropped: list = field(default_factory=list)
+    silent: list = field(default_factory=list)
+    softened: dict = field(default_factory=dict)
+    options: dict = field(default_factory=dict)
+    parameters: dict = field(default_factory=dict)
+    definitions: dict = field(default_factory=dict)
+
+
+clauses = st.fixed_dictionaries(
+    {}, optional={name: st.sampled_from(texts) for name, texts in CLAUSES.items()}
+)
+heads = st.fixed_dictionaries(
+    {},
+    optional={
+        "strength": st.sampled_from(["hard", "soft"]),
+        "weight": st.sampled_from(["2", "0.5"]),
+        "in": st.sampled_from(["safety", "legal"]),
+    },
+)
+values = st.tuples(
+    st.sampled_from(["1 m", "2 km", "0"]),
+    st.sampled_from(["", "from 2005-01-01", "until 2015-01-01", "from 2012-01-01"]),
+)
+
+
+def some_of(names, what):
+    return st.fixed_dictionaries({}, optional=dict.fromkeys(names, what))
+
+
+@st.composite
+def chains(draw):
+    """The most general book first."""
+    known = ["r0", "r1", "r2"]
+    rule = st.tuples(heads, clauses)
+    whole = st.tuples(
+        heads.map(lambda head: {"strength": "hard", **head}),
+        clauses.map(lambda inner: {"require": REQUIRES[0], **inner}),
+    )
+    header = some_of(["traffic", "semantics", "step"], st.booleans())
+    base = Book(
+        header=draw(header),
+        rules={name: draw(whole) for name in known} | {"stays": ({"strength": "hard"}, STAYS)},
+        options=dict.fromkeys(["o0", "o1"], draw(st.booleans())),
+        parameters={name: (draw(values)[0], "") for name in ("p0", "p1")},
+        definitions={name: draw(st.sampled_from(BODIES)) for name in ("d0", "d1")},
+    )
+    books = [base]
+    for number in range(draw(st.integers(1, 3))):
+        book = Book(
+            header=draw(header),
+            options=draw(some_of(["o0", "o1"], st.booleans())),
+            parameters=draw(some_of(["p0", "p1"], values)),
+            definitions=draw(some_of(["d0", "d1"], st.sampled_from(BODIES))),
+        )
+        for name in [*known]:
+            match draw(st.sampled_from(["keep", "keep", "override", "drop", "soften", "silent"])):
+                case "override":
+                    book.overrides[name] = draw(rule)
+                case "drop":
+                    book.dropped.append(name)
+                case "soften":
+                    book.softened[name] = draw(st.sampled_from(["3", "0.25"]))
+                case "silent":
+                    book.silent.append(name)
+        known = [one for one in known if one not in (*book.dropped, *book.silent)]
+        for name in draw(st.sets(st.sampled_from([f"n{number}", *book.dropped]))):
+            book.rules[name] = draw(whole)
+            known.append(name)
+        books.append(book)
+    return books
+
+
+def rule_text(name, head, inner, verb=""):
+    strength = head.get("strength", "")
+    place = f" in {head['in']}" if "in" in head else ""
+    weight = f" weight {head['weight']}" if "weight" in head else ""
+    said = "\n".join(f"  {clause} {text}" for clause, text in inner.items())
+    return f"{verb} {strength} rule {name}{place}{weight} {{\n{said}\n}}"
+
+
+def header_text(header):
+    sides = {True: "left", False: "right"}
+    ends = {True: "finite", False: "stutter"}
+    steps = {True: "0.5 s", False: "2 s"}
+    shown = {"traffic": sides, "semantics": ends, "step": steps}
+    return "\n".join(f"{word} {shown[word][value]}" for word, value in header.items())
+
+
+def parameter_text(value):
+    number, dates = value
+    return f"{number} in force {dates}" if dates else number
+
+
+def book_text(book, number):
+    lines = [f"rulebook b{number}"]
+    lines += [f"extends b{number - 1}"] if number else ["priority safety > legal"]
+    lines += [header_text(book.header)]
+    lines += [] if number else [WORDS]
+    # What is dropped may be there again under the same name, in this order.
+    lines += [f'drop rule {name} because "gone"' for name in book.dropped]
+    lines += [f'silent on {name} because "no word"' for name in book.silent]
+    lines += [f"soften rule {name} weight {weight}" for name, weight in book.softened.items()]
+    verb = "set" if number else "option"
+    lines += [f"{verb} {name} = {'on' if on else 'off'}" for name, on in book.options.items()]
+    for name, value in book.parameters.items():
+        start = f"set {name}" if number else f"param {name} : length"
+        lines.append(f"{start} = {parameter_text(value)}")
+    verb = "redefine" if number else "define"
+    lines += [f"{verb} {name} = {body}" for name, body in book.definitions.items()]
+    lines += [rule_text(name, *rule) for name, rule in book.rules.items()]
+    lines += [rule_text(name, *rule, "override") for name, rule in book.overrides.items()]
+    return "\n".join(lines)
+
+
+def in_force(dates, day):
+    words = dates.split()
+    begin = words[1] if words[:1] == ["from"] else ""
+    end = words[-1] if "until" in words else "9999"
+    return begin <= day <= end
+
+
+def merged_by_hand(books, day):
+    """One book without bases that says the same, and the steps and books of its rules."""
+    header, rules, steps, owners = {}, {}, {}, {}
+    options, parameters, definitions = {}, {}, {}
+    for number, book in enumerate(books):
+        header.update(book.header)
+        options.update(book.options)
+        definitions.update(book.definitions)
+        now = {name: one for name, one in book.parameters.items() if in_force(one[1], day)}
+        parameters.update({name: (value, "") for name, (value, _) in now.items()})
+        for name in (*book.dropped, *book.silent):
+            del rules[name]
+        for name, weight in book.softened.items():
+            head, inner = rules[name]
+            rules[name] = ({**head, "strength": "soft", "weight": weight}, inner)
+        rules.update(book.rules)
+        owners.update(dict.fromkeys((*book.rules, *book.overrides), f"b{number}"))
+        step = {True: "1/2", False: "2"}[book.header["step"]] if "step" in book.header else "1"
+        steps.update(dict.fromkeys(book.rules, step))
+        for name, (head, inner) in book.overrides.items():
+            rules[name] = ({**rules[name][0], **head}, {**rules[name][1], **inner})
+            if "accept" in inner:
+                steps[name] = step
+    left = {
+        name: rule for name, rule in rules.items() if in_force(rule[1].get("in force", ""), day)
+    }
+    flat = Book(header, left, options=options, parameters=parameters, definitions=definitions)
+    return flat, steps, owners
+
+
+@given(chains(), st.sampled_from(DAYS))
+def test_a_chain_of_rulebooks_is_one_merged_by_hand(books, day):
+    with TemporaryDirectory() as folder:
+        for number, book in enumerate(books):
+            path = Path(folder, f"b{number}.rules")
+            path.write_text(book_text(book, number), encoding="utf-8")
+        found = load_rulebook(path, at=day)
+    flat, steps, owners = merged_by_hand(books, day)
+    expected = parse_rulebook(book_text(flat, 0), at=day)
+    assert [str(rule.step_s) for rule in found.rules] == [steps[rule.name] for rule in found.rules]
+    assert [rule.book for rule in found.rules] == [owners[rule.name] for rule in found.rules]
+    alike = [replace(rule, book="", step_s=1) for rule in found.rules]
+    assert alike == [replace(rule, book="", step_s=1) for rule in expected.rules]
+    assert found.traffic == expected.traffic
+    assert found.semantics == expected.semantics
+    assert found.priorities == expected.priorities == {("safety", "legal")}
+    assert found.extends == tuple(f"b{number}" for number in reversed(range(len(books) - 1)))
+    kinds = [(one.name, one.kind) for one in found.remarks]
+    said = [
+        ([(name, "dropped") for name in book.dropped])
+        + [(name, "silent") for name in book.silent]
+        + [(name, "softened") for name in book.softened]
+        for book in books
+    ]
+    assert kinds == [one for some in said for one in some]
