@@ -58,7 +58,8 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
 
 def print_whole(node: tree.Formula, style: Style = "words") -> str:
     """A formula where a conditional cannot stand without parentheses, such as behind `require`."""
-    return _operand(node, 1, style)
+    text = print_formula(node, style)
+    return f"({text})" if isinstance(node, tree.Conditional) else text
 
 
 def precedence(node: tree.Formula) -> int:
