@@ -19,7 +19,7 @@ from rulec.runtime.examples import run_all
 from rulec.syntax import decode, parse, print_file
 
 HERE = Path(__file__).parent
-GOOD = sorted((HERE / "good").glob("*.rules"))
+GOOD = sorted((HERE / "good").rglob("*.rules"))
 BAD = sorted((HERE / "bad").glob("*.rules"))
 
 
