@@ -115,9 +115,11 @@ def rulebook_option(function: Decorated) -> Decorated:
 
 def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     """A date in ISO form; empty if none is given."""
+    if not value:
+        return ""
     from rulec.syntax.literals import why_not_a_day
 
-    wrong = why_not_a_day(value) if value else ""
+    wrong = why_not_a_day(value)
     if wrong:
         raise click.BadParameter(f"`{value}` is no date: {wrong}")
     return value

@@ -10,7 +10,7 @@ from typing import Final
 from rulec.diagnostics import Source
 from rulec.syntax.formatting.columns import align_marks, with_comments
 from rulec.syntax.formatting.comments import Comment, blank_line_before, comments_of
-from rulec.syntax.formatting.document import Row, lay_out
+from rulec.syntax.formatting.document import WIDTH, Row, lay_out
 from rulec.syntax.formatting.pieces import Part, Pieces
 from rulec.syntax.formatting.spelling import Speller
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces
@@ -96,7 +96,8 @@ class _Block:
                 return lay_out(self.pieces.item(part, column), self.indent)
 
     def _rule(self, rule: RulePieces) -> list[Row]:
-        head = lay_out(self.pieces.rule_head(rule), self.indent)
+        # The brace stands behind the head.
+        head = lay_out(self.pieces.rule_head(rule), self.indent, WIDTH - len(" {"))
         block = _Block(self.text, self.speller, self.pieces, head, self.indent)
         block.in_braces(rule.body, self.pieces.opening(rule).end, self.pieces.closing(rule).start)
         return block.rows
