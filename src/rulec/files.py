@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import codecs
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from errno import EISDIR
+from errno import EACCES, EISDIR
 from pathlib import Path
 from typing import IO
 from unicodedata import normalize
@@ -18,6 +19,8 @@ from rulec.diagnostics import Diagnostic, Label, Place, RulecError, Source, Span
 @contextmanager
 def written_whole(path: Path) -> Iterator[IO[bytes]]:
     """A stream whose bytes become the file ``path`` when the block ends well, and vanish otherwise.
+
+    A file that is replaced keeps its permissions, and has to permit it.
 
     Raises:
         RulecError: R0702 if the file cannot be written.
@@ -30,6 +33,8 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
             with path.open("wb") as stream:
                 yield stream
             return
+        if path.exists() and not os.access(path, os.W_OK):
+            raise PermissionError(EACCES, os.strerror(EACCES))
         with _beside(path) as stream:
             yield stream
     except OSError as problem:
@@ -43,14 +48,20 @@ def _beside(path: Path) -> Iterator[IO[bytes]]:
     try:
         with os.fdopen(handle, "wb") as stream:
             yield stream
-        # mkstemp keeps its files private; an ordinary new file is as the umask says.
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(name).chmod(0o666 & ~mask)
+        Path(name).chmod(_mode(path))
         Path(name).replace(path)
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def _mode(path: Path) -> int:
+    """The permissions of a file, or of a new one as the umask says; mkstemp's are private."""
+    if path.exists():
+        return stat.S_IMODE(path.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def make_folder(path: Path) -> None:

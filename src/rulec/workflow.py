@@ -32,11 +32,16 @@ if TYPE_CHECKING:
     from rulec.scenario import Scenario
 
 
-def load_rulebook(reference: str | Path, search_path: Sequence[str | Path] = ()) -> Rulebook:
-    """A rulebook as meant, from its name or its source's path. Raises RulecError."""
+def load_rulebook(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> Rulebook:
+    """A rulebook as meant on the day ``at`` (ISO), from its name or its source's path.
+
+    If ``at`` is empty the day is that of the rulebook's `law` line, else today. Raises RulecError.
+    """
     from rulec.rulebook.loader import load_rulebook as load
 
-    return load(reference, [Path(folder) for folder in search_path])
+    return load(reference, [Path(folder) for folder in search_path], at)
 
 
 def compile_rulebook(
@@ -44,20 +49,21 @@ def compile_rulebook(
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     step_s: Fraction | float | None = None,
+    at: str = "",
 ) -> CompiledRulebook:
     """Compile a rulebook: given by name, by path (source or compiled), or itself.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
     than it says, for one. ``step_s`` (above 0, a float meaning the decimal that is written) is the
     step of the traces that rules with bounds in seconds are compiled for; else it is that of their
-    own examples.
+    own examples. ``at``: as for ``load_rulebook``; what has been compiled has its day.
 
     Raises:
         RulecError: with every mistake in the source, or why it cannot be compiled or read; R0407
             for a bound that is no multiple of the step, R0507 if it has been compiled for another.
     """
     step = None if step_s is None else exact(step_s)
-    found = machines(reference, search_path, warn)
+    found = machines(reference, search_path, warn, at)
     if not isinstance(found, CompiledRulebook):
         return found.at_own_steps() if step is None else found(step)
     for rule in found.rules:
@@ -70,6 +76,7 @@ def machines(
     reference: str | Path | Rulebook | CompiledRulebook | AnyStep,
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    at: str = "",
 ) -> CompiledRulebook | AnyStep:
     """As ``compile_rulebook``; if the step of traces makes a difference, for those of any step."""
     if isinstance(reference, CompiledRulebook):
@@ -86,7 +93,7 @@ def machines(
     from rulec.rulebook.loader import read_rulebook
     from rulec.runtime.examples import run_all, surprise
 
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path])
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     every = AnyStep(loaded.rulebook)
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
     rules = tuple(
@@ -98,18 +105,21 @@ def machines(
 
 
 def run_examples(
-    reference: str | Path, search_path: Sequence[str | Path] = (), pattern: str | None = None
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    pattern: str | None = None,
+    at: str = "",
 ) -> ExampleRun:
     """Compile a rulebook, given by name or by its source's path, and run its examples.
 
     ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
-    wild. Raises RulecError like ``compile_rulebook``.
+    wild. ``at``: as for ``load_rulebook``. Raises RulecError like ``compile_rulebook``.
     """
     from rulec.automata.any_step import AnyStep
     from rulec.rulebook.loader import read_rulebook
     from rulec.runtime.examples import run_all
 
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path])
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
 

@@ -2,15 +2,28 @@
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from books import P, Q, always, book, eventually, far, implies, near, rule
 from hypothesis import given
 from hypothesis import strategies as st
+from timed import TIMED_VOCABULARY, comparison
 
 from rulec.automata.compiled_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Bound,
+    Comparison,
+    Count,
+    Same,
+    Unary,
+    UnaryOperator,
+)
+from rulec.rulebook.model import Rulebook
 
 COMPILED = compile_rulebook(
     book(
@@ -20,6 +33,53 @@ COMPILED = compile_rulebook(
     )
 )
 TEXT = to_json(COMPILED)
+
+
+def timed(name, formula, *variables, **more):
+    return replace(rule(name, formula, *variables), **more)
+
+
+def within(operator, formula, high, unit="s"):
+    return Unary(operator, formula, Bound(Fraction(0), Fraction(high), unit))
+
+
+SLOW = comparison("speed", "<=", Fraction(5, 18))
+FEW = comparison("count y: car (near(y))", "<", 3)
+CLOSE = comparison("gap(x) - 2 * speed", "!=", 1)
+NOT_THIS = Count("y", "car", Binary(BinaryOperator.AND, near("y"), Same("y", "x")))
+OTHERS = Comparison(((Fraction(1), NOT_THIS),), "=", Fraction(0), "count others = 0")
+NUMBERS = compile_rulebook(
+    Rulebook(
+        "numbers",
+        TIMED_VOCABULARY,
+        (
+            timed(
+                "A",
+                always(implies(SLOW, within(UnaryOperator.EVENTUALLY, FEW, 2))),
+                level="legal",
+                weight=Fraction(1, 3),
+                certainty="unverified",
+                source="a book",
+                book="base",
+                step_s=Fraction(1, 2),
+            ),
+            timed("B", within(UnaryOperator.ONCE, implies(CLOSE, OTHERS), 4, "steps"), "x: thing"),
+        ),
+        semantics="finite",
+        levels=("safety", "legal", "courtesy", "comfort"),
+        priorities=frozenset(
+            {
+                ("safety", "legal"),
+                ("safety", "courtesy"),
+                ("legal", "courtesy"),
+                ("courtesy", "legal"),
+            }
+        ),
+        extends=("base", "paper"),
+        at="2026-01-01",
+    )
+)
+NUMBERS_TEXT = to_json(NUMBERS)
 
 
 def refused(data):
@@ -33,6 +93,8 @@ def refused(data):
 
 def test_read_back_as_it_was():
     assert from_json(TEXT.encode(), "x.json") == COMPILED
+    assert from_json(NUMBERS_TEXT.encode(), "x.json") == NUMBERS
+    assert to_json(from_json(NUMBERS_TEXT.encode(), "x.json")) == NUMBERS_TEXT
 
 
 texts = st.text(st.sampled_from('[]{}",:\\ \n\u00a0ab1') | st.characters(codec="utf-8"))
@@ -57,11 +119,36 @@ def test_a_row_of_a_table_stands_on_one_line():
 def test_the_documented_parts_are_there():
     data = json.loads(TEXT)
     assert data["format"] == "rulec compiled rulebook"
-    assert data["version"] == 1
+    assert data["version"] == 2
     assert data["spot"].startswith("2.")
     assert [rule["strength"] for rule in data["rules"]] == ["hard", "soft", "hard"]
     assert data["rules"][0]["cite"] == "Art. A"
     assert data["rules"][0]["variables"] == [["x", "car"], ["y", "thing"]]
+    assert data["rules"][0]["step_s"] is None
+    assert data["rules"][0]["machine"]["reads"][0]["kind"] == "state"
+
+
+def test_numbers_are_written_exactly():
+    data = json.loads(NUMBERS_TEXT)
+    first, second = data["rules"]
+    assert (first["step_s"], first["weight"], second["step_s"]) == ("1/2", "1/3", None)
+    assert first["formula"] == (
+        "always (speed <= 5/18 implies eventually[<= 2 s] count y: car (near(y)) < 3)"
+    )
+    assert first["machine"]["reads"] == [
+        {
+            "kind": "number",
+            "terms": [["1", {"quantity": "speed", "variables": []}]],
+            "thresholds": [{"limit": "5/18", "inclusive": False}],
+        },
+        {
+            "kind": "number",
+            "terms": first["tree"][1][2][1]["terms"],
+            "thresholds": [{"limit": "3", "inclusive": True}],
+        },
+    ]
+    assert data["semantics"] == "finite"
+    assert data["priorities"][0] == ["courtesy", "legal"]
 
 
 @pytest.mark.parametrize(
@@ -72,16 +159,17 @@ def test_the_documented_parts_are_there():
         (b"\xff\xfe", "not a compiled rulebook"),
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
-        (b'{"format": "rulec compiled rulebook", "version": 2}', "of version 2"),
-        (b'{"format": "rulec compiled rulebook", "version": 1}', "damaged"),
+        (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
+        (b'{"format": "rulec compiled rulebook", "version": 3}', "of version 3"),
+        (b'{"format": "rulec compiled rulebook", "version": 2}', "damaged"),
     ],
 )
 def test_what_is_no_compiled_rulebook_is_refused(data, words):
     assert words in refused(data)
 
 
-def damage(path, value):
-    data = json.loads(TEXT)
+def damage(path, value, text=TEXT):
+    data = json.loads(text)
     *parents, last = path
     inside = data
     for key in parents:
@@ -124,6 +212,18 @@ def damage(path, value):
         (("vocabulary", "declarations", 0, "parameters"), ["ghost"]),
         (("vocabulary", "declarations", 1, "default"), "blue"),
         (("semantics",), "guesswork"),
+        (("rules", 0, "level"), "unheard of"),
+        (("rules", 0, "weight"), "0"),
+        (("rules", 0, "weight"), "-1/2"),
+        (("rules", 0, "weight"), "1/0"),
+        (("rules", 0, "weight"), 1),
+        (("rules", 0, "certainty"), "hearsay"),
+        (("rules", 0, "step_s"), "1/2"),
+        (("rules", 0, "machine", "reads", 0, "kind"), "number"),
+        (("rules", 0, "book"), None),
+        (("levels",), ["a", "a"]),
+        (("priorities",), [["a", "b"]]),
+        (("extends",), "base"),
         (("more",), 1),
     ],
 )
@@ -131,10 +231,57 @@ def test_damage_is_noticed(path, value):
     refused(damage(path, value))
 
 
+QUANTITY = {"quantity": "speed", "variables": []}
+COUNT = json.loads(NUMBERS_TEXT)["rules"][0]["tree"][1][2][1]["terms"][0][1]
+SPEED_TREE = ("rules", 0, "tree", 1, 1)
+COUNT_TREE = ("rules", 0, "tree", 1, 2, 1, "terms", 0, 1)
+SAME_TREE = ("rules", 1, "tree", 1, 2, "terms", 0, 1, "body", 2)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        ((*SPEED_TREE, "limit"), "1/4", "does not read what"),
+        ((*SPEED_TREE, "relation"), "<", "does not read what"),
+        ((*SPEED_TREE, "text"), "speed is low", "two different formulas"),
+        ((*SPEED_TREE, "terms"), [], "normal form"),
+        ((*SPEED_TREE, "terms"), [["2", QUANTITY]], "normal form"),
+        ((*SPEED_TREE, "terms"), [["1", QUANTITY], ["1", QUANTITY]], "normal form"),
+        ((*SPEED_TREE, "terms"), [["1", QUANTITY], ["1", COUNT]], "normal form"),
+        ((*SPEED_TREE, "terms"), [["1", COUNT], ["0", QUANTITY]], "normal form"),
+        ((*SPEED_TREE, "terms", 0, 1, "quantity"), "p", "quantity `p`"),
+        ((*SPEED_TREE, "terms", 0, 1, "quantity"), "ghost", "quantity `ghost`"),
+        ((*SPEED_TREE, "terms", 0, 1, "variables"), ["x"], "quantity `speed(x)`"),
+        ((*COUNT_TREE, "type"), "ghost", "type `ghost`"),
+        ((*COUNT_TREE, "count"), "z", "`near(y)`"),
+        ((*COUNT_TREE, "body"), ["always", True], "at other instants"),
+        ((*COUNT_TREE, "body"), ["since", True, True], "at other instants"),
+        (("rules", 0, "tree", 1, 1), {"same": ["y", "y"]}, "same object"),
+        (("rules", 1, "tree", 1, 1), {"same": ["x", "x"]}, "same object"),
+        ((*SAME_TREE, "same"), ["y", "z"], "same object"),
+        (("rules", 0, "tree", 1, 2, 2, "to"), "4", "two different formulas"),
+        (("rules", 0, "step_s"), None, "wrong step"),
+        (("rules", 0, "step_s"), "3/4", "multiple"),
+        (("rules", 0, "step_s"), "-1/2", "more than 0"),
+        (("rules", 1, "step_s"), "1", "wrong step"),
+        (("rules", 0, "machine", "reads", 0, "thresholds", 0, "inclusive"), True, "not read what"),
+        (("rules", 0, "machine", "reads", 0, "thresholds"), [], "does not fit"),
+        (("rules", 0, "machine", "reads", 0, "terms"), 3, "terms"),
+        (("priorities",), [["safety", "nothing"]], "unknown level"),
+        (("priorities",), [["safety", "legal"], ["legal", "comfort"]], "follows"),
+        (("priorities",), [["safety", "legal"], ["safety", "legal"]], "twice"),
+        (("levels",), ["safety", "courtesy"], "unknown level"),
+    ],
+)
+def test_damaged_numbers_are_noticed(path, value, words):
+    assert words in refused(damage(path, value, NUMBERS_TEXT))
+
+
 @given(st.data())
 def test_a_truncated_file_is_refused(data):
-    cut = data.draw(st.integers(0, len(TEXT.rstrip()) - 1))
-    refused(TEXT.encode()[:cut])
+    text = data.draw(st.sampled_from([TEXT, NUMBERS_TEXT])).encode()
+    cut = data.draw(st.integers(0, len(text.rstrip()) - 1))
+    refused(text[:cut])
 
 
 def test_writing_and_reading_files(tmp_path):

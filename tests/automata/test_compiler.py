@@ -1,20 +1,30 @@
 """Compiling: Spot in a process of its own, and what becomes of rules that explode."""
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import reduce
 
 import pytest
-from books import P, Q, always, book, far, implies, near, rule
+from books import P, Q, always, book, eventually, far, implies, near, rule
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from words import formulas
 
 from rulec.automata import compiler
 from rulec.automata.compiler import compile_rulebook
+from rulec.automata.letters import names_of
 from rulec.diagnostics import RulecError
-from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Bound,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
 from rulec.logic.past import remembered
-from rulec.logic.printing import in_spot, in_words
+from rulec.logic.printing import in_words
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
@@ -130,20 +140,47 @@ def test_a_process_that_cannot_start_is_no_traceback(monkeypatch):
     assert caught.value.diagnostics[0].code == "R0403"
 
 
-def test_an_automaton_that_fails_its_check_is_refused():
+def checking(automaton, formula, semantics="stutter", cpu_s=None):
+    """Ask whether Spot's automaton of a text is the formula's."""
+    from rulec.automata.spot_bridge.checks import check
+    from rulec.automata.spot_bridge.wording import Wording
+
+    past = remembered(formula)
+    propositions = [*atoms_of(formula), *(one.atom for one in past.memories)]
+    wording = Wording(names_of(propositions), "alive" if semantics == "finite" else None)
+    translated = wording.translated(automaton, *SHAPE)
+    check(translated, past.present, wording, past.memories, cpu_s)
+
+
+SHAPE = ("parity", "det", "complete")
+
+
+@pytest.mark.parametrize("cpu_s", [None, 5])
+def test_an_automaton_that_fails_its_check_is_refused(cpu_s):
     """Had Spot translated `p` as `not p`, the check would not let it pass."""
-    import spot
+    from rulec.automata.spot_bridge import CheckError
 
-    from rulec.automata import spot_bridge
-
-    spot_bridge._check(spot.translate("p", "parity", "det", "complete"), spot.formula("p"))
+    checking("p", P, cpu_s=cpu_s)
     # Another language, one too small, one too large; then the right one, but nondeterministic.
     for wrong in ("!p", "G p", "F p"):
-        automaton = spot.translate(wrong, "parity", "det", "complete")
-        with pytest.raises(spot_bridge.CheckError):
-            spot_bridge._check(automaton, spot.formula("p"))
-    with pytest.raises(spot_bridge.CheckError):
-        spot_bridge._check(spot.translate("FG p", "BA"), spot.formula("FG p"))
+        with pytest.raises(CheckError):
+            checking(wrong, P, cpu_s=cpu_s)
+
+
+def test_a_nondeterministic_automaton_fails_its_check(monkeypatch):
+    from rulec.automata.spot_bridge import CheckError
+
+    formula = eventually(always(P))
+    checking("FG p", formula)
+    monkeypatch.setattr(f"{__name__}.SHAPE", ("BA",))
+    with pytest.raises(CheckError):
+        checking("FG p", formula)
+
+
+def test_a_check_that_takes_too_long_is_left_out():
+    """Nothing is known then, which is no mistake; the table is still compared on random words."""
+    wide = chain(BinaryOperator.XOR, [eventually(Atom(f"s{i}")) for i in range(9)])
+    checking("1", wide, cpu_s=0.02)
 
 
 MEMORY = '"memory 0"'
@@ -153,26 +190,35 @@ ONCE = Unary(UnaryOperator.ONCE, P)
 @pytest.mark.parametrize(
     ("automaton", "why"),
     [
-        (f"G(q -> (p | {MEMORY}))", "the memory is still a proposition"),
-        ("G(q -> p)", "what was is forgotten"),
-        ("G(q -> (p | XF p))", "what comes is taken for what was"),
+        (f"G(q -> (Xp | {MEMORY}))", "the memory is still a proposition"),
+        ("G(q -> X p)", "what was is forgotten"),
+        ("G(q -> (X p | XXF p))", "what comes is taken for what was"),
         ("1", "nothing is asked for"),
     ],
 )
 def test_an_automaton_that_forgets_fails_its_check(automaton, why):
-    """`always (q implies once p)` is `p R (p | !q)`, and nothing else passes for it."""
-    import spot
+    """`always (q implies once next p)` is `Xp R (Xp | !q)`, and nothing else passes for it."""
+    from rulec.automata.spot_bridge import CheckError
 
-    from rulec.automata import spot_bridge
+    later = Unary(UnaryOperator.ONCE, Unary(UnaryOperator.NEXT, P))
+    formula = always(implies(Q, later))
+    assert [one.atom.name for one in remembered(formula).memories] == ["memory 0"]
+    checking("Xp R (Xp | !q)", formula)
+    with pytest.raises(CheckError):
+        checking(automaton, formula)
 
-    present, memories = remembered(always(implies(Q, ONCE)))
-    assert len(memories) == 1
-    language = spot.formula(in_spot(present))
-    right = spot.translate("p R (p | !q)", "parity", "det", "complete")
-    spot_bridge._check(right, language, memories)
-    wrong = spot.translate(automaton, "parity", "det", "complete")
-    with pytest.raises(spot_bridge.CheckError):
-        spot_bridge._check(wrong, language, memories)
+
+def test_the_check_knows_where_words_end():
+    from rulec.automata.spot_bridge import CheckError
+
+    formula = always(Unary(UnaryOperator.NEXT, P))
+    ends = "alive & (alive U G!alive)"
+    checking("0", formula, "finite")  # no word goes on for ever
+    weak = always(Unary(UnaryOperator.WEAK_NEXT, P))
+    checking(f"{ends} & XG(alive -> p)", weak, "finite")
+    for wrong in ("XG(alive -> p)", f"{ends} & XG p", ends, f"{ends} & X p"):
+        with pytest.raises(CheckError):
+            checking(wrong, weak, "finite")
 
 
 def test_a_rule_about_the_past_becomes_its_smallest_table():
@@ -225,9 +271,9 @@ def test_a_past_that_explodes_is_an_error():
 
 def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
     failing = """
-from rulec.automata import spot_bridge
-def fail(*_): raise spot_bridge.CheckError
-spot_bridge._check = fail
+from rulec.automata.spot_bridge import CheckError, translation
+def fail(*_): raise CheckError
+translation.check = fail
 main()
 """
     worker = compiler._WORKER.replace("\nmain()\n", failing)
@@ -241,11 +287,139 @@ main()
 def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
     worker = compiler._WORKER.replace(
         "\nmain()\n",
-        "\nfrom rulec.automata import spot_bridge\nspot_bridge._check = None\nmain()\n",
+        "\nfrom rulec.automata.spot_bridge import translation\ntranslation.check = None\nmain()\n",
     )
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RuntimeError, match="while compiling rule A"):
         compile_rulebook(book(rule("A", P)))
+
+
+def test_a_table_that_fails_on_random_words_is_an_error_too(monkeypatch):
+    """Where Spot has not compared the whole: here a register that forgets too soon."""
+    forgetting = """
+from rulec.logic.past import Register
+after = Register.after
+Register.after = lambda self, state, left, right: after(self, state, left, right) & 0b111
+main()
+"""
+    monkeypatch.setattr(compiler, "_WORKER", compiler._WORKER.replace("\nmain()\n", forgetting))
+    short, long = (always(implies(Q, Unary(UnaryOperator.ONCE, P, within(0, n)))) for n in (2, 3))
+    assert compile_rulebook(book(rule("A", short))).rules
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", long)))
+    assert [one.code for one in caught.value.diagnostics] == ["R0402"]
+
+
+def within(low, high, unit="steps"):
+    return Bound(Fraction(low), None if high is None else Fraction(high), unit)
+
+
+def test_a_hundred_steps_make_a_hundred_states():
+    # Nothing seen, or p up to 100 steps ago; lost.
+    formula = always(implies(Unary(UnaryOperator.ONCE, P, within(0, 100)), Q))
+    (compiled,) = compile_rulebook(book(rule("A", formula))).rules
+    assert len(compiled.machine.following) == 100 + 2
+    assert compiled.step_s is None
+    assert "register" not in compiled.hoa
+    assert in_words(compiled.formula) == "always (once[<= 100 steps] p implies q)"
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        always(implies(P, eventually(near("x")))),
+        always(implies(P, Unary(UnaryOperator.EVENTUALLY, Q, within(0, 100)))),
+        always(implies(P, Unary(UnaryOperator.ALWAYS, Q, within(0, 100)))),
+        always(implies(P, Binary(BinaryOperator.UNTIL, Q, near("x"), within(0, 50)))),
+        eventually(Binary(BinaryOperator.AND, P, Unary(UnaryOperator.ALWAYS, Q, within(0, 60)))),
+    ],
+    ids=in_words,
+)
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_bounds_that_rules_have_fit_into_the_limits(formula, semantics):
+    rulebook = replace(book(rule("A", formula, "x: thing")), semantics=semantics)
+    compiled = compile_rulebook(rulebook, cpu_limit_s=1)
+    assert compiled.semantics == semantics
+    assert len(compiled.rules[0].machine.following) <= 102
+
+
+def test_a_distance_into_the_past_explodes():
+    """What was at each of the last thirty instants takes 2^30 states."""
+    ago = Unary(UnaryOperator.PREVIOUSLY, P, within(30, 30))
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", always(implies(Q, ago)))), cpu_limit_s=1)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0401"
+    assert "bound" in diagnostic.help
+
+
+@pytest.mark.parametrize("operator", [UnaryOperator.EVENTUALLY, UnaryOperator.ONCE])
+def test_so_does_a_bound_of_a_million_steps(operator):
+    formula = always(implies(Q, Unary(operator, P, within(0, 10**6))))
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(rule("A", formula)), cpu_limit_s=1)
+    assert [one.code for one in caught.value.diagnostics] == ["R0401"]
+
+
+def seconds(high, name="A", step="0.5"):
+    formula = always(implies(P, Unary(UnaryOperator.EVENTUALLY, Q, within(0, high, "s"))))
+    return replace(rule(name, formula), step_s=Fraction(step))
+
+
+def test_seconds_become_steps_of_the_trace_or_of_the_examples():
+    rulebook = book(seconds(3), rule("B", P))
+    own, other = compile_rulebook(rulebook).rules
+    assert (own.step_s, other.step_s) == (Fraction(1, 2), None)
+    assert len(own.machine.following) == 6 + 2
+    assert "one letter is 0.5 s" in own.hoa
+    finer, _ = compile_rulebook(rulebook, step_s=Fraction(1, 10)).rules
+    assert finer.step_s == Fraction(1, 10)
+    assert len(finer.machine.following) == 30 + 2
+    # It stays what the rulebook says.
+    assert finer.formula == own.formula == rulebook.rules[0].formula
+
+
+def test_a_bound_between_two_states_is_an_error_with_the_nearest_ones():
+    bad = replace(seconds("3.25"), span=None)
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(book(bad, seconds(1, "B"), seconds("0.2", "C")))
+    first, second = caught.value.diagnostics
+    assert (first.code, second.code) == ("R0407", "R0407")
+    assert first.message == "`3.25 s` is not a multiple of the step, 0.5 s"
+    assert first.help == "the nearest multiples are 3 s and 3.5 s"
+    assert second.help == "the nearest multiple is 0.5 s"
+    assert "`A`" in first.notes[0]
+
+
+def test_what_a_rulebook_says_of_its_rules_is_kept():
+    kept = {
+        "level": "safety",
+        "weight": Fraction(5, 2),
+        "source": "https://example.org",
+        "certainty": "secondary",
+        "book": "base",
+    }
+    whole = {
+        "semantics": "finite",
+        "levels": ("safety", "legal"),
+        "priorities": frozenset({("safety", "legal")}),
+        "extends": ("base",),
+        "at": "2026-01-01",
+    }
+    compiled = compile_rulebook(replace(book(replace(rule("A", P), **kept)), **whole))
+    assert {name: getattr(compiled, name) for name in whole} == whole
+    assert {name: getattr(compiled.rules[0], name) for name in kept} == kept
+
+
+def test_finite_words_end_with_alive():
+    vocabulary = Vocabulary("v", {}, {"alive": Signal("alive"), "p": Signal("p")})
+    formulas = {"plain": always(P), "clash": always(implies(P, Atom("alive")))}
+    rules = tuple(Rule(name, "hard", (), formula) for name, formula in formulas.items())
+    plain, clash = compile_rulebook(Rulebook("b", vocabulary, rules, semantics="finite")).rules
+    assert 'AP: 2 "alive" "p"' in plain.hoa
+    assert 'AP: 3 "alive" "alive (2)" "p"' in clash.hoa
+    assert '"alive" is true as long as the word lasts' in plain.hoa
+    assert '"alive (2)" is true as long as the word lasts' in clash.hoa
 
 
 @settings(max_examples=10)

@@ -51,6 +51,7 @@ def test_every_field_of_a_finding():
         ["test", "esterle2019", "--coverage", "--output-format", "json"],
         ["explain", "R0101", "--output-format", "json"],
         ["list", "scenarios", "--json"],
+        ["show", "esterle2019", "R1", "--json"],
     ],
 )
 def test_every_field_of_an_answer(arguments, capsys):

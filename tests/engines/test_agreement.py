@@ -3,7 +3,7 @@
 import pytest
 import spot
 from hypothesis import example, given
-from past_in_spot import spot_automaton
+from past_in_spot import in_spot, spot_automaton
 from words import VOCABULARY, formulas, letters, words
 
 from rulec.automata.compiled import CompiledRule
@@ -20,7 +20,6 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.printing import in_spot
 from rulec.logic.semantics import holds
 from rulec.runtime.letters import Columns
 from rulec.runtime.verify import run
@@ -59,9 +58,8 @@ def by_spot(formula, word):
 
 def by_hoa(formula, word):
     reads = reads_of(formula, VOCABULARY)
-    text = in_hoa(
-        translate(formula, reads), "rule", ('a "quoted" \\ text */ 0 /* and /*/', "and\nmore")
-    )
+    automaton = translate(formula, reads).automaton
+    text = in_hoa(automaton, "rule", ('a "quoted" \\ text */ 0 /* and /*/', "and\nmore"))
     return spot_membership(spot.automaton(text), formula, letters(word))
 
 
@@ -154,7 +152,8 @@ def test_machines_are_minimal(formula):
 def test_the_automaton_is_the_formula_under_the_vocabularys_knowledge(formula):
     reads = reads_of(formula, VOCABULARY)
     meant = spot_automaton(formula, f"G({EXCLUSIVE})")
-    automaton = translate(formula, reads)
+    # Read again, it speaks of the same propositions as other automata here.
+    automaton = spot.automaton(in_hoa(translate(formula, reads).automaton, "rule", ()))
     # Values that the formula does not mention are nowhere in the automaton: any of them will do.
     unused = [ap for ap in VALUES if ap not in {str(atom) for atom in atoms_of(formula)}]
     any_value = spot.remove_ap()
@@ -198,9 +197,8 @@ def test_dead_and_safe_states():
 
 @given(formulas)
 def test_the_automaton_is_deterministic_and_knows_the_formulas_atoms_alone(formula):
-    automaton = spot.automaton(
-        in_hoa(translate(formula, reads_of(formula, VOCABULARY)), "rule", ())
-    )
+    found = translate(formula, reads_of(formula, VOCABULARY))
+    automaton = spot.automaton(in_hoa(found.automaton, "rule", ()))
     assert spot.is_deterministic(automaton)
     assert spot.is_complete(automaton)
     assert automaton.acc().is_parity()[0]

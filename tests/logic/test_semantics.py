@@ -1,10 +1,30 @@
 """The meaning of the operators, against the paper's Table I and against each other."""
 
+from fractions import Fraction
+
 import pytest
-from hypothesis import given
+from hypothesis import example, given
+from hypothesis import strategies as st
+from timed import (
+    by_definition,
+    comparison,
+    letters_of,
+    timed_formulas,
+    timed_words,
+    without_bounds,
+)
 from words import formulas, letters, words
 
-from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Bound,
+    Constant,
+    Same,
+    Unary,
+    UnaryOperator,
+)
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds, truth_values
 from rulec.rulebook.loader import parse_rulebook
@@ -101,9 +121,141 @@ def test_the_papers_sequence_lets_the_middle_phase_be_empty():
     assert not holds(Binary(THEN, A, Binary(THEN, B, C)), [{A}, {C}])
 
 
+def steps(low, high):
+    return Bound(Fraction(low), None if high is None else Fraction(high), "steps")
+
+
+# Worked out by hand: x = T F F T F T and so on, y = F F T F T F and so on.
+BOUNDED = {
+    "next[2] x": (Unary(UnaryOperator.NEXT, X, steps(2, 2)), "FTFTTT", "FTFTFF"),
+    "weak next[2] x": (Unary(UnaryOperator.WEAK_NEXT, X, steps(2, 2)), "FTFTTT", "FTFTTT"),
+    "next[0] x": (Unary(UnaryOperator.NEXT, X, steps(0, 0)), "TFFTFT", "TFFTFT"),
+    "eventually[<= 1] x": (Unary(UnaryOperator.EVENTUALLY, X, steps(0, 1)), "TFTTTT", "TFTTTT"),
+    "eventually[1 .. 2] y": (Unary(UnaryOperator.EVENTUALLY, Y, steps(1, 2)), "TTTTFF", "TTTTFF"),
+    "always[1 .. 2] x": (Unary(UnaryOperator.ALWAYS, X, steps(1, 2)), "FFFFTT", "FFFFTT"),
+    "always[1 .. 2] y": (Unary(UnaryOperator.ALWAYS, Y, steps(1, 2)), "FFFFFF", "FFFFFT"),
+    "never[<= 1] y": (Unary(UnaryOperator.NEVER, Y, steps(0, 1)), "TFFFFT", "TFFFFT"),
+    "eventually[>= 3] y": (Unary(UnaryOperator.EVENTUALLY, Y, steps(3, None)), "TTFFFF", "TTFFFF"),
+    "y until[<= 1] x": (Binary(BinaryOperator.UNTIL, Y, X, steps(0, 1)), "TFTTTT", "TFTTTT"),
+    "x release[<= 1] y": (Binary(BinaryOperator.RELEASE, X, Y, steps(0, 1)), "FFFFFF", "FFFFFF"),
+    "y weak until[1 .. 1] x": (
+        Binary(BinaryOperator.WEAK_UNTIL, Y, X, steps(1, 1)),
+        "FFTFTF",
+        "FFTFTF",
+    ),
+    "y weak until[<= 2] x": (
+        Binary(BinaryOperator.WEAK_UNTIL, Y, X, steps(0, 2)),
+        "TFTTTT",
+        "TFTTTT",
+    ),
+    "x then[<= 1] y": (Binary(BinaryOperator.THEN, X, Y, steps(0, 1)), "FFFTFF", "FFFTFF"),
+    "x then[2 .. 3] y": (Binary(BinaryOperator.THEN, X, Y, steps(2, 3)), "FFFFFF", "FFFFFF"),
+    "once[1 .. 2] x": (Unary(UnaryOperator.ONCE, X, steps(1, 2)), "FTTFTT", "FTTFTT"),
+    "historically[1 .. 2] y": (
+        Unary(UnaryOperator.HISTORICALLY, Y, steps(1, 2)),
+        "TFFFFF",
+        "TFFFFF",
+    ),
+    "previously[2] x": (Unary(UnaryOperator.PREVIOUSLY, X, steps(2, 2)), "FFTFFT", "FFTFFT"),
+    "weak previously[2] x": (
+        Unary(UnaryOperator.WEAK_PREVIOUSLY, X, steps(2, 2)),
+        "TTTFFT",
+        "TTTFFT",
+    ),
+    "x since[1 .. 2] y": (Binary(BinaryOperator.SINCE, X, Y, steps(1, 2)), "FFFTFT", "FFFTFT"),
+}
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@pytest.mark.parametrize("row", BOUNDED)
+def test_bounds_by_hand(row, semantics):
+    formula, *expected = BOUNDED[row]
+    wanted = expected[semantics == "finite"]
+    values = truth_values(formula, PAST_WORD, semantics)
+    assert values == [value == "T" for value in wanted]
+
+
+# What there is after the last instant: its like for ever, or nothing.
+ENDS = {
+    "next x": (Unary(UnaryOperator.NEXT, X), True, False),
+    "weak next y": (Unary(UnaryOperator.WEAK_NEXT, Y), False, True),
+    "always x": (Unary(UnaryOperator.ALWAYS, X), True, True),
+    "next eventually x": (
+        Unary(UnaryOperator.NEXT, Unary(UnaryOperator.EVENTUALLY, X)),
+        True,
+        False,
+    ),
+    "x then x": (Binary(BinaryOperator.THEN, X, X), True, False),
+    "eventually[2] x": (Unary(UnaryOperator.EVENTUALLY, X, steps(2, 2)), True, False),
+    "always[2] y": (Unary(UnaryOperator.ALWAYS, Y, steps(2, 2)), False, True),
+    "y release x": (Binary(BinaryOperator.RELEASE, Y, X), True, True),
+    "y strong release x": (Binary(BinaryOperator.STRONG_RELEASE, Y, X), False, False),
+    "x weak until y": (Binary(BinaryOperator.WEAK_UNTIL, X, Y), True, True),
+    "eventually once[3] x": (
+        Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ONCE, X, steps(3, 3))),
+        True,
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize("row", ENDS)
+def test_how_a_word_ends(row):
+    formula, stutter, finite = ENDS[row]
+    assert holds(formula, [{X}], "stutter") is stutter
+    assert holds(formula, [{X}], "finite") is finite
+
+
+both_semantics = st.sampled_from(["stutter", "finite"])
+
+
+@given(timed_formulas, timed_words, both_semantics)
+@example(ENDS["eventually once[3] x"][0], [{"x": True}], "stutter")
+def test_the_definitions_read_again(formula, word, semantics):
+    """Instant by instant, without any thrift."""
+    letters = letters_of(formula, word)
+    expected = by_definition(formula, letters, semantics)
+    assert truth_values(formula, letters, semantics) == expected
+
+
+@given(timed_formulas, timed_words, both_semantics)
+def test_bounds_unrolled_mean_the_same(formula, word, semantics):
+    """A bound is a shorthand: step by step it can be said with next and previously."""
+    letters = letters_of(formula, word)
+    unrolled = without_bounds(formula)
+    assert truth_values(unrolled, letters, semantics) == truth_values(formula, letters, semantics)
+
+
+def test_a_long_bound_takes_no_longer():
+    far = steps(10**12, None)
+    formula = Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, X, far))
+    assert holds(formula, [{}, {X}])
+    assert not holds(formula, [{X}, {}])
+    assert not holds(Unary(UnaryOperator.EVENTUALLY, X, far), [{X}, {X}], "finite")
+
+
+def test_numbers_are_members_of_a_letter_like_atoms():
+    fast = comparison("speed", ">", 30)
+    assert holds(Unary(UnaryOperator.NEXT, fast), [{X}, {fast}])
+    assert not holds(Unary(UnaryOperator.NEXT, fast), [{fast}, {X}])
+
+
+def test_what_has_no_meaning_on_a_word():
+    seconds = Bound(Fraction(0), Fraction(3), "s")
+    for formula in (
+        Unary(UnaryOperator.ALWAYS, X, seconds),
+        Unary(UnaryOperator.ONCE, X, Bound(Fraction(0), Fraction(1, 2), "steps")),
+        Same("x", "y"),
+    ):
+        for semantics in ("stutter", "finite"):
+            with pytest.raises(ValueError, match=r"step|counted"):
+                holds(formula, [{X}], semantics)
+
+
 def test_an_empty_word_has_no_meaning():
-    with pytest.raises(ValueError, match="empty"):
-        holds(X, [])
+    for semantics in ("stutter", "finite"):
+        with pytest.raises(ValueError, match="empty"):
+            holds(Constant(True), [], semantics)
 
 
 def expanded(formula, word):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from books import book, rule
+from drawn import drawn
 from words import formulas, letters, words
 
 from rulec.automata.compiler import compile_rulebook
@@ -34,27 +35,6 @@ def python(tmp_path_factory):
     install = [python, "-m", "pip", "install", "--quiet", "hoa-utils==0.1.0", "setuptools<80"]
     subprocess.run(install, check=True)
     return python
-
-
-def drawn(strategy, n):
-    """``n`` examples of a strategy, always the same ones."""
-    from hypothesis import HealthCheck, Phase, given, seed, settings
-
-    found = []
-
-    @seed(1)
-    @settings(
-        max_examples=n,
-        phases=[Phase.generate],
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(strategy)
-    def collect(example):
-        found.append(example)
-
-    collect()
-    return found
 
 
 def test_its_verdicts_are_those_of_direct_evaluation(python):

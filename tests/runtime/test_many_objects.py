@@ -66,20 +66,17 @@ CROWD = Count(
     "x", "car", number(">=", 2, (1, Count("y", "thing", both(far("y"), no(Same("x", "y"))))))
 )
 
+MIXED = number("<=", TIGHT, (1, gap("v")), (-1, gap("w")), (2, Quantity("speed")))
+
 RULES = (
     rule("apart", always(implies(near("v"), no(far("w")))), "v: car", "w: car"),
     rule("order", until(no(far("w")), near("v")), "v: car", "w: thing"),
     rule("margin", always(number(">=", TIGHT, (1, gap("v")))), "v: thing"),
-    rule(
-        "sum",
-        always(implies(near("v"), number("<=", "0.3", (1, gap("v")), (-1, gap("w")), (2, Quantity("speed"))))),
-        "v: car",
-        "w: car",
-    ),
+    rule("sum", always(implies(near("v"), MIXED)), "v: car", "w: car"),
     rule("company", always(implies(number(">=", 2, (1, COMPANY)), next_(no(near("v"))))), "v: car"),
     rule("empty", eventually(number("=", 0, (1, SETTLED)))),
     rule("crowd", always(number("<", 3, (1, CROWD)))),
-)  # fmt: skip
+)
 
 
 @cache
@@ -120,7 +117,7 @@ class Reading:
         return round(10 * self.trace.states[i].get("speed", 0.2))
 
     def after(self, i, last):
-        """The state after one, in a stretch that ends with state ``last``; None if there is none."""
+        """The state after one in a stretch that ends with ``last``; None if there is none."""
         if i < last:
             return i + 1
         return None if self.finite else last
@@ -174,7 +171,10 @@ class Reading:
         for one in RULES:
             types = [variable.type for variable in one.variables]
             for chosen in product(self.trace.objects, repeat=len(types)):
-                fits = all(t in ("thing", self.trace.objects[x]) for t, x in zip(types, chosen))
+                fits = all(
+                    t in ("thing", self.trace.objects[x])
+                    for t, x in zip(types, chosen, strict=True)
+                )
                 together = [i for i in range(self.n) if all(self.there(x, i) for x in chosen)]
                 if not fits or len(set(chosen)) < len(chosen) or not together:
                     continue

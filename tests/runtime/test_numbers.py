@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.automata.machine import NumberRead, Threshold
-from rulec.logic.formula import Count, Constant, Quantity
+from rulec.logic.formula import Constant, Count, Quantity
 from rulec.runtime.numbers import exact, floor_of, scale
 
 floats = st.floats(allow_nan=False, allow_infinity=False)

@@ -10,12 +10,13 @@ from rulec.automata import any_step
 from rulec.automata.any_step import AnyStep
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Bound, Unary, UnaryOperator
-from rulec.maneuvers import judged
+from rulec.rulebook.model import Rulebook
 from rulec.runtime.product import instances
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph
-from rulec.workflow import compile_rulebook, find_maneuvers, machines, navigation_graph
+from rulec.vocabulary import Signal, Vocabulary
+from rulec.workflow import compile_rulebook, find_maneuvers, machines
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 
@@ -35,8 +36,8 @@ def trace(text, step_s):
     return Trace("t", step_s, {}, states, place=Place("t.jsonl", 3))
 
 
-def violated(judged):
-    return [one.rule for one in judged.violations]
+def violated(verdict):
+    return [one.rule for one in verdict.violations]
 
 
 @pytest.mark.parametrize(
@@ -165,3 +166,19 @@ def test_a_graph_is_judged_by_machines_for_its_step():
     assert len(instances(graph, compile_rulebook(BOOK, step_s=0.5))) == 1
     with pytest.raises(RulecError, match=r"compiled for steps of 1 s; the graph has steps of 0.5"):
         instances(graph, compile_rulebook(BOOK, step_s=1))
+
+
+@pytest.mark.parametrize("step_s", [None, 0.5])
+def test_maneuvers_are_judged_by_machines_for_the_graphs_step(step_s):
+    only_p = replace(ANSWERED, formula=always(implies(P, within(1, P))))
+    words = Vocabulary("words", {}, {"p": Signal("p", (), False)})
+    found = find_maneuvers("s1", Rulebook("test", words, (only_p,)), step_s=step_s)
+    assert [one.step_s for one in found.rules.rules] == [Fraction(step_s or 1)]
+    assert found.satisfying == found.traces > 0
+
+
+def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
+    with pytest.raises(RulecError) as caught:
+        find_maneuvers("s1", compile_rulebook(BOOK, step_s=0.5))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.place) == ("R0507", Place("s1"))

@@ -1,12 +1,15 @@
 """Verdicts on traces: bindings, stretches, defaults, and what does not fit the vocabulary."""
 
+from dataclasses import replace
+
 import pytest
 from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
+from measured import MEASURED, closer, gap, number, others_near
 from words import VOCABULARY
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
-from rulec.logic.formula import Atom, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Constant, Quantity, Unary, UnaryOperator
 from rulec.rulebook.model import Rulebook
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.runtime.verify import judge, verify
@@ -143,6 +146,14 @@ def test_objects_that_never_meet_are_no_binding():
     assert violations(never, trace("nng", "nng", present=present)) == []
 
 
+def test_a_finite_trace_may_end_where_it_must_not_go_on():
+    """`weak next false` says that there is no further state."""
+    ends = rule("A", Unary(UnaryOperator.WEAK_NEXT, Constant(False)))
+    rules = compile_rulebook(replace(book(ends), semantics="finite"))
+    verdicts = [verify(trace(*["ggg"] * n), rules).violations for n in (1, 2, 3)]
+    assert [[one.step for one in found] for found in verdicts] == [[], [1], [1]]
+
+
 def test_what_is_missing_takes_its_default():
     red = rule("A", always(no(P)))
     assert violations(red, trace("ggg")) == []
@@ -198,3 +209,61 @@ def test_one_bad_trace_does_not_stop_the_others():
     answers = [judge(item, RULES) for item in (trace("ggg"), broken, trace("..."))]
     assert [type(answer) for answer in answers] == [Verdict, NotJudged, NotJudged]
     assert (answers[1].trace, answers[2].trace) == (None, "t")
+
+
+def measured(formula, state):
+    rules = compile_rulebook(Rulebook("test", MEASURED, (rule("A", formula, "v: car"),)))
+    cars = {"car1": "car", "car2": "car"}
+    return verify(Trace("t", 1.0, cars, (state,), place=Place("t.jsonl", 3)), rules)
+
+
+@pytest.mark.parametrize("value", [True, "5", None, float("nan"), float("inf"), -float("inf")])
+def test_what_is_no_number_is_refused(value):
+    with pytest.raises(RulecError) as caught:
+        measured(always(closer("v", 5)), {"gap": {"car1": value}})
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0503"
+    assert "it is a number, in m" in diagnostic.message
+
+
+@pytest.mark.parametrize("value", [10**400, -(10**400), 1.7976931348623157e308, 0, -0.0])
+def test_any_finite_number_is_a_number(value):
+    state = {"gap": {"car1": value, "car2": value}}
+    assert measured(always(closer("v", 5)), state).satisfied == (value < 5)
+
+
+def test_a_huge_whole_number_for_something_else_is_refused_in_few_words():
+    with pytest.raises(RulecError) as caught:
+        verify(trace("ggg", q=10**5000), RULES)
+    assert "`q` is `a number of many digits`" in caught.value.diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    ("formula", "state", "words"),
+    [
+        (closer("v", 5), {"gap": {"car1": 6}}, "the `gap` of `car2`"),
+        (number("", "<", 1, (1, gap("v")), (2, Quantity("speed"))), {}, "the `gap` of `car1`"),
+        (
+            number("", "<", 1, (1, others_near("v"))),
+            {"place": {"car1": "near"}},
+            "the `place` of `car2`",
+        ),
+    ],
+)
+def test_a_missing_number_is_named(formula, state, words):
+    with pytest.raises(RulecError) as caught:
+        measured(always(formula), state)
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.place) == ("R0504", Place("t.jsonl", 3))
+    assert f"state 0 does not say {words}, which rule `A` needs" in diagnostic.message
+
+
+def test_who_is_not_there_is_neither_counted_nor_missed():
+    alone = always(number("", "<", 1, (1, others_near("v"))))
+    state = {"place": {"car1": "near"}}
+    rules = compile_rulebook(Rulebook("test", MEASURED, (rule("A", alone, "v: car"),)))
+    both_near = {"place": {"car1": "near", "car2": "near"}}
+    states = (state, both_near, both_near)
+    judged = Trace("t", 1.0, dict.fromkeys(("car1", "car2"), "car"), states, {"car2": (1, 1)})
+    found = verify(judged, rules).violations
+    assert [(one.binding["v"], one.step) for one in found] == [("car1", 1), ("car2", 1)]

@@ -1,46 +1,60 @@
 """Formulas with a past for Spot, by another way than the compiler's.
 
-Here a fresh proposition is the value of an operator of the past, where the compiler's is what the
-instant before has left; so each definition is another formula.
+Here a fresh proposition is the value of an operator of the past, where the compiler has a register
+or what the instant before has left; and bounds are unrolled, where the compiler counts.
 """
 
 import spot
+from timed import without_bounds
 
-from rulec.logic.formula import Atom, Binary, Unary
-from rulec.logic.printing import in_spot
+from rulec.automata.letters import names_of
+from rulec.automata.spot_bridge.wording import Wording
+from rulec.logic.formula import Atom, Binary, Unary, atoms_of
 
 DEFINITIONS = {
-    "previously": "!{p} & G(X{p} <-> {a})",
-    "weak previously": "{p} & G(X{p} <-> {a})",
-    "once": "({p} <-> {a}) & G(X{p} <-> (X{a} | {p}))",
-    "historically": "({p} <-> {a}) & G(X{p} <-> (X{a} & {p}))",
-    "since": "({p} <-> {b}) & G(X{p} <-> (X{b} | (X{a} & {p})))",
+    "previously": "!{p} & G(({a} -> X{p}) & ({a} | X!{p}))",
+    "weak previously": "{p} & G(({a} -> X{p}) & ({a} | X!{p}))",
+    "once": "({p} <-> {a}) & G(X({p} <-> ({a} | {before})))",
+    "historically": "({p} <-> {a}) & G(X({p} <-> ({a} & {before})))",
+    "since": "({p} <-> {b}) & G(X({p} <-> ({b} | ({a} & {before}))))",
 }
+BEFORE = "!{before} & G(({p} -> X{before}) & ({p} | X!{before}))"
 
 
-def spot_automaton(formula, besides="1"):
-    """Some automaton of the formula and of ``besides``, which is text for Spot."""
-    definitions = []
-    text = in_spot(_named(formula, definitions))
-    language = " & ".join([f"({text})", f"({besides})", *definitions])
+def in_spot(formula, alive=None):
+    """The formula in Spot's syntax; it has no operators of the past."""
+    return f"({Wording(names_of(atoms_of(formula)), alive).said(formula)})"
+
+
+def spot_automaton(formula, besides="1", alive=None):
+    """Some automaton of the formula and of ``besides``, which is text for Spot.
+
+    With ``alive`` of finite words, as long as that proposition is true."""
+    definitions, fresh = [], []
+    text = in_spot(_named(without_bounds(formula), definitions, fresh, alive), alive)
+    language = spot.formula(" & ".join([text, f"({besides})", *definitions]))
+    if alive is not None:
+        language = spot.from_ltlf(language, alive)
     projection = spot.remove_ap()
-    for number in range(len(definitions)):
-        projection.add_ap(f"value {number}")
+    for name in fresh:
+        projection.add_ap(name)
     return projection.strip(spot.translate(language))
 
 
-def _named(formula, definitions):
+def _named(formula, definitions, fresh, alive):
     match formula:
         case Unary(operator, operand):
-            operands = (_named(operand, definitions),)
+            operands = (_named(operand, definitions, fresh, alive),)
         case Binary(operator, left, right):
-            operands = (_named(left, definitions), _named(right, definitions))
+            operands = tuple(_named(one, definitions, fresh, alive) for one in (left, right))
         case _:
             return formula
     if operator.value not in DEFINITIONS:
         return type(formula)(operator, *operands)
-    value = Atom(f"value {len(definitions)}")
-    texts = {name: f"({in_spot(one)})" for name, one in zip("ab", operands, strict=False)}
-    definition = DEFINITIONS[operator.value].format(p=in_spot(value), **texts)
-    definitions.append(f"({definition})")
-    return value
+    value, before = (f"{kind} {len(fresh)}" for kind in ("value", "before"))
+    fresh += [value, before]
+    texts = {name: in_spot(one, alive) for name, one in zip("ab", operands, strict=False)}
+    texts |= {"p": f'"{value}"', "before": f'"{before}"'}
+    definitions.append(f"({DEFINITIONS[operator.value].format(**texts)})")
+    definitions.append(f"({BEFORE.format(**texts)})")
+    return Atom(value)

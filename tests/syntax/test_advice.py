@@ -4,20 +4,25 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, parse_formula
+from rulec.syntax.messages.in_items import FORMS, IN_FORCE
 
-COMPARED = "formulas are compared by `iff`; a value is an atom itself, such as `crossing`"
+COMPARED = "quantities are compared by `=`, formulas by `iff`"
 NAMES = "names are made of letters, digits and `_`, and begin with a letter"
-BOUNDS = "bounds of time cannot be written; `next` goes one step ahead, `previously` one back"
+BOUNDS = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
+BEHIND = "a bound stands behind its operator, such as `always[<= 3 s] p`"
+OVER_TIME = "only operators over time take a bound, such as `always[<= 3 s]`"
+TWO_ENDS = "write `..` between the two ends, such as `[3 s .. 4 s]`"
+BY_SIGNS = "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
+CONDITIONAL = "a conditional is written `(1.5 m if built_up else 2 m)`"
+DIGITS = "a number's digits stand together, such as `1000`"
+ONE_VARIABLE = "it has one variable; put one inside the other: "
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
     ("p → q", "→", "write `implies` or `->`"),
     ("p == q", "==", COMPARED),
-    ("p = q", "=", COMPARED),
-    ("if p then q", "p", "write `p implies q` for `if p then q`"),
+    ("if p then q", "if", "write `p implies q` for `if p then q`"),
     ("eventualy p", "p", "did you mean `eventually`?"),
     ("p untl q", "untl", "did you mean `until`?"),
-    ("b-v", "-", NAMES),
-    ("1p", "1p", NAMES),
     ("p // why", "//", "a comment begins with `#`"),
     ("p <=> q", "<=>", "write `iff` or `<->`"),
     ("p ∧ q", "∧", "write `and` or `&`"),
@@ -34,18 +39,97 @@ FORMULAS = [
     ("p sinc q", "sinc", "did you mean `since`?"),
     ("p than q", "than", "did you mean `then`?"),
     ("p and then q", "then", "`then` stands alone between two phases: write `p then q`"),
-    ("if not p then q", "not", "write `p implies q` for `if p then q`"),
+    ("if not p then q", "if", "write `p implies q` for `if p then q`"),
     ("⧫ p", "⧫", "write `once` or `O`"),
     ("Previously p", "p", "did you mean `previously`?"),
     ("GHp p", "p", ""),
     ("OH p", "p", "`OH` is read as one name; write `O H`"),
-    ("always[<= 3 s] p", "[", BOUNDS),
-    ("O[<= 3 s] p", "[", BOUNDS),
-    ("p since[<= 3 s] q", "[", BOUNDS),
-    ("p U[<= 3 s] q", "[", BOUNDS),
-    ("p and [ q", "[", "write `always` or `G`"),
-    ("speed < 50", "<", "formulas are about signals and values; numbers cannot be compared"),
-    ("gap >= 2", ">=", "formulas are about signals and values; numbers cannot be compared"),
+    # Bounds.
+    ("always[3] p", "]", "say what it counts: `3 s` or `3 steps`"),
+    ("always[< 3 s] p", "<", "a bound includes its end: write `[<= 3 s]`"),
+    ("O[> 3 s] p", ">", "a bound includes its end: write `[>= 3 s]`"),
+    ("p U[= 3 s] q", "=", "for exactly that time write `[3 s]`"),
+    ("p since[3 s, 4 s] q", ",", TWO_ENDS),
+    ("p then[3 s to 4 s] q", "to", TWO_ENDS),
+    ("always[3..4 s] p", "..", "write the unit at both ends, such as `[3 s .. 4 s]`"),
+    ("always[3 s ..] p", "]", "without an upper end write `[>= 3 s]`"),
+    ("always[.. 3 s] p", "..", "without a lower end write `[<= 3 s]`"),
+    ("always[3 s p", "p", "close the bound with `]`"),
+    ("always[<= 3 s .. 4 s] p", "..", BOUNDS),
+    ("always[3 s + 1 s] p", "+", BOUNDS),
+    (
+        "once[<= -3 s] p",
+        "-",
+        "a bound counts forward, or back for `once` and its family: it has no sign",
+    ),
+    ("not[<= 3 s] p", "[", OVER_TIME),
+    ("p and[<= 3 s] q", "[", OVER_TIME),
+    ("[<= 3 s] p", "[", BEHIND),
+    ("always (p)[<= 3 s]", "[", BEHIND),
+    ("always <= 3 s p", "<=", "a bound stands in brackets, such as `always[<= 3 s]`"),
+    ("p within 3 s", "within", "write `eventually[<= 3 s] p`"),
+    ("within 10 s p", "10", "write `eventually[<= 10 s] p`"),
+    # Comparisons and arithmetic.
+    ("a < b < c", "<", "compare two at a time: write `a < b and b < c`"),
+    (
+        "p or 0 m < gap(v, w) <= 5 m and q",
+        "<=",
+        "compare two at a time: write `0 m < gap(v, w) and gap(v, w) <= 5 m`",
+    ),
+    ("a + b = c = d", "=", "compare two at a time: write `a + b = c and c = d`"),
+    ("a =< b", "=<", "write `<=`"),
+    ("gap => 3 m", "=>", "write `>=` for at least; `=>` would be `implies`"),
+    ("a <> b", "<>", "write `!=`"),
+    ("a =! b", "!", "write `!=`"),
+    ("a ≤ b", "≤", "write `<=`"),
+    ("a × b > 3", "×", "write `*`"),
+    ("a ** 2 > 3", "**", "powers cannot be written; arithmetic is linear"),
+    ("> 3", ">", "say what is compared, such as `speed <= 50 km/h`"),
+    ("speed 3 m", "3", BY_SIGNS),
+    ("gap(v) 1.5 m", "1.5", BY_SIGNS),
+    ("gap < 1,5 m", ",", "write a point: `1.5`"),
+    ("gap < .5 m", ".", "write `0.5`"),
+    ("gap < 1 000 m", "000", DIGITS),
+    ("gap < 1'000 m", "'", DIGITS),
+    ("gap < 1_000 m", "m", DIGITS),
+    ("gap > 2 s speed", "speed", "write `s * speed` for a product"),
+    ("gap > +3 m", "+", "delete the `+`"),
+    # Conditionals.
+    (
+        "gap > 1.5 m if town else 2 m",
+        "if",
+        "a conditional stands in parentheses: `(1.5 m if built_up else 2 m)`",
+    ),
+    (
+        "gap > (1.5 m if town)",
+        ")",
+        "a conditional ends with what holds otherwise: `1.5 m if built_up else 2 m`",
+    ),
+    ("gap > (town ? 1.5 m : 2 m)", "?", CONDITIONAL),
+    ("gap > (if town then 1.5 m else 2 m)", "if", CONDITIONAL),
+    ("p if q", "if", "write `q implies p` for `p if q`"),
+    # Some, every, count.
+    ("exists x: T (p)", "x", "write `some x: vehicle (…)`"),
+    ("∀ x: T (p)", "∀", "write `every x: vehicle (…)`"),
+    ("for all x: T (p)", "all", "write `every x: vehicle (…)`"),
+    ("some x in T (p)", "in", "it is written `some x: vehicle (…)`"),
+    (
+        "some x: T p(x)",
+        "p",
+        "what is said of it stands in parentheses: `some x: vehicle (…)`",
+    ),
+    ("some x: T", "", "what is said of it stands in parentheses: `some x: vehicle (…)`"),
+    ("count(x: T (p)) > 2", "(", "it is written `count x: vehicle (…)`"),
+    ("every x, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
+    ("every x: T, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
+    # Arguments and what joins formulas.
+    ("p(q(v))", "(", "an argument is a name; it has no arguments of its own"),
+    ("p(v w)", "w", "separate the names by `,`"),
+    ("p()", ")", "without arguments there are no parentheses"),
+    ("p(1)", "1", NAMES),
+    ("p, q", ",", "formulas are joined by `and`"),
+    ("p; q", ";", "formulas are joined by `and`"),
+    ("{ p }", "{", "a formula stands in parentheses, or alone, but not in braces"),
     ("weak p", "weak", "`weak` stands before `until`, `next` or `previously`"),
     ("p weak since q", "weak", "`weak` stands before `until`, `next` or `previously`"),
     ("p strong until q", "strong", "`strong` stands before `release`"),
@@ -69,6 +153,9 @@ def test_in_a_formula(text, underlined, way_out):
     check(one, underlined, way_out)
 
 
+HEAD = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
+SCOPES = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
+ONE_VALUE = "a state gives a quantity one value, such as `speed = 50 km/h`"
 LINES = [
     ("title 'A'", "'A'", 'texts stand in straight double quotes: "…"'),
     ('title = "A"', "=", "delete the `=`"),
@@ -90,7 +177,8 @@ LINES = [
     ("use my words", "words", "a name is one word, such as `my_words`"),
     ('law "A" 2020', "2020", 'the line is written `law "…"` or `law "…" as of 2006-03-28`'),
     ("hard rule no-u { require p }", "-", NAMES),
-    ('hard rule "A" { require p }', '"A"', NAMES),
+    ('hard rule "A" { require p }', '"A"', "write `A` without quotes"),
+    ('hard rule "a b" { require p }', '"a b"', NAMES),
     ("hard rule a { p -> q }", "p", "a formula stands behind `require`"),
     ("colour", "colour", "an enumeration is declared by `colour is one of a, b`"),
     ("hard a { require p }", "a", "write `hard rule a`"),
@@ -136,6 +224,78 @@ LINES = [
     ('hard rule a { require p says "a "b" c" }', "b", 'a quote inside a text is written \\"'),
     ("hard rule a { require p; }", ";", "delete the `;`"),
     ("hard rule a { require p\nsay 'no' }", "say", "did you mean `says`?"),
+    # Header lines and what a rulebook does to the one that it extends.
+    ('extends "vienna"', '"vienna"', "write `vienna` without quotes"),
+    ("traffic near", "near", FORMS["traffic"]),
+    ("semantics ltlf", "ltlf", FORMS["semantics"]),
+    ("semantics infinite", "infinite", FORMS["semantics"]),
+    ("step = 0.5 s", "=", FORMS["step"]),
+    ("priority a < b", "<", "the more important one stands first: write `b > a`"),
+    ("drop x", "x", FORMS["drop"]),
+    ("drop rule x", "", FORMS["drop"]),
+    ('drop rule because "y"', "because", FORMS["drop"]),
+    ("drop rule x because y", "y", 'put the text in double quotes: "…"'),
+    ('remove rule x because "y"', "remove", 'write `drop rule x because "…"`'),
+    ('soften rule x because "y" weight 2', "weight", FORMS["soften"]),
+    ("silent x", "x", FORMS["silent"]),
+    ('silent on rule x because "y"', "rule", FORMS["silent"]),
+    # Options, parameters, definitions.
+    ("option x = true", "true", "write `on`"),
+    ("option x on", "on", FORMS["option"]),
+    ("param x 3 m", "3", FORMS["param"]),
+    ("param x := 3 m", ":=", "write `=` for `:=`"),
+    ("param x = 3 m from 2020-04-01", "from", IN_FORCE),
+    ("param x = 3 m in force 2020-04-01", "2020-04-01", IN_FORCE),
+    (
+        "param x = 3 m in force from 1.4.2020",
+        "1.4.2020",
+        "a date is written year-month-day, such as `2006-03-28`",
+    ),
+    ("set x to on", "to", "write `=` for `to`"),
+    (
+        "define f(x) { p }",
+        "{",
+        "write `=` before the formula, and no braces: `define NAME = formula`",
+    ),
+    ("define f(x): p", ":", "write `=` for `:`"),
+    ("define f(x) =", "", FORMS["define"]),
+    ("function f(x) = p", "function", "write `define NAME = formula`"),
+    ("quantity x in m default 3 m", "m", "the number is in the quantity's own unit: `default 3`"),
+    ("type car extends vehicle", "extends", FORMS["type"]),
+    # Rules.
+    ("override x { require p }", "x", "write `override rule x`"),
+    ("override hard x { require p }", "x", "write `override hard rule x`"),
+    ("hard override rule x {}", "override", "`override` comes first: `override hard rule`"),
+    ("hard rule a weight 2 in b { require p }", "in", HEAD),
+    ("hard rule a { require p unless q at the end }", "at", SCOPES),
+    ("hard rule a { require p unless q at any point }", "at", SCOPES),
+    ("hard rule a { require p unless q during }", "during", SCOPES),
+    ("hard rule a { require p unless q throught }", "throught", "did you mean `throughout`?"),
+    (
+        "hard rule a { require p unless throughout q }",
+        "throughout",
+        "the scope stands behind the formula, such as `unless p throughout`",
+    ),
+    ("hard rule a { require p except q }", "except", "an exception is written `unless formula`"),
+    ("hard rule a { require p from 2020-01-01 }", "from", IN_FORCE),
+    ("hard rule a { require p\nin froce from 2020-01-01 }", "froce", "did you mean `force`?"),
+    ("hard rule a { require: p }", ":", "delete the `:`"),
+    ("hard rule a { require p; unless q }", ";", "delete the `;`"),
+    ("hard rule a { require p unless q\n  at the end }", "at", SCOPES),
+    ("gap = 3 m", "gap", "write `param gap = …` or `define gap = …`"),
+    ("hard rule a { require p accept { v > 3 m } }", ">", ONE_VALUE),
+    ("hard rule a { require p accept { v 3 m } }", "3", ONE_VALUE),
+    ("hard rule a { require p accept { v = w } }", "w", ONE_VALUE),
+    (
+        "hard rule a { require p accept { not v = 3 m } }",
+        "=",
+        "a quantity has one value in a state; write `=` without `not`",
+    ),
+    (
+        'hard rule a { require p accept (v: T) "x" { p } }',
+        '"x"',
+        'the label stands before the objects: `accept "…" (v: vehicle)`',
+    ),
 ]
 
 
@@ -147,10 +307,17 @@ def test_in_a_line(line, underlined, way_out):
 
 
 EXPECTED = [
-    ("p and", "expected an atom, `not`, or `(`"),
+    ("p and", "expected an atom, a number, `not`, or `(`"),
     ("p q", "expected an operator such as `and`"),
-    ("(p", "expected `)`"),
-    ("", "expected an atom, `not`, or `(`"),
+    ("(p", "expected `)` or an operator such as `and`"),
+    ("", "expected an atom, a number, `not`, or `(`"),
+    ("always[<= 3 s", "expected `]`"),
+    ("always[", "expected a name, a number, `<=`, or `>=`"),
+    ("p U", "expected an atom, a number, `not`, or `(`"),
+    ("speed >", "expected a name, a number, or `(`"),
+    ("gap >= 2 s *", "expected a name, a number, or `(`"),
+    ("count x", "expected `:`"),
+    ("(2 m if p", "expected `else` or an operator such as `and`"),
 ]
 
 

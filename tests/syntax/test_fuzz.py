@@ -1,19 +1,32 @@
 """Whatever the bytes are: a rulebook, or one RulecError whose diagnostics have places, in time."""
 
+import re
 import unicodedata
 from pathlib import Path
 
 import pytest
+from constructs import CLAUSES, HEADER, ITEMS
 from hypothesis import given
 from hypothesis import strategies as st
 from steps import grows_in_proportion
 
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, Source
 from rulec.report.diagnostics import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
 from rulec.syntax import decode, parse
+from rulec.syntax.keywords import CONTEXTUAL, RESERVED, SYMBOLS
+from rulec.syntax.scanner import scan
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
+SYNTAX = [
+    "".join(f"{construct.right[0]}\n" for construct in group) for group in (HEADER, ITEMS, CLAUSES)
+]
+ONE_REQUIRE = re.sub(r"(?m)^require (?!always).*\n", "", SYNTAX[2])
+BOOK = (
+    f"rulebook fuzz\n{SYNTAX[0]}{SYNTAX[1]}hard rule a (v: vehicle) in b weight 2 {{\n"
+    f"{ONE_REQUIRE}}}\noverride rule c {{ unless p }}\n"
+)
+TOKENS = [one.text for one in scan(Source("fuzz.rules", BOOK.replace("km/h", "m")))]
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]
 FRAGMENTS = st.sampled_from(
     [
@@ -77,6 +90,69 @@ def test_mutated_rulebooks(data):
         end = min(len(text), start + data.draw(st.integers(0, 12)))
         text = text[:start] + data.draw(FRAGMENTS | st.just("")) + text[end:]
     judge(text)
+
+
+def read(text):
+    """Text to tree: the mistakes have places within the file, in order."""
+    _, found = parse(Source("fuzz.rules", text))
+    lines = text.split("\n")
+    for one in found:
+        place = one.place
+        assert 1 <= place.line <= len(lines)
+        assert 1 <= place.column <= len(lines[place.line - 1]) + 1
+        assert one.message
+        assert not NAMES_OF_TOKENS.search(one.expected)
+    assert [one.place.start for one in found] == sorted(one.place.start for one in found)
+    return found
+
+
+NAMES_OF_TOKENS = re.compile(r"`([lr](sqb|par|brace)|at_\w+|on_topic|equals|greater|less|\$end)`")
+MORE_TOKENS = st.sampled_from(
+    [
+        *sorted(RESERVED | CONTEXTUAL),
+        *SYMBOLS.values(),
+        *("[", "]", "[]", "..", "<=", ">=", "<", ">", "=", "!=", "==", "=<", "<=>", "+", "-", "*"),
+        *("(", ")", "{", "}", ",", ";", ":", ":=", "?", "**", "%", "1.5", "3", "2020-04-28", '"a"'),
+        *('"', "'", "\n", "name", "km/h", "…", "\ud800"),
+    ]
+)
+
+
+def test_the_book_to_be_mutated_is_read():
+    assert read(BOOK) == ()
+    assert read(" ".join(TOKENS)) == ()
+
+
+@given(st.data())
+def test_tokens_left_out_doubled_swapped_and_put_in(data):
+    tokens = list(TOKENS)
+    for _ in range(data.draw(st.integers(1, 5))):
+        at = data.draw(st.integers(0, len(tokens) - 1))
+        match data.draw(st.sampled_from(["leave out", "double", "swap", "put in", "break"])):
+            case "leave out":
+                del tokens[at]
+            case "double":
+                tokens.insert(at, tokens[at])
+            case "swap":
+                other = data.draw(st.integers(0, len(tokens) - 1))
+                tokens[at], tokens[other] = tokens[other], tokens[at]
+            case "put in":
+                tokens.insert(at, data.draw(MORE_TOKENS))
+            case "break":
+                tokens.insert(at, "\n")
+    read(" ".join(tokens))
+
+
+@given(st.lists(MORE_TOKENS, max_size=60))
+def test_random_tokens(tokens):
+    read(" ".join(tokens))
+    read("rulebook a hard rule r { require " + " ".join(tokens))
+
+
+@given(st.integers(0, len(BOOK)), st.integers(0, len(BOOK)))
+def test_a_part_of_a_book(first, last):
+    read(BOOK[first:last])
+    read(f"rulebook a\n{BOOK[first:]}")
 
 
 @given(st.sampled_from(TEXTS), st.data())

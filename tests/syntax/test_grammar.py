@@ -1,17 +1,16 @@
-"""The grammar file as a whole: what the pieces add up to, and its list of words."""
+"""The grammar file as a whole: what the pieces add up to."""
 
 import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from lark import Lark
 from lark.exceptions import UnexpectedInput
 from syntax_trees import files
 
 from rulec.resources import grammar_file
 from rulec.syntax import print_file
-from rulec.syntax.keywords import RESERVED
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 WHOLE = Lark(GRAMMAR, parser="lalr", lexer="contextual", start="file")
@@ -20,7 +19,11 @@ PROGRAMS = Path(__file__).parent.parent / "programs"
 
 @given(files)
 def test_the_whole_grammar_takes_what_is_printed(file):
-    WHOLE.parse(print_file(file))
+    text = print_file(file)
+    # Between pieces a line's end matters, which the grammar does not see: a name on the line behind
+    # a number could be its unit.
+    assume(not re.search(r"\d\s*\n\s*[^\W\d]\w*(\(.*\))? is one of", text))
+    WHOLE.parse(text)
 
 
 @pytest.mark.parametrize("path", sorted(PROGRAMS.glob("good/*.rules")), ids=lambda path: path.stem)
@@ -29,13 +32,12 @@ def test_the_whole_grammar_takes_good_programs(path):
 
 
 @pytest.mark.parametrize(
-    "name", ["arrows", "braces_missing", "braces_too_many", "half_formulas", "reserved", "states"]
+    "name",
+    [
+        *("arrows", "braces_missing", "braces_too_many", "half_formulas", "reserved", "states"),
+        *("bounds", "comparisons", "exceptions", "overlays", "provisions", "quantifiers"),
+    ],
 )
 def test_the_whole_grammar_rejects_bad_syntax(name):
     with pytest.raises(UnexpectedInput):
         WHOLE.parse((PROGRAMS / "bad" / f"{name}.rules").read_text(encoding="utf-8"))
-
-
-def test_names_leave_out_exactly_the_reserved_words():
-    (words,) = re.findall(r"^NAME: /\(\?!\(\?:([^)]*)\)", GRAMMAR, re.MULTILINE)
-    assert set(words.split("|")) == RESERVED

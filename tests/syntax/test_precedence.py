@@ -42,6 +42,31 @@ SAME = [
     ("a & b & c", "(a & b) & c"),
     ("a | b | c", "(a | b) | c"),
     ("a ^ b ^ c", "(a ^ b) ^ c"),
+    # Comparisons bind tighter than operators of truth, arithmetic tighter than comparisons.
+    ("not a < b", "not (a < b)"),
+    ("always a < b and c", "(always (a < b)) and c"),
+    ("a < b until c = d", "(a < b) until (c = d)"),
+    ("a + b * c - d", "(a + (b * c)) - d"),
+    ("a - b - c", "(a - b) - c"),
+    ("a / b / c * d", "((a / b) / c) * d"),
+    ("a < b + c", "a < (b + c)"),
+    ("-a * b", "(-a) * b"),
+    ("a - -b", "a - (-b)"),
+    ("a--b", "a - (-b)"),
+    ("2 s * speed + gap >= 1.5 m", "((2 s * speed) + gap) >= 1.5 m"),
+    ("3 m/s / 2 s", "(3 m/s) / (2 s)"),
+    # A conditional binds loosest; the condition stands between its words.
+    ("(a if p or q else b if r else c)", "(a if (p or q) else (b if r else c))"),
+    ("(a + b if p else c < d)", "((a + b) if p else (c < d))"),
+    # Bounds belong to the operator before them.
+    ("always[<= 3 s] p until[1 s .. 2 s] q", "(always[<= 3 s] p) until[1 s .. 2 s] q"),
+    ("a then[2 s] b then c", "a then[2 s] (b then c)"),
+    ("weak next[2 steps] not p", "weak next[2 steps] (not p)"),
+    ("G[>=1s]p", "always[>= 1 s] p"),
+    ("a U[wait] b", "a until[wait] b"),
+    # Counting.
+    ("count x: T (p or q) + 1 > 2 and r", "((count x: T ((p or q)) + 1) > 2) and r"),
+    ("not some x: T (p) until q", "(not some x: T (p)) until q"),
     # One operator, several spellings.
     ("a && b || c", "a and b or c"),
     ("[] p", "always p"),
@@ -81,6 +106,14 @@ DIFFERENT = [
     ("a -> b -> c", "(a -> b) -> c"),
     ("a & (b & c)", "a & b & c"),
     ("Gp", "G p"),
+    ("a - (b - c)", "a - b - c"),
+    ("-(a * b)", "-a * b"),
+    ("a * (b + c)", "a * b + c"),
+    ("next[2 steps] p", "next p"),
+    ("eventually[3 s] p", "eventually[<= 3 s] p"),
+    ("eventually[3 s] p", "eventually[3 s .. 3 s] p"),
+    ("always[<= 3 s] p", "always[0 s .. 3 s] p"),
+    ("(a if p else b) > c", "(a if p else b > c)"),
 ]
 
 

@@ -219,7 +219,7 @@ def names_of(propositions: Iterable[Proposition]) -> dict[Proposition, str]:
     """A name for each: its text, told apart from earlier ones."""
     names: dict[Proposition, str] = {}
     taken: set[str] = set()
-    for one in propositions:
+    for one in dict.fromkeys(propositions):
         names[one] = fresh_name(str(one) or "comparison", taken)
         taken.add(names[one])
     return names

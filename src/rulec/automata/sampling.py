@@ -9,24 +9,27 @@ from rulec.automata.letters import count_letters, letters_with, propositions_of
 from rulec.automata.machine import Machine
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics, holds
-from rulec.logic.timing import reach
+from rulec.logic.timing import operations_of, range_of
 
-N_WORDS = 300
-_LONGEST = 400
+MOST_WORDS, FEWEST_WORDS = 300, 40
+_EFFORT = 200_000
+"""About so many values are evaluated altogether, if that is possible with the fewest words."""
 
 
 def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
-    """Does the machine judge some hundred random words, always the same ones, as it should?
+    """Does the machine judge random words, always the same ones, as it should?
 
-    Letters stay for a while: of words that change with every letter few are long enough about one
-    thing for a bound to matter.
+    Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
     """
     chance = random.Random(0)
     n_letters = count_letters(machine.reads)
     sets = letters_with(machine.reads, propositions_of(formula))
-    longest = min(2 * reach(formula) + 8, _LONGEST)
-    for _ in range(N_WORDS):
-        numbers = list(_word(chance, n_letters, chance.randint(1, longest)))
+    bounds = _bounds(formula)
+    size = 1 + sum(1 for _ in operations_of(formula))
+    affordable = _EFFORT // (size * (8 + max(bounds, default=0)))
+    n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
+    for _ in range(n_words):
+        numbers = list(_word(chance, n_letters, bounds))
         word: list[frozenset[Proposition]] = [
             frozenset(one for one, letters in sets.items() if letters >> number & 1)
             for number in numbers
@@ -36,15 +39,21 @@ def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
     return True
 
 
-def _word(chance: random.Random, n_letters: int, length: int) -> Iterator[int]:
-    stay = chance.choice((0.0, 0.5, 0.9, 0.98))
+def _bounds(formula: Formula) -> list[int]:
+    """The numbers of steps that it makes a difference by, and those around them."""
+    ranges = {range_of(one) for one in operations_of(formula)}
+    numbers = {number for limits in ranges for number in limits if number is not None}
+    return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})
+
+
+def _word(chance: random.Random, n_letters: int, bounds: list[int]) -> Iterator[int]:
     # Between a few letters more happens twice than between all of them.
     some = [chance.randrange(n_letters) for _ in range(chance.randint(1, 4))]
-    number = chance.choice(some)
-    for _ in range(length):
-        yield number
-        if chance.random() >= stay:
-            number = chance.choice(some)
+    for _ in range(chance.randint(1, 8)):
+        number = chance.choice(some)
+        times = chance.choice(bounds) if bounds and chance.random() < 0.5 else 1
+        for _ in range(times):
+            yield number
 
 
 def verdict(machine: Machine, numbers: list[int]) -> bool:

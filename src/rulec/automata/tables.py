@@ -7,7 +7,7 @@ Letters with equal columns are merged, then states that no word tells apart.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.machine import Machine, NumberRead, Read, trap
@@ -130,14 +130,11 @@ def _minimise(
 
     Moore's partition refinement, with the verdicts as the machine's output.
     """
-    blocks = _number([tuple(row) for row in accepting])
+    blocks = _number(map(tuple, accepting))
+    columns = list(zip(*following, strict=True))
     while True:
-        refined = _number(
-            [
-                (block, *(blocks[t] for t in row))
-                for block, row in zip(blocks, following, strict=True)
-            ]
-        )
+        targets = (map(blocks.__getitem__, column) for column in columns)
+        refined = _number(zip(blocks, *targets, strict=True))
         if max(refined) == max(blocks):
             break
         blocks = refined
@@ -157,6 +154,6 @@ def _minimise(
     )
 
 
-def _number(keys: Sequence[tuple[object, ...]]) -> list[int]:
+def _number(keys: Iterable[tuple[object, ...]]) -> list[int]:
     numbers: dict[tuple[object, ...], int] = {}
     return [numbers.setdefault(key, len(numbers)) for key in keys]

@@ -113,6 +113,29 @@ def rulebook_option(function: Decorated) -> Decorated:
     return option(function)
 
 
+def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
+    """A date in ISO form; empty if none is given."""
+    from rulec.syntax.literals import why_not_a_day
+
+    wrong = why_not_a_day(value) if value else ""
+    if wrong:
+        raise click.BadParameter(f"`{value}` is no date: {wrong}")
+    return value
+
+
+def at_option(function: Decorated) -> Decorated:
+    """``--at DATE``: the day whose law it is."""
+    option = click.option(
+        "--at",
+        default="",
+        callback=_day,
+        metavar="DATE",
+        help="The day whose law it is: rules and parameters that were not in force then are left "
+        "out.  [default: that of the rulebook's `law` line, else today]",
+    )
+    return option(function)
+
+
 def json_option(function: Decorated) -> Decorated:
     """``--json``: output for machines."""
     return click.option("--json", "json_output", is_flag=True, help="Print JSON.")(function)

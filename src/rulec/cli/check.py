@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from rulec.cli.arguments import complete_sources
+from rulec.cli.arguments import at_option, complete_sources
 from rulec.cli.exit_status import ExitStatus
 from rulec.report.formats import FORMATS
 
@@ -29,7 +29,8 @@ from rulec.report.formats import FORMATS
     show_default=True,
     help="What makes the exit status 1.",
 )
-def command(sources: tuple[str, ...], output_format: str, fail_on: str) -> int:
+@at_option
+def command(sources: tuple[str, ...], output_format: str, fail_on: str, at: str) -> int:
     """Check rulebooks and vocabularies, and write nothing.
 
     Each is a name, a file, a folder (all .rules files in it), or `-` for standard input.
@@ -42,7 +43,7 @@ def command(sources: tuple[str, ...], output_format: str, fail_on: str) -> int:
     from rulec.settings import search_path
     from rulec.syntax import MAX_BYTES
 
-    done = check(sources, lambda: sys.stdin.buffer.read(MAX_BYTES + 1), search_path())
+    done = check(sources, lambda: sys.stdin.buffer.read(MAX_BYTES + 1), search_path(), at)
     color = wants_color(sys.stdout)
     text = render(done.findings, output_format, color=color, complete=not done.unread)
     if text:

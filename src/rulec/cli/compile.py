@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import complete_rulebooks
+from rulec.cli.arguments import at_option, complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
@@ -45,7 +45,8 @@ def _seconds(
     metavar="DIR",
     help="The folder for the files, made if need be.",
 )
-def command(rulebook: str, output: str, step_s: Fraction | None) -> None:
+@at_option
+def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
@@ -58,6 +59,6 @@ def command(rulebook: str, output: str, step_s: Fraction | None) -> None:
 
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
-    compiled = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s)
+    compiled = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s, at)
     for path in write_compiled(compiled, Path(output)):
         print_result(f"wrote {path}")

@@ -19,6 +19,7 @@ VERBS = {
     "compile": "Compile a rulebook to automata files.",
     "completion": "Print the script that completes rulec's commands in a shell.",
     "explain": "Explain a code of a message.",
+    "fmt": "Format rulebooks and vocabularies.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
     "new": "Write a rulebook to start from.",

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from rulec.cli.arguments import graph_options, json_option, rulebook_option
+from rulec.cli.arguments import at_option, graph_options, json_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
 
 
@@ -22,8 +22,9 @@ from rulec.cli.exit_status import ExitStatus
     help="List the N cheapest satisfying maneuvers.",
 )
 @json_option
+@at_option
 def command(
-    scenario: str, rulebook: str, n_listed: int | None, json_output: bool, **options: Any
+    scenario: str, rulebook: str, n_listed: int | None, json_output: bool, at: str, **options: Any
 ) -> int:
     """Count the maneuvers of SCENARIO (a name or a file) that satisfy every hard rule.
 
@@ -35,7 +36,7 @@ def command(
     from rulec.workflow import find_maneuvers, machines
 
     begin = time.perf_counter()
-    rules = machines(rulebook, search_path(), print_diagnostics)
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
     found = find_maneuvers(scenario, rules, **options)
     listed = None if n_listed is None else found.cheapest(n_listed)
     seconds = time.perf_counter() - begin

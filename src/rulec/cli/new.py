@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from rulec.cli.arguments import complete_rulebooks
+
 
 @click.command()
 @click.argument("name")
@@ -18,7 +20,14 @@ import click
     show_default="the working folder",
     help="The folder for NAME.rules, made if need be.",
 )
-def command(name: str, output: str) -> None:
+@click.option(
+    "--extends",
+    "base",
+    metavar="R",
+    help="Build upon this rulebook: its name.",
+    shell_complete=complete_rulebooks,
+)
+def command(name: str, output: str, base: str | None) -> None:
     """Write NAME.rules, a rulebook that checks and tests, to be changed into your own.
 
     An existing file is left alone.
@@ -26,9 +35,14 @@ def command(name: str, output: str) -> None:
     from rulec.diagnostics import Diagnostic, Place, RulecError
     from rulec.files import make_folder, written_whole
     from rulec.report.console import print_result
-    from rulec.rulebook.template import new_rulebook
+    from rulec.rulebook.template import new_rulebook, new_rulebook_upon
+    from rulec.settings import search_path
 
-    text = new_rulebook(name, datetime.now().astimezone().date())
+    today = datetime.now().astimezone().date()
+    if base is None:
+        text = new_rulebook(name, today)
+    else:
+        text = new_rulebook_upon(name, base, today, (Path(output), *search_path()))
     path = Path(output) / f"{name}.rules"
     if path.exists() or path.is_symlink():
         way_out = "give another name, or another folder with --output"

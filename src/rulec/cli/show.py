@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import complete_rulebooks, complete_rules, json_option
+from rulec.cli.arguments import at_option, complete_rulebooks, complete_rules, json_option
 
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook
@@ -42,12 +42,14 @@ WIDTH = 100
     help="Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
 )
 @json_option
+@at_option
 def command(
     rulebook: str,
     rule: str | None,
     automaton_format: str | None,
     output: str | None,
     json_output: bool,
+    at: str,
 ) -> None:
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
 
@@ -60,7 +62,7 @@ def command(
         automaton_format = SUFFIXES.get(Path(output).suffix)
     if json_output and automaton_format is not None:
         raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
-    book, compiled = _read(rulebook)
+    book, compiled = _read(rulebook, at)
     chosen = _chosen(book, rule)
     width = _width(output)
     if chosen is None and automaton_format is not None:
@@ -84,7 +86,7 @@ def command(
     _put(text, output)
 
 
-def _read(reference: str) -> tuple[Rulebook, CompiledRulebook | None]:
+def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     """A rulebook as meant; one that was compiled long ago comes with its machines."""
     from rulec.automata.compiled_file import read_compiled
     from rulec.rulebook.loader import load_rulebook
@@ -92,7 +94,7 @@ def _read(reference: str) -> tuple[Rulebook, CompiledRulebook | None]:
     from rulec.settings import search_path
 
     if Path(reference).suffix != ".json":
-        return load_rulebook(reference, search_path()), None
+        return load_rulebook(reference, search_path(), at), None
     compiled = read_compiled(Path(reference))
     rules = tuple(
         Rule(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import complete_rulebooks
+from rulec.cli.arguments import at_option, complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -57,6 +57,7 @@ def _number(
     metavar="PERCENT",
     help="Fail if the examples cover less; implies --coverage.",
 )
+@at_option
 def command(
     rulebooks: tuple[str, ...],
     pattern: str | None,
@@ -64,6 +65,7 @@ def command(
     fail_on_empty: bool,
     with_coverage: bool,
     threshold: float | None,
+    at: str,
 ) -> int:
     """Run the accept and reject examples of every RULEBOOK: a name, or the path of a source.
 
@@ -77,7 +79,7 @@ def command(
     compiled = next((one for one in rulebooks if one.endswith(".json")), None)
     if compiled is not None:
         raise click.UsageError(f"`{compiled}` is compiled and has no examples; give its source")
-    runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern)) is not None]
+    runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
     print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
@@ -90,7 +92,7 @@ def command(
     return ExitStatus.FOUND if failed or short else ExitStatus.OK
 
 
-def _run(rulebook: str, pattern: str | None) -> ExampleRun | None:
+def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
     from rulec.diagnostics import RulecError
     from rulec.report.console import print_diagnostics
@@ -98,7 +100,7 @@ def _run(rulebook: str, pattern: str | None) -> ExampleRun | None:
     from rulec.workflow import run_examples
 
     try:
-        run = run_examples(rulebook, search_path(), pattern)
+        run = run_examples(rulebook, search_path(), pattern, at)
     except RulecError as error:
         print_diagnostics(error.diagnostics)
         return None

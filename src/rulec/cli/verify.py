@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import json_option, rulebook_option
+from rulec.cli.arguments import at_option, json_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -36,8 +36,9 @@ if TYPE_CHECKING:
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @json_option
+@at_option
 def command(
-    files: tuple[str, ...], rulebook: str, n_explained: int | None, json_output: bool
+    files: tuple[str, ...], rulebook: str, n_explained: int | None, json_output: bool, at: str
 ) -> int:
     """Judge the traces in FILE..., one JSON object a line; `-` is standard input.
 
@@ -55,7 +56,7 @@ def command(
     from rulec.trace import Trace
     from rulec.workflow import machines
 
-    rules = machines(rulebook, search_path(), print_diagnostics)
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1

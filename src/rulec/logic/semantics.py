@@ -47,20 +47,29 @@ def truth_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
     """The formula's truth value at each of the word's instants. ValueError as for ``holds``."""
-    return values_of_parts(formula, word, semantics)[formula]
+    known = _values(formula, word, semantics)
+    return known[formula][: len(word)]
 
 
 def values_of_parts(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
     """The same for the formula and every part of it. ValueError as for ``holds``."""
+    known = _values(formula, word, semantics)
+    return {part: values[: len(word)] for part, values in known.items()}
+
+
+def _values(
+    formula: Formula, word: Sequence[Letter], semantics: Semantics
+) -> dict[Formula, list[bool]]:
+    """As ``values_of_parts``, and on beyond the word's end until nothing changes any more."""
     if not word:
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"
     settling = [] if ends else [word[-1]] * _steps_to_settle(formula)
     known: dict[Formula, list[bool]] = {}
     _evaluate(formula, [*word, *settling], ends, known)
-    return {part: values[: len(word)] for part, values in known.items()}
+    return known
 
 
 def _steps_to_settle(formula: Formula) -> int:
@@ -89,23 +98,25 @@ def _evaluate(
     formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
 ) -> list[bool]:
     """Truth values on a word that ends with its last instant, or goes on like it for ever."""
-    if formula not in known:
-        match formula:
-            case Atom() | Comparison():
-                values = [formula in letter for letter in word]
-            case Same():
-                raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
-            case Constant(value):
-                values = [value] * len(word)
-            case Unary(operator, operand):
-                inner = _evaluate(operand, word, ends, known)
-                values = _unary(operator, inner, range_of(formula), ends)
-            case Binary(operator, left, right):
-                first = _evaluate(left, word, ends, known)
-                second = _evaluate(right, word, ends, known)
-                values = _binary(operator, first, second, range_of(formula), ends)
-        known[formula] = values
-    return known[formula]
+    found = known.get(formula)
+    if found is not None:
+        return found
+    match formula:
+        case Atom() | Comparison():
+            values = [formula in letter for letter in word]
+        case Same():
+            raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+        case Constant(value):
+            values = [value] * len(word)
+        case Unary(operator, operand):
+            inner = _evaluate(operand, word, ends, known)
+            values = _unary(operator, inner, range_of(formula), ends)
+        case Binary(operator, left, right):
+            first = _evaluate(left, word, ends, known)
+            second = _evaluate(right, word, ends, known)
+            values = _binary(operator, first, second, range_of(formula), ends)
+    known[formula] = values
+    return values
 
 
 def _unary(operator: UnaryOperator, values: list[bool], span: Range, ends: bool) -> list[bool]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
+from rulec.logic.adverbs import adverb, pattern_of
 from rulec.logic.english import (
     atom_in_english,
     comparison_in_english,
@@ -18,14 +19,12 @@ from rulec.logic.english import (
     lasting,
     listed,
     single_count,
-    span,
     spoken,
 )
 from rulec.logic.formula import (
     Atom,
     Binary,
     BinaryOperator,
-    Bound,
     Comparison,
     Constant,
     Formula,
@@ -47,9 +46,11 @@ class Shape(IntEnum):
     """Adverbs before one clause: they reach to the end."""
     JOINED = 2
     """Clauses joined by one ``and`` or ``or``."""
-    LINE = 3
+    REACHING = 3
+    """Adverbs before joined clauses."""
+    LINE = 4
     """Anything else that is one line."""
-    LIST = 4
+    LIST = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,26 @@ def sentence(formula: Formula, variables: Sequence[tuple[str, str]], related: Re
     return replace(body, text=f"{_for_every(variables, related)}{body.text}") if variables else body
 
 
+_WHEN = {
+    "initially": "at the start of the trace",
+    "at start": "at the start of the stretch that the rule guards",
+    "throughout": "throughout the stretch that the rule guards",
+    "at some point": "at some point of the stretch that the rule guards",
+    "at end": "at the end of the stretch that the rule guards",
+}
+
+
+def exemption(formula: Formula, scope: str) -> Phrase:
+    """An exception of a rule as a sentence, without its full stop; ``scope`` as in a rulebook."""
+    return _after(f"it does not count if, {_WHEN[scope]},", phrase(formula, inside=True))
+
+
+def condition(formula: Formula, *, guards: bool) -> Phrase:
+    """Where a rule applies at all; ``guards``: it guards a stretch of the trace."""
+    when = _WHEN["throughout" if guards else "initially"]
+    return _after(f"it counts only if, {when},", phrase(formula, inside=True))
+
+
 Related = Callable[[str, str], bool]
 
 
@@ -107,7 +128,7 @@ def phrase(formula: Formula, *, inside: bool) -> Phrase:
         case Unary(UnaryOperator.NOT, operand):
             return _after("it is not the case that", phrase(operand, inside=inside))
         case Unary(operator, operand, bound):
-            return _after(_adverb(operator, bound, inside=inside), phrase(operand, inside=True))
+            return _after(adverb(operator, bound, inside=inside), phrase(operand, inside=True))
         case Binary(BinaryOperator.AND | BinaryOperator.OR):
             return _chain(formula, inside=inside)
         case Binary(BinaryOperator.THEN):
@@ -119,7 +140,7 @@ def phrase(formula: Formula, *, inside: bool) -> Phrase:
         case Binary(BinaryOperator.XOR, left, right):
             return _between("either {} or {}, but not both", left, right, inside=inside)
         case Binary(operator, left, right, bound):
-            return _between(_until_like(operator, bound, inside=inside), left, right, inside=True)
+            return _between(pattern_of(operator, bound, inside=inside), left, right, inside=True)
         case Comparison() if (count := single_count(formula)) is not None:
             there_are = counted(formula, count)
             lead = there_are if inside else f"at the start {there_are}"
@@ -150,11 +171,11 @@ def _clause(formula: Formula, *, holds: bool) -> str | None:
 def _after(lead: str, scope: Phrase) -> Phrase:
     """Words at the head of a line, which reach to its end, or over the list that it introduces."""
     if scope.shape is Shape.JOINED and lead.endswith("that"):
-        return Phrase(f"{lead} {_together(scope)}", Shape.LINE)
+        return Phrase(f"{lead} {_together(scope)}", Shape.REACHING)
     # A pause is made where more than a clause follows, unless there is one or `that` forbids it.
-    runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith("it ")
+    runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith(("it ", "there "))
     pause = "" if runs_on or lead.endswith(("that", "which", ",")) else ","
-    shape = Shape.LINE if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
+    shape = Shape.REACHING if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
     return replace(scope, text=f"{lead}{pause} {scope.text}", shape=shape)
 
 
@@ -164,73 +185,6 @@ def _together(joined: Phrase) -> str:
         return f"either {joined.text}"
     pair = joined.n_clauses == 2
     return f"both {joined.text}" if pair else f"all of this is so: {joined.text}"
-
-
-def _adverb(operator: UnaryOperator, bound: Bound | None, *, inside: bool) -> str:
-    later = "later" if inside else "after the start"
-    match operator, bound:
-        case UnaryOperator.ALWAYS, None:
-            return "from that time on always" if inside else "at all times"
-        case UnaryOperator.ALWAYS, Bound():
-            return f"at all times {span(bound, later)}"
-        case UnaryOperator.NEVER, None:
-            return f"{'from that time on ' if inside else ''}it never happens that"
-        case UnaryOperator.NEVER, Bound():
-            return f"at no time {span(bound, later)} does it happen that"
-        case UnaryOperator.EVENTUALLY, None:
-            return "at that time or later" if inside else "at some time"
-        case UnaryOperator.EVENTUALLY, Bound():
-            return f"at some time {span(bound, later)}"
-        case UnaryOperator.NEXT, None:
-            return "at the next moment"
-        case UnaryOperator.NEXT, Bound():
-            return span(bound, later)
-        case UnaryOperator.WEAK_NEXT, None:
-            return "at the next moment, if there is one,"
-        case UnaryOperator.WEAK_NEXT, Bound():
-            return f"{span(bound, later)}, if the trace lasts that long,"
-        case UnaryOperator.ONCE, None:
-            return "at that time or before"
-        case UnaryOperator.ONCE, Bound():
-            return f"at some time {span(bound, 'before')}"
-        case UnaryOperator.HISTORICALLY, None:
-            return "up to that time always"
-        case UnaryOperator.HISTORICALLY, Bound():
-            return f"at all times {span(bound, 'before')}"
-        case UnaryOperator.PREVIOUSLY, None:
-            return "at the moment before"
-        case UnaryOperator.PREVIOUSLY, Bound():
-            return span(bound, "before")
-        case UnaryOperator.WEAK_PREVIOUSLY, None:
-            return "at the moment before, if there was one,"
-        case UnaryOperator.WEAK_PREVIOUSLY, Bound():
-            return f"{span(bound, 'before')}, if the trace had begun,"
-    raise AssertionError(f"{operator} is not about another time")
-
-
-def _until_like(operator: BinaryOperator, bound: Bound | None, *, inside: bool) -> str:
-    """The pattern of a line, with the left operand's place before the right one's."""
-    later = "later" if inside else "after the start"
-    when = "" if bound is None else f" at some time {span(bound, later)}"
-    always = "at all times" if bound is None else f"at all times {span(bound, later)}"
-    end = None if bound is None or bound.high is None else bound.high
-    first = "" if bound is None or end is None else span(replace(bound, low=end * 0), later)
-    match operator:
-        case BinaryOperator.UNTIL if bound is None:
-            return "{} until, sooner or later, {}"
-        case BinaryOperator.UNTIL:
-            return f"{{}} until,{when}, {{}}"
-        case BinaryOperator.WEAK_UNTIL:
-            ever = f"at all times {first}" if first else "for ever"
-            return f"{{}} {ever}, or only until,{when or ' at some time'}, {{}}"
-        case BinaryOperator.RELEASE:
-            return f"unless released before by a moment at which {{}}, {always} {{}}"
-        case BinaryOperator.STRONG_RELEASE:
-            come = f", which must come {first}," if first else ", which must come,"
-            return f"unless released before by a moment{come} at which {{}}, {always} {{}}"
-        case _:
-            before = "" if bound is None else f" a moment {span(bound, 'before')} at which"
-            return f"{{}} ever since{before} {{}}"
 
 
 def _between(pattern: str, left: Formula, right: Formula, *, inside: bool) -> Phrase:
@@ -254,8 +208,8 @@ def _placed(pattern: str, sides: Sequence[Phrase], most: Shape) -> Phrase:
 
 
 def _condition(left: Phrase, right: Phrase) -> Phrase:
-    if left.shape > Shape.JOINED:
-        return _placed("if {}, then {}", (left, right), Shape.JOINED)
+    if left.shape > Shape.REACHING:
+        return _placed("if {}, then {}", (left, right), Shape.REACHING)
     shape = Shape.LIST if right.shape is Shape.LIST else Shape.LINE
     return replace(right, text=f"if {left.text}, then {right.text}", shape=shape)
 

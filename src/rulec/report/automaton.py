@@ -7,6 +7,7 @@ from typing import Literal
 
 from rulec.automata.compiled import CompiledRule
 from rulec.report.conditions import Wording
+from rulec.report.excerpt import visible
 from rulec.runtime.edges import edges
 from rulec.vocabulary import Vocabulary
 
@@ -54,7 +55,7 @@ def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
             Transition(
                 edge.source,
                 edge.target,
-                wording.condition(edge.cubes),
+                visible(wording.condition(edge.cubes)),
                 edge.otherwise,
                 edge.accepted,
             )

@@ -10,7 +10,6 @@ from itertools import pairwise
 from textwrap import wrap
 
 from rulec.report.automaton import Automaton, Transition
-from rulec.report.excerpt import visible
 from rulec.report.layered import Box, arrange
 
 CHARACTER = 7.3
@@ -29,7 +28,7 @@ WIDEST = 30
 MOST_LINES = 5
 
 MOST_STATES = 40
-MOST_TRANSITIONS = 120
+MOST_TRANSITIONS = 80
 """Beyond this nobody finds their way through a picture."""
 
 Point = tuple[float, float]
@@ -90,7 +89,7 @@ def _columns(character: str) -> int:
 
 
 def _broken(text: str) -> tuple[str, ...]:
-    lines = wrap(visible(text), WIDEST)
+    lines = wrap(text, WIDEST)
     if len(lines) > MOST_LINES:
         lines = [*lines[: MOST_LINES - 1], f"{lines[MOST_LINES - 1][: WIDEST - 2]} …"]
     return tuple(lines)

@@ -102,7 +102,7 @@ def _line(line: Drawn) -> Iterator[str]:
             curve = f" C{before[0]:.1f} {half:.1f} {to_x:.1f} {half:.1f} {to_x:.1f} {to_y:.1f}"
             path += curve if before[0] != to_x else f" V{to_y:.1f}"
         tip, way = line.points[-1], (0, down)
-    yield f'<path class="{style}" d="{path}"><title>{escape(visible(one.condition))}</title></path>'
+    yield f'<path class="{style}" d="{path}"><title>{escape(one.condition)}</title></path>'
     yield _head(tip, way, accepted=one.accepted)
     yield from _text(line.text, line.label_at, "end" if line.leftward else "start")
 

@@ -11,6 +11,9 @@ from rulec.report.automaton import Automaton, Transition
 
 WORDS = {True: "accepted", False: "rejected"}
 
+MOST_LINES = 6
+"""Of a condition that takes more lines only the beginning is shown: nobody would read it."""
+
 _FINAL = {
     "violated": "violated for good: whatever follows, the trace is rejected",
     "satisfied": "satisfied for good: whatever follows, the trace is accepted",
@@ -20,12 +23,14 @@ _FINAL = {
 def as_text(automaton: Automaton, width: int) -> str:
     """A paragraph for each state; the last column is the verdict on a trace that ends there."""
     number = len(automaton.fates)
-    lines = [f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"]
+    head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
     if automaton.transitions:
-        lines[0] += ", and is accepted or rejected as it says behind its last step"
+        head += ", and is accepted or rejected as it says behind its last step"
+    lines = wrap(head, width)
     for state, fate in enumerate(automaton.fates):
         if fate != "open":
-            lines.append(f"state {state}: {click.style(_FINAL[fate], fg=_COLORS[fate])}")
+            final = wrap(f"state {state}: {_FINAL[fate]}", width, subsequent_indent="  ")
+            lines += [click.style(line, fg=_COLORS[fate]) for line in final]
             continue
         lines.append(f"state {state}")
         lines += _leaving(
@@ -42,9 +47,14 @@ def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[
     ordered += [one for one in transitions if one.otherwise]
     targets = ["stays" if one.target == state else f"to state {one.target}" for one in ordered]
     room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
-    labels = [wrap(one.label, room, subsequent_indent="  ") for one in ordered]
+    labels = [_broken(one.label, room) for one in ordered]
     widest = max(len(line) for lines in labels for line in lines)
     column = max(map(len, targets))
     for one, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
         yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[one.accepted]}"
         yield from (f"  {line}" for line in rest)
+
+
+def _broken(label: str, room: int) -> list[str]:
+    lines = wrap(label, room, subsequent_indent="  ")
+    return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  … (all: --json)"]

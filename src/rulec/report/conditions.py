@@ -12,8 +12,8 @@ from rulec.diagnostics.wording import any_of
 from rulec.logic.english import comparison_text, number_text, terms_text
 from rulec.logic.formula import Atom, Comparison, Quantity, Relation, atoms_of
 from rulec.report.excerpt import visible
+from rulec.rulebook.model import ExampleState
 from rulec.runtime.edges import Cube
-from rulec.runtime.witness import Witness
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
@@ -117,10 +117,10 @@ class Wording:
                 return f" {declaration.unit}" if isinstance(declaration, DeclaredQuantity) else ""
         return ""
 
-    def state(self, witness: Witness) -> str:
+    def state(self, state: ExampleState) -> str:
         """A state of an example; what it does not mention has its default."""
         facts = []
-        for (name, variables), value in witness.facts.items():
+        for (name, variables), value in state.items():
             declaration = self._vocabulary.declarations[name]
             if value == declaration.default:
                 continue

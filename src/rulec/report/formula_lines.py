@@ -9,9 +9,9 @@ INDENT = "  "
 
 _BOUND = r"(\[[^]]*\])?"
 
-# From the loosest to the tightest, as the grammar has them.
+# From the loosest to the tightest, as the grammar has them. `weak until` is one operator.
 _OPERATORS = [
-    re.compile(rf" (?={words} )")
+    re.compile(rf"(?<!\bweak)(?<!\bstrong) (?={words} )")
     for words in (
         "iff",
         "implies",
@@ -39,12 +39,7 @@ def _lines(text: str, width: int) -> Iterator[str]:
         return
     outside = _outside(text)
     for operator in _OPERATORS:
-        # `weak until` is one operator: what stands before `until` is then no operand.
-        cuts = [
-            found.start()
-            for found in operator.finditer(text)
-            if outside[found.start()] and not text[: found.start()].endswith((" weak", " strong"))
-        ]
+        cuts = [one.start() for one in operator.finditer(text) if outside[one.start()]]
         if cuts:
             starts = [0, *(cut + 1 for cut in cuts)]
             for start, end in zip(starts, [*cuts, len(text)], strict=True):

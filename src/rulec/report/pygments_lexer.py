@@ -11,8 +11,11 @@ from pygments.token import Text as Blank
 
 from rulec.syntax import highlighting as words
 
-_RULE_NAME: Any = bygroups(  # type: ignore[no-untyped-call]
+_NAMED: Any = bygroups(  # type: ignore[no-untyped-call]
     Keyword.Declaration, Blank.Whitespace, Name.Function
+)
+_NUMBER_WITH_UNIT: Any = bygroups(  # type: ignore[no-untyped-call]
+    Number, Blank.Whitespace, Keyword.Type
 )
 
 
@@ -29,16 +32,21 @@ class RulecLexer(RegexLexer):
             (r"\s+", Blank.Whitespace),
             (words.COMMENT, Comment.Single),
             (words.STRING, String.Double),
-            (words.RULE_NAME, _RULE_NAME),
+            (words.RULE_NAME, _NAMED),
+            (words.DEFINED_NAME, _NAMED),
+            (words.DATE, Literal.Date),
+            (words.NUMBER_WITH_UNIT, _NUMBER_WITH_UNIT),
+            (words.SETTINGS, Keyword.Constant),
+            (words.SCOPES, Keyword.Pseudo),
+            (words.IN_FORCE, Keyword.Pseudo),
             (words.any_of(words.STRUCTURE_WORDS), Keyword.Declaration),
             (words.any_of(words.CLAUSES), Keyword),
             (words.any_of(words.CONSTANTS), Keyword.Constant),
             (words.any_of(words.OPERATORS), Operator.Word),
             (words.any_of(words.JOINING_WORDS), Keyword.Pseudo),
             (words.OPERATOR_SIGNS, Operator),
-            (words.DATE, Literal.Date),
             (words.NUMBER, Number),
             (r"[^\W\d]\w*", Name),
-            (r"[{}(),:;/%°²³*.]", Punctuation),
+            (r"[{}()\[\],:;%°.]", Punctuation),
         ]
     }

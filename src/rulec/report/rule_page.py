@@ -5,22 +5,25 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from textwrap import wrap
 from typing import Any
 
 import click
 
 from rulec.automata.compiled import CompiledRule
-from rulec.logic.english import number_text, plural, spoken
+from rulec.logic.english import amount, number_text, plural, spoken
+from rulec.logic.formula import Unary, UnaryOperator
 from rulec.logic.printing import in_words
-from rulec.logic.sentence import Phrase, sentence
+from rulec.logic.sentence import Phrase, condition, exemption, sentence
 from rulec.logic.sentence_lines import in_one_line, lines
 from rulec.report import automaton_text
 from rulec.report.automaton import Automaton, automaton_of
 from rulec.report.conditions import Wording
 from rulec.report.excerpt import visible
 from rulec.report.formula_lines import formula_lines
-from rulec.rulebook.model import Rule
+from rulec.rulebook.model import Rule, Variable
+from rulec.runtime.objects import staged
 from rulec.runtime.shortest import shortest_traces
 from rulec.runtime.witness import Witness
 from rulec.vocabulary import Vocabulary
@@ -32,54 +35,98 @@ MOST_LISTED = 60
 
 
 @dataclass(frozen=True, slots=True)
-class RulePage:
-    """A rule with its automaton, and the states of a trace that it accepts and of one it rejects.
+class ShownTrace:
+    """A trace as an example says it: further objects, states, and ``remarks`` on what it cannot."""
 
-    A trace is None if there is none. ``remarks`` say what its states cannot.
+    objects: tuple[Variable, ...]
+    states: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RulePage:
+    """A rule with its automaton, and a trace that it accepts and one it rejects, if there are any.
+
+    The automaton is that for traces with steps of ``step_s``; None if it is the same for all.
     """
 
     rule: Rule
     automaton: Automaton
-    accepted: tuple[str, ...] | None
-    rejected: tuple[str, ...] | None
-    remarks: tuple[str, ...] = ()
+    accepted: ShownTrace | None
+    rejected: ShownTrace | None
+    step_s: Fraction | None
 
 
 def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RulePage:
     """The page of a rule that has been compiled."""
     traces = shortest_traces(compiled, vocabulary)
     wording = Wording(compiled, vocabulary)
-    named = (("accepted", traces.accepted), ("rejected", traces.rejected))
-    accepted, rejected = (
-        None if states is None else tuple(map(wording.state, states)) for _, states in named
-    )
     return RulePage(
         rule,
         automaton_of(compiled, vocabulary),
-        accepted,
-        rejected,
-        tuple(remark for name, states in named for remark in _remarks(name, states or ())),
+        _shown(traces.accepted, rule, vocabulary, wording),
+        _shown(traces.rejected, rule, vocabulary, wording),
+        compiled.step_s,
     )
 
 
-def _remarks(name: str, states: Sequence[Witness]) -> Iterator[str]:
-    """The objects of the moment that a state needs besides those that the rule names."""
-    for number, state in enumerate(states, 1):
+def _shown(
+    states: Sequence[Witness] | None, rule: Rule, vocabulary: Vocabulary, wording: Wording
+) -> ShownTrace | None:
+    if states is None:
+        return None
+    scene = staged(states, rule.variables, vocabulary)
+    if scene is not None:
+        return ShownTrace(scene.objects, tuple(map(wording.state, scene.states)))
+    facts = tuple(wording.state(state.facts) for state in states)
+    return ShownTrace((), facts, tuple(_remarks(states)))
+
+
+def _remarks(states: Sequence[Witness]) -> Iterator[str]:
+    """How many objects of the moment a state needs, those that the rule names included."""
+    for number, state in enumerate(states):
         for count, size in state.counts:
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
             yield (
-                f"in state {number} of the {name} trace there {'is' if size == 1 else 'are'} "
-                f"{size:,} {noun} {count.variable} for which {in_words(count.body)}"
+                f"in state {number} there {'is' if size == 1 else 'are'} {size:,} {noun} "
+                f"{count.variable} for which {in_words(count.body)}"
             )
 
 
 def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
-    """The rule as a sentence."""
+    """The rule as a sentence, without its exceptions."""
     return sentence(
-        rule.formula,
+        rule.required or rule.formula,
         [(variable.name, variable.type) for variable in rule.variables],
         lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
     )
+
+
+def restrictions_of(rule: Rule) -> list[Phrase]:
+    """When the rule applies, and its exceptions, as sentences."""
+    found = [exemption(one.formula, one.scope) for one in rule.exemptions]
+    if rule.condition is None:
+        return found
+    guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+    guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
+    return [condition(rule.condition, guards=guards), *found]
+
+
+def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
+    phrases = [phrase_of(rule, vocabulary), *restrictions_of(rule)]
+    return "\n".join(in_english(phrase, width) for phrase in phrases)
+
+
+def _formula(rule: Rule, width: int) -> list[str]:
+    """The formula; one with exceptions as it is written, and then with them put in."""
+    whole = formula_lines(visible(in_words(rule.formula)), width)
+    if rule.required is None:
+        return whole
+    parts = [in_words(rule.required)]
+    parts += [f"when {in_words(rule.condition)}"] if rule.condition is not None else []
+    parts += [f"unless {in_words(one.formula)} {one.scope}" for one in rule.exemptions]
+    written = [line for part in parts for line in formula_lines(visible(part), width)]
+    return [*written, "that is", *whole]
 
 
 def head(rule: Rule, rulebook: str, width: int) -> str:
@@ -127,23 +174,25 @@ def in_english(phrase: Phrase, width: int) -> str:
 
 def summary(rule: Rule, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
     """The rule in brief."""
-    return f"{head(rule, rulebook, width)}\n\n{in_english(phrase_of(rule, vocabulary), width)}"
+    return f"{head(rule, rulebook, width)}\n\n{_sentences(rule, vocabulary, width)}"
 
 
 def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
     """The whole page."""
-    formula = formula_lines(visible(in_words(page.rule.formula)), width - len(INDENT))
+    formula = _formula(page.rule, width - len(INDENT))
     automaton = (
         automaton_text.as_text(page.automaton, width - len(INDENT))
         if len(page.automaton.transitions) <= MOST_LISTED
         else f"{len(page.automaton.fates):,} states and {len(page.automaton.transitions):,} "
         "transitions; --automaton text lists them"
     )
+    if page.step_s is not None:
+        automaton = f"for traces with steps of {amount(page.step_s, 's')}:\n{automaton}"
     sections = [
-        ("in English", in_english(phrase_of(page.rule, vocabulary), width)),
+        ("in English", _sentences(page.rule, vocabulary, width)),
         ("formula", _indented(formula)),
         ("automaton", _indented(automaton.split("\n"))),
-        ("shortest traces", _indented(_examples(page))),
+        ("shortest traces", _indented(list(_examples(page)))),
     ]
     blocks = [f"{click.style(title, bold=True)}\n{text}" for title, text in sections]
     return "\n\n".join([head(page.rule, rulebook, width), *blocks])
@@ -153,14 +202,17 @@ def _indented(texts: Sequence[str]) -> str:
     return "\n".join(f"{INDENT}{text}" for text in texts)
 
 
-def _examples(page: RulePage) -> list[str]:
-    found = []
-    for word, states, never in (
+def _examples(page: RulePage) -> Iterator[str]:
+    for word, trace, never in (
         ("accept", page.accepted, "no trace is accepted: nothing can satisfy this rule"),
         ("reject", page.rejected, "no trace is rejected: nothing can violate this rule"),
     ):
-        found.append(never if states is None else f"{word} {{ {'; '.join(states)} }}")
-    return [*found, *page.remarks]
+        if trace is None:
+            yield never
+            continue
+        objects = ", ".join(f"{one.name}: {one.type}" for one in trace.objects)
+        yield f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
+        yield from (f"  # where {remark}" for remark in trace.remarks)
 
 
 def as_json(
@@ -179,18 +231,25 @@ def as_json(
                     {
                         "source": one.source,
                         "target": one.target,
-                        "condition": visible(one.condition),
+                        "condition": one.condition,
                         "otherwise": one.otherwise,
                         "accepted": one.accepted,
                     }
                     for one in page.automaton.transitions
                 ],
             },
-            "accepts": page.accepted,
-            "rejects": page.rejected,
-            "remarks": page.remarks,
+            "step_s": None if page.step_s is None else float(page.step_s),
+            "accepts": _trace_as_data(page.accepted),
+            "rejects": _trace_as_data(page.rejected),
         }
     return json.dumps({"rulebook": rulebook, "rules": shown}, ensure_ascii=False, indent=2)
+
+
+def _trace_as_data(trace: ShownTrace | None) -> dict[str, Any] | None:
+    if trace is None:
+        return None
+    objects = [{"name": one.name, "type": one.type} for one in trace.objects]
+    return {"objects": objects, "states": trace.states, "remarks": trace.remarks}
 
 
 def _as_data(rule: Rule, vocabulary: Vocabulary) -> dict[str, Any]:
@@ -208,5 +267,6 @@ def _as_data(rule: Rule, vocabulary: Vocabulary) -> dict[str, Any]:
         "in_force_until": rule.in_force_until,
         "book": rule.book,
         "sentence": in_one_line(phrase_of(rule, vocabulary)),
+        "restrictions": [in_one_line(phrase) for phrase in restrictions_of(rule)],
         "formula": in_words(rule.formula),
     }

@@ -28,20 +28,25 @@ def _grammar() -> dict[str, Any]:
         "patterns": [
             _pattern("comment.line.number-sign.rulec", words.COMMENT),
             _pattern("string.quoted.double.rulec", words.STRING),
+            _named(words.RULE_NAME),
+            _named(words.DEFINED_NAME),
             {
-                "match": words.RULE_NAME,
+                "match": words.NUMBER_WITH_UNIT,
                 "captures": {
-                    "1": {"name": "storage.type.rulec"},
-                    "3": {"name": "entity.name.function.rulec"},
+                    "1": {"name": "constant.numeric.rulec"},
+                    "3": {"name": "keyword.other.unit.rulec"},
                 },
             },
+            _pattern("constant.other.date.rulec", words.DATE),
+            _pattern("constant.language.rulec", words.SETTINGS),
+            _pattern("keyword.other.rulec", words.SCOPES),
+            _pattern("keyword.other.rulec", words.IN_FORCE),
             _pattern("storage.type.rulec", words.any_of(words.STRUCTURE_WORDS)),
             _pattern("keyword.control.rulec", words.any_of(words.CLAUSES)),
             _pattern("constant.language.rulec", words.any_of(words.CONSTANTS)),
             _pattern("keyword.operator.word.rulec", words.any_of(words.OPERATORS)),
             _pattern("keyword.other.rulec", words.any_of(words.JOINING_WORDS)),
             _pattern("keyword.operator.rulec", words.OPERATOR_SIGNS),
-            _pattern("constant.other.date.rulec", words.DATE),
             _pattern("constant.numeric.rulec", words.NUMBER),
         ],
     }
@@ -49,6 +54,17 @@ def _grammar() -> dict[str, Any]:
 
 def _pattern(name: str, match: str) -> dict[str, str]:
     return {"name": name, "match": match}
+
+
+def _named(match: str) -> dict[str, Any]:
+    """A word, and the name that it declares."""
+    return {
+        "match": match,
+        "captures": {
+            "1": {"name": "storage.type.rulec"},
+            "3": {"name": "entity.name.function.rulec"},
+        },
+    }
 
 
 if __name__ == "__main__":

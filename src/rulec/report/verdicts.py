@@ -101,12 +101,14 @@ def _violation(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
 
 def _title(rule: CompiledRule, rulebook: str) -> str:
     """The rule as its head says it, as far as it says more than every other rule, and where."""
-    level = f" in {rule.level}" if rule.level else ""
-    weighs = rule.strength == "soft" and rule.weight != 1
-    weight = f" weight {number_in_words(rule.weight)}" if weighs else ""
-    book = rule.book if rule.book != rulebook else ""
-    place = ", ".join(filter(None, (book, rule.cite)))
-    return f"{rule.name}{level}{weight}{f' [{place}]' if place else ''}"
+    title, place = rule.name, rule.cite
+    if rule.level:
+        title += f" in {rule.level}"
+    if rule.strength == "soft" and rule.weight != 1:
+        title += f" weight {number_in_words(rule.weight)}"
+    if rule.book and rule.book != rulebook:
+        place = f"{rule.book}, {place}" if place else rule.book
+    return f"{title} [{place}]" if place else title
 
 
 def summary(satisfied: int, violated: int, not_judged: int) -> str:

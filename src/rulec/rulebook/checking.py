@@ -33,6 +33,7 @@ def check(
     references: Iterable[str],
     standard_input: Callable[[], bytes],
     search_path: Sequence[Path] = (),
+    at: str = "",
 ) -> Checked:
     """Check what the references mean, each file once, and say each finding once.
 
@@ -41,6 +42,8 @@ def check(
         standard_input: the text that ``-`` stands for. It finds vocabularies as a file of the
             working directory would.
         search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
+            today.
     """
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
@@ -55,7 +58,7 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
-        for one in diagnose(str(path), data, path, search_path):
+        for one in diagnose(str(path), data, path, search_path, at):
             findings.setdefault(_identity(one), one)
     return Checked(tuple(files.values()), tuple(findings.values()), tuple(unread))
 

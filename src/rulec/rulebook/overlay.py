@@ -99,9 +99,10 @@ class _Layer:
 
     def take(self, item: tree.Item) -> None:
         """Lay one item over what there is."""
-        dated = isinstance(item, tree.RuleItem | tree.ParamItem | tree.SetItem)
-        if dated and item.in_force is not None and never_in_force(item.in_force):
-            self.result.mistakes.append(say.never_in_force(item.in_force))
+        match item:
+            case tree.RuleItem() | tree.ParamItem() | tree.SetItem():
+                if item.in_force is not None and never_in_force(item.in_force):
+                    self.result.mistakes.append(say.never_in_force(item.in_force))
         match item:
             case tree.RuleItem(override=False):
                 self._rule(item)

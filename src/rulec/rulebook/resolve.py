@@ -68,7 +68,8 @@ def resolve(
     good = [rule for rule in rules if rule is not None]
     wrong = any(one.severity == "error" for one in mistakes)
     whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
-    if whole and not wrong:
+    # A rulebook without rules is there to be extended.
+    if whole and not wrong and laid.rules:
         mistakes += _unused(file, books)
     if file.name is None or wrong or not whole or len(good) < len(rules):
         return None, tuple(mistakes)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
-from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
+from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import Declared
@@ -131,6 +131,9 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
         return None
     exemptions = tuple(Exemption(formula, when) for formula, when in found if formula is not None)
     whole = len(exemptions) == len(found) and (condition is not None or item.when is None)
+    # What depends on an option alone says nothing once that is known.
+    exemptions = tuple(one for one in exemptions if one.formula != Constant(False))
+    condition = None if condition == Constant(True) else condition
     return None if required is None or not whole else _Parts(required, exemptions, condition)
 
 

@@ -72,6 +72,7 @@ def _without(name: Term, system: Sequence[Bounded]) -> list[Bounded]:
                 + lower.coefficients.get(other, Fraction(0)) / low
                 for other in names
             }
+            sums = {other: size for other, size in sums.items() if size}
             limit = upper.limit / up + lower.limit / low
             rest.append(Bounded(sums, limit, upper.strict or lower.strict))
     return rest

@@ -30,6 +30,10 @@ from rulec.runtime.numbers import exact, stands
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
 
+_NOT = UnaryOperator.NOT
+_AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
+_IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
+
 Bound = Mapping[str, str]
 """Variable -> the object that it stands for."""
 
@@ -94,9 +98,14 @@ def number_of(term: Term, bound: Bound, moment: Moment) -> Fraction | Unknown:
 def counted(count: Count, bound: Bound, moment: Moment) -> tuple[str, ...] | Unknown:
     """The objects that count."""
     found = []
+    fitting: dict[str, bool] = {}
+    inner = dict(bound)
     for name, kind in moment.objects.items():
-        if moment.vocabulary.is_subtype(kind, count.type):
-            truth = holds(count.body, {**bound, count.variable: name}, moment)
+        if kind not in fitting:
+            fitting[kind] = moment.vocabulary.is_subtype(kind, count.type)
+        if fitting[kind]:
+            inner[count.variable] = name
+            truth = holds(count.body, inner, moment)
             if isinstance(truth, Unknown):
                 return truth
             if truth:
@@ -117,21 +126,21 @@ def holds(formula: Formula, bound: Bound, moment: Moment) -> bool | Unknown:
             return bound[one] == bound[other]
         case Constant(truth):
             return truth
-        case Unary(UnaryOperator.NOT, operand):
+        case Unary(operator, operand) if operator is _NOT:
             return _not(holds(operand, bound, moment))
-        case Binary(BinaryOperator.AND, left, right):
-            return _joined(holds(left, bound, moment), right, bound, moment, settled_by=False)
-        case Binary(BinaryOperator.OR, left, right):
-            return _joined(holds(left, bound, moment), right, bound, moment, settled_by=True)
-        case Binary(BinaryOperator.IMPLIES, left, right):
-            without = _not(holds(left, bound, moment))
-            return _joined(without, right, bound, moment, settled_by=True)
-        case Binary(BinaryOperator.IFF, left, right):
-            return _alike(holds(left, bound, moment), holds(right, bound, moment))
-        case Binary(BinaryOperator.XOR, left, right):
-            return _not(_alike(holds(left, bound, moment), holds(right, bound, moment)))
-        case _:
-            raise TypeError("this formula does not speak of one state alone")
+        case Binary(operator, left, right):
+            first = holds(left, bound, moment)
+            if operator is _AND:
+                return _joined(first, right, bound, moment, settled_by=False)
+            if operator is _OR:
+                return _joined(first, right, bound, moment, settled_by=True)
+            if operator is _IMPLIES:
+                return _joined(_not(first), right, bound, moment, settled_by=True)
+            if operator is _IFF:
+                return _alike(first, holds(right, bound, moment))
+            if operator is _XOR:
+                return _not(_alike(first, holds(right, bound, moment)))
+    raise TypeError("this formula does not speak of one state alone")
 
 
 def _joined(

@@ -120,13 +120,14 @@ def run(machine: Machine, word: Sequence[int]) -> tuple[bool, int | None]:
     """Run a machine over a non-empty word of letter classes.
 
     Returns:
-        Whether it accepts, and the index of the letter that led into the dead state, if any. A
-        machine that starts out dead is lost with the first letter.
+        Whether it accepts, and the index of the letter with which it was lost, however the word
+        goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
     """
     following, dead = machine.following, machine.dead
     state = before = 0
     for index, symbol in enumerate(word):
         before, state = state, following[state][symbol]
-        if state == dead:
+        # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+        if state == dead and not machine.accepting[before][symbol]:
             return False, index
     return machine.accepting[before][word[-1]], None

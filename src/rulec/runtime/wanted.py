@@ -8,7 +8,7 @@ from fractions import Fraction
 from math import ceil, floor, inf
 
 from rulec.automata.machine import Machine, NumberRead, Read, Threshold
-from rulec.logic.formula import Comparison, Count, Formula, Quantity, atoms_of
+from rulec.logic.formula import Comparison, Formula, Quantity, atoms_of
 from rulec.rulebook.model import ExampleState
 from rulec.runtime.numbers import exact, scale, stands
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -30,12 +30,10 @@ class Wanted:
 
 def is_possible(read: Read | NumberRead, digit: int) -> bool:
     """Can a state make a read come out so? False only if it is certain that none can."""
-    if isinstance(read, Read):
+    if isinstance(read, Read) or scale(read).quantity is None:
         return True
-    if scale(read).quantity is not None:
-        bounds = (-inf, *scale(read).floors, inf)
-        return bounds[digit] < bounds[digit + 1]
-    return not _is_count(read) or _least_count(read, digit) is not None
+    bounds = (-inf, *scale(read).floors, inf)
+    return bounds[digit] < bounds[digit + 1]
 
 
 def truths(comparison: Comparison, machine: Machine) -> set[bool]:
@@ -155,27 +153,21 @@ def _is_float(number: Fraction) -> bool:
         return False
 
 
-def _is_count(read: NumberRead) -> bool:
-    return len(read.terms) == 1 and isinstance(read.terms[0][1], Count)
-
-
-def _least_count(read: NumberRead, digit: int) -> Fraction | None:
-    """The smallest number of objects that passes exactly ``digit`` thresholds."""
-    least = _first_multiple(read.thresholds[digit - 1], Fraction(1)) if digit else Fraction(0)
-    number = max(least, Fraction(0))
-    return number if read.digit(number) == digit else None
-
-
 def _sample(read: NumberRead, digit: int) -> Fraction:
-    """Some number with this digit, whether or not a state can make it."""
-    limits = [one.limit for one in read.thresholds]
-    if not limits:
+    """Some number with this digit; for a count, a whole one.
+
+    The thresholds of a count are whole numbers above 0 that are passed by themselves.
+    """
+    if not read.thresholds:
         return Fraction(0)
     if digit == 0:
-        return limits[0] - 1
-    if digit == len(limits):
-        return limits[-1] + 1
-    return (limits[digit - 1] + limits[digit]) / 2
+        return read.thresholds[0].limit - 1
+    below = read.thresholds[digit - 1]
+    if below.inclusive:
+        return below.limit
+    if digit == len(read.thresholds):
+        return below.limit + 1
+    return (below.limit + read.thresholds[digit].limit) / 2
 
 
 def _in_words(read: NumberRead, digit: int, formula: Formula) -> Iterator[str]:

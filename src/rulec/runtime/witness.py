@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -26,6 +26,9 @@ from rulec.rulebook.model import ExampleState
 from rulec.runtime.linear import Bounded, solve
 from rulec.vocabulary import Enumeration, Vocabulary
 
+Facts = dict[tuple[str, tuple[str, ...]], bool | str | float]
+"""What a state says, while it is being made up."""
+
 
 @dataclass(frozen=True, slots=True)
 class Witness:
@@ -44,6 +47,9 @@ class Witnesses:
         self._vocabulary = vocabulary
         self._states: dict[int, Witness | None] = {}
         self._digits = [self._split(letter) for letter in range(len(rule.machine.letters))]
+        self._members: list[list[int]] = [[] for _ in rule.machine.following[0]]
+        for letter, symbol in enumerate(rule.machine.letters):
+            self._members[symbol].append(letter)
         self._plain = tuple(self._usual(read) for read in rule.machine.reads)
 
     def plainest(self, symbol: int) -> int | None:
@@ -84,12 +90,13 @@ class Witnesses:
         return 0 if default is None else read.digit(default)
 
     def _closest(self, symbol: int, digits: tuple[int, ...]) -> int | None:
-        members = [n for n, one in enumerate(self._machine.letters) if one == symbol]
-        members.sort(key=lambda one: (_distance(self._digits[one], digits), one))
-        return next((one for one in members if self.state(one) is not None), None)
+        alike = sorted(
+            self._members[symbol], key=lambda one: (_distance(self._digits[one], digits), one)
+        )
+        return next((one for one in alike if self.state(one) is not None), None)
 
     def _state(self, letter: int) -> Witness | None:
-        facts: dict[tuple[str, tuple[str, ...]], bool | str | float] = {}
+        facts: Facts = {}
         numbers: list[tuple[NumberRead, int]] = []
         for read, digit in zip(self._machine.reads, self._digits[letter], strict=True):
             if isinstance(read, NumberRead):
@@ -147,7 +154,7 @@ class Witnesses:
     def _at_least(self, count: Count, facts: ExampleState) -> int:
         """How many of the objects that the rule names are counted for sure."""
         return sum(
-            _value_of(count.body, {count.variable: name}, facts) is True
+            value_in_state(count.body, {count.variable: name}, facts) is True
             for name, of_type in self._types.items()
             if self._vocabulary.is_subtype(of_type, count.type)
         )
@@ -169,8 +176,8 @@ def _bounds(read: NumberRead, digit: int) -> Iterator[Bounded]:
         yield Bounded(terms, ahead.limit, strict=ahead.inclusive)
 
 
-def _value_of(formula: Formula, names: dict[str, str], facts: ExampleState) -> bool | None:
-    """The value of a count's body in a state; None if the state leaves it open."""
+def value_in_state(formula: Formula, names: Mapping[str, str], facts: ExampleState) -> bool | None:
+    """The value of a count's body, ``names`` for its variable; None if the state leaves it open."""
     match formula:
         case Constant(value):
             return value
@@ -182,10 +189,12 @@ def _value_of(formula: Formula, names: dict[str, str], facts: ExampleState) -> b
         case Comparison():
             return None
         case Unary(UnaryOperator.NOT, operand):
-            inner = _value_of(operand, names, facts)
+            inner = value_in_state(operand, names, facts)
             return None if inner is None else not inner
         case Binary(operator, left, right):
-            return _joined(operator, _value_of(left, names, facts), _value_of(right, names, facts))
+            return _joined(
+                operator, value_in_state(left, names, facts), value_in_state(right, names, facts)
+            )
     raise AssertionError("the body of a count speaks of one state")
 
 

@@ -8,6 +8,9 @@ The way through, which ``parser`` walks:
           -> grammar: each piece by Lark, or where it cannot go on, which messages explain
           -> building, literals: the pieces' nodes -> assemble: rules and the file
 
+``tables`` keep what Lark makes of the grammar, so that no run has to make it again; ``generate``
+writes them, and a test says when they are out of date.
+
 ``tree`` is what comes out, ``printer`` the way back, ``keywords`` the words that all of them know.
 """
 

@@ -183,7 +183,8 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 
 def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
-    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine
+    # One that has none of its own offers something to those that extend it.
+    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Provision
     if not any(isinstance(part, enough) for part in parts):
         yield Diagnostic(
             "R0114",

@@ -6,10 +6,14 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
+import lark
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput, UnexpectedToken
+from lark.grammar import Rule
+from lark.lexer import TerminalDef
 
 from rulec.resources import grammar_file
+from rulec.syntax import tables
 
 Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
 
@@ -75,14 +79,32 @@ def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Misma
 
 @cache
 def _lark() -> Lark:
+    """The parser, from its tables; made anew if they are of another grammar or another Lark."""
+    grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
+    try:
+        text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
+        ready = tables.from_text(text, tables.stamp(grammar, lark.__version__))
+    except (OSError, ValueError):
+        ready = None
+    return _made(grammar) if ready is None else Lark.load(ready)
+
+
+def _made(grammar: str) -> Lark:
     return Lark(
-        grammar_file("rulec.lark").read_text(encoding="utf-8"),
+        grammar,
         parser="lalr",
         lexer="contextual",
         start=list(STARTS),
         propagate_positions=True,
         maybe_placeholders=False,
     )
+
+
+def tables_of(grammar: str) -> str:
+    """The text of ``grammar/rulec.tables.json``."""
+    data, memo = _made(grammar).memo_serialize([TerminalDef, Rule])
+    serialized = {"data": data, "memo": memo}
+    return tables.to_text(tables.stamp(grammar, lark.__version__), serialized)
 
 
 def _position(error: UnexpectedInput, end: int) -> int:

@@ -6,18 +6,14 @@ from typing import Final
 
 from rulec.syntax.keywords import (
     CLAUSE_WORDS,
-    DECLARATION_WORDS,
-    HEADER_WORDS,
+    ITEM_WORDS,
     OPERATOR_LETTERS,
     OPERATOR_WORDS,
     RESERVED,
-    RULE_WORDS,
 )
 
 CONSTANTS: Final = ("false", "true")
-STRUCTURE_WORDS: Final = tuple(
-    sorted({*HEADER_WORDS, *DECLARATION_WORDS, *RULE_WORDS, "rule"}),
-)
+STRUCTURE_WORDS: Final = tuple(sorted(ITEM_WORDS))
 CLAUSES: Final = tuple(sorted(CLAUSE_WORDS))
 OPERATORS: Final = tuple(sorted(OPERATOR_WORDS | OPERATOR_LETTERS))
 JOINING_WORDS: Final = tuple(
@@ -25,12 +21,25 @@ JOINING_WORDS: Final = tuple(
 )
 """The small words of headers and declarations: ``is one of``, ``default``, ``in``, …."""
 
-OPERATOR_SIGNS: Final = r"<->|->|<>|\[\]|&&?|\|\|?|[!^]"
+OPERATOR_SIGNS: Final = r"<->|->|<>|\[\]|&&?|\|\|?|!=|<=|>=|\.\.|[!^<>=+*/-]"
 COMMENT: Final = r"#.*$"
 STRING: Final = r'"(?:[^"\\\n]|\\.)*"'
 DATE: Final = r"\b\d{4}-\d{2}-\d{2}\b"
-NUMBER: Final = r"(?<!\w)[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?\b"
+NUMBER: Final = r"(?<!\w)\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
+_UNIT: Final = r"[^\W\d]\w*(?:\^-?\d+)?(?:/[^\W\d]\w*(?:\^-?\d+)?)*"
+NUMBER_WITH_UNIT: Final = (
+    rf"({NUMBER})([^\S\n]*)([%°]|(?!(?:{'|'.join(sorted(RESERVED - {'step'}))})\b){_UNIT})"
+)
+"""A number and the unit behind it on the same line: groups 1 and 3."""
 RULE_NAME: Final = r"\b(rule)(\s+)([^\W\d]\w*)"
+DEFINED_NAME: Final = r"\b(define|redefine)(\s+)([^\W\d]\w*)"
+SCOPES: Final = r"\bat\s+(?:start|some\s+point|end)\b"
+IN_FORCE: Final = r"\bin\s+force\b(?:\s+from\b)?"
+SETTINGS: Final = (
+    r"\b(?:(?<=traffic )(?:left|right)|(?<=semantics )(?:stutter|finite)|(?<== )(?:on|off)"
+    r"|(?<=certainty )(?:verified|secondary|unverified))\b"
+)
+"""Words that are words in their place only, with one blank before them as the formatter has it."""
 
 
 def any_of(words: tuple[str, ...]) -> str:

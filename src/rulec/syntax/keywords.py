@@ -29,7 +29,7 @@ CLAUSE_WORDS: Final = frozenset(
 CONTEXTUAL: Final = frozenset(
     (
         *("left", "right", "stutter", "finite", "on", "off", "verified", "secondary", "unverified"),
-        *("weight", "force", "from"),
+        *("weight", "force", "from", "at"),
     )
 )
 """Words in their place only; elsewhere they may be names."""
@@ -52,7 +52,7 @@ RESERVED: Final = (
     | OPERATOR_LETTERS
     | frozenset(("as", "of", "is", "one", "in", "default", "true", "false"))
     | frozenset(("some", "every", "count", "if", "else"))
-    | frozenset(("at", "initially", "throughout", "because"))
+    | frozenset(("initially", "throughout", "because"))
 )
 """What cannot be a name."""
 

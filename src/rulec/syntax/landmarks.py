@@ -17,13 +17,19 @@ from rulec.syntax.scanner import Token
 _COMPLETE_WORDS = frozenset(("true", "false", "throughout", "initially"))
 _OPEN_SYMBOLS = frozenset(
     (
-        *("(", ",", ":", ";", "{", "[", ".."),
+        *("(", ",", ":", ";", "{", "[", "..", "]"),
         *("!", "&", "&&", "|", "||", "->", "<->", "^", "[]", "<>"),
         *("=", "=>", "<", "<=", "!=", ">=", ">", "+", "-", "*", "/"),
     )
 )
 
-_FORMULA_SIGNS = _OPEN_SYMBOLS - {",", ":", ";", "{", "["}
+_FORMULA_SIGNS = _OPEN_SYMBOLS - {",", ":", ";", "{"}
+_PAIRS = (
+    *(("force", ("from",)), ("silent", ("on",)), ("traffic", ("left", "right"))),
+    *(("at", ("start", "end")), ("some", ("point",))),
+)
+"""A word, and those that it goes on with although each might be a name."""
+
 _TEXTS = ("string", "quoted", "unterminated")
 
 
@@ -57,6 +63,9 @@ class Landmarks:
             and self.tokens[index].text not in RESERVED
         )
 
+    def _is_number(self, index: int) -> bool:
+        return 0 <= index < len(self.tokens) and self.tokens[index].kind == "number"
+
     def wants_more(self, index: int) -> bool:
         """Does the text have to go on behind it, as behind ``signal``, ``until``, ``(``, ``;``?"""
         if index < 0:
@@ -80,7 +89,7 @@ class Landmarks:
         follows_on = self.wants_more(index - 1) and not token.first
         if token.text in ITEM_WORDS:
             return not follows_on and not self._is_part_of_item(index)
-        if token.text in RESERVED or self._goes_on(index):
+        if token.text in RESERVED or self.goes_on(index):
             return False
         if not self.wants_more(index - 1):
             return token.first or self._begins_enumeration(index, "one")
@@ -101,19 +110,25 @@ class Landmarks:
             # `type car extends vehicle` is a mistake about the type.
             return not token.first and self.is_word(index - 2, "type")
         if token.text == "step" and not token.first:
-            # `next[1 step]`: a unit.
-            return self.is_symbol(index + 1, "]") or self.is_symbol(index + 1, "..")
+            # `next[1 step]`: a unit; but `as of 2020-01-01 step 1 s`.
+            return self._is_number(index - 1) and not self._is_number(index + 1)
         return False
 
-    def _goes_on(self, index: int) -> bool:
-        """A word that is one only where it goes on with what came before, on a line of its own."""
-        if self.is_word(index, "weight", "from"):
-            return index + 1 < len(self.tokens) and self.tokens[index + 1].kind == "number"
-        return self.is_word(index, "on") and self.is_word(index - 1, "silent")
+    def goes_on(self, index: int) -> bool:
+        """Does a word that might be a name go on with what came before, on a line of its own?"""
+        if self.is_word(index, "weight"):
+            return self._is_number(index + 1)
+        if self.is_word(index, "at"):
+            return self.is_word(index + 1, "start", "some", "end")
+        return any(
+            self.is_word(index - 1, before) and self.is_word(index, *words)
+            for before, words in _PAIRS
+        ) or (self.is_word(index - 1, "on") and self.is_word(index - 2, "silent"))
 
     def _is_glued(self, index: int) -> bool:
         """``sgnal p`` behind something that has to go on: two names where one could stand."""
         glued = self.is_name(index + 1) and not self.tokens[index + 1].first
+        glued = glued and not self.is_word(index + 1, "weight")
         if not glued or not self._in_formula(index - 1):
             return glued
         return nearest_name(self.tokens[index].text, ITEM_WORDS) is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
@@ -12,7 +13,6 @@ from rulec.syntax.assemble import HOW_TO_BEGIN, Part, assemble_file, assemble_ru
 from rulec.syntax.building import Clause, Values
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
-from rulec.syntax.messages.mismatch import explain, too_deep, too_long, unknown_clause
 from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.split_file import FileSplitter
@@ -89,6 +89,13 @@ def _position(diagnostic: Diagnostic) -> tuple[int, int]:
     return (0, 0) if diagnostic.place is None else diagnostic.place.start
 
 
+def _messages() -> ModuleType:
+    """What can be said about a mistake; a file without one starts faster without it."""
+    from rulec.syntax.messages import mismatch
+
+    return mismatch
+
+
 @dataclass(frozen=True, slots=True)
 class _Reader:
     """Parses piece by piece; None stands for a piece whose mistake is in ``mistakes``."""
@@ -105,14 +112,15 @@ class _Reader:
             return None
         span = span_of(self.source, self.tokens, piece)
         if piece.last - piece.first > MAX_PIECE:
-            self.mistakes.append(too_long(self._first_token(piece), MAX_PIECE))
+            self.mistakes.append(_messages().too_long(self._first_token(piece), MAX_PIECE))
             return None
         match parse_piece(start, self.source.text, span.start, span.end):
             case Mismatch() as mismatch:
-                self.mistakes.append(explain(self.source, self.tokens, piece, mismatch))
+                why = _messages().explain(self.source, self.tokens, piece, mismatch)
+                self.mistakes.append(why)
                 return None
             case TooDeep():
-                self.mistakes.append(too_deep(self._first_token(piece)))
+                self.mistakes.append(_messages().too_deep(self._first_token(piece)))
                 return None
             case branch:
                 values = Values(self.source)
@@ -159,7 +167,7 @@ class _Reader:
         keyword = self.tokens[piece.first].text
         span = self._first_token(piece)
         if piece.kind == "junk":
-            self.mistakes.append(unknown_clause(self.source, self.tokens, piece))
+            self.mistakes.append(_messages().unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
         return keyword, self.read("clause", piece, building.clause), span
 

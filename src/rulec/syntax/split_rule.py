@@ -64,7 +64,7 @@ class RuleSplitter:
             or self.marks.is_symbol(index, "}")
             or self.marks.begins_clause(index)
             or self.marks.begins_item_inside(index)
-            or self.marks.begins_misspelt(index)
+            or (self.marks.begins_misspelt(index) and not self.marks.is_word(index - 1, "rule"))
         )
 
     def _end_of_clause(self, first: int) -> int:
@@ -91,6 +91,8 @@ class RuleSplitter:
         if self.tokens[index].first and self.marks.is_word(index, "in"):
             return True
         if not (self.tokens[index].first and self.marks.is_name(index)):
+            return False
+        if self.marks.goes_on(index) and self.marks.is_word(clause, "unless", "in"):
             return False
         if self.marks.begins_misspelt(index):
             return True

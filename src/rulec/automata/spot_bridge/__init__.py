@@ -4,7 +4,8 @@ Spot may use unbounded time or memory, or end its process, on a formula whose au
 So this package is only ever loaded in a process of its own, see ``spot_worker``.
 
 ``translation`` is the way from a formula to its automaton, ``wording`` says formulas in Spot's
-terms, ``progression`` builds automata of formulas with bounds, ``registers`` brings in the past,
+terms, ``progression`` builds automata of formulas with bounds from their ``obligations``,
+``registers`` brings in the past,
 ``checks`` compares automata with formulas, ``hoa`` and ``exploring`` turn them into a file and into
 what tables are made of.
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -63,7 +64,10 @@ def tried(question: Callable[[], object], cpu_s: float) -> bool | None:
 
     It is asked in a copy of this process, for Spot cannot be stopped.
     """
-    child = os.fork()
+    with warnings.catch_warnings():
+        # Other threads, which Python 3.12 warns of, have no part in what the copy does.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
     if child == 0:
         status = 2
         try:

@@ -103,7 +103,7 @@ def _guessed(formula: Formula, memories: Sequence[Memory], wording: Wording) -> 
     guessing = wording.translated(wording.language([wording.said(formula), *defined]), "small")
     projection = spot.remove_ap()
     for memory in memories:
-        projection.add_ap(wording.said(memory.atom))
+        projection.add_ap(wording.said(memory.atom).ap_name())
     return spot.postprocess(projection.strip(guessing), *_SHAPE)
 
 
@@ -138,7 +138,7 @@ def _by_progression(formula: Formula, wanted: bool, wording: Wording) -> Any | N
     progression = Progression(formula if wanted else Unary(_NOT, formula), wording)
     if wording.alive is not None:
         return _shaped(progression.finite(wording.alive))
-    if progression.is_safety or progression.is_cosafety:
+    if progression.is_decided:
         return _shaped(progression.infinite())
     return None
 

@@ -32,7 +32,9 @@ SYNTAX = {
         "something stands where the language has no place for it",
         "Up to the underlined place the text can be read, and there it cannot go on. Beside the "
         "place stands what could have come; often an operator is spelt otherwise, a word is "
-        "misspelt, or a separator is missing.",
+        "misspelt, or a separator is missing. Of two comparisons in a row each is written out: "
+        "`1 m < gap(v) and gap(v) < 2 m`; a conditional inside a formula stands in parentheses; a "
+        "bound's numbers have a unit.",
         "rulebook example\nsignal rain, wet\nhard rule r { require rain => wet }\n",
         "rulebook example\nsignal rain, wet\nhard rule r { require rain implies wet }\n",
     ),
@@ -73,7 +75,7 @@ SYNTAX = {
     ),
     "R0110": Explanation(
         "a date is not in the calendar",
-        "A date is written `year-month-day` and has to exist.",
+        "A date is written `year-month-day` and has to exist, behind `as of` and in `in force`.",
         'rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\nhard rule r { require p }\n',
         'rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\nhard rule r { require p }\n',
     ),
@@ -102,22 +104,25 @@ SYNTAX = {
     ),
     "R0114": Explanation(
         "something that must be there is missing",
-        "A file says first what it is, a rulebook has a rule, and every rule has one `require`.",
+        "A file says first what it is; a rulebook has a rule, or extends another; every rule has "
+        "one `require`, but for those that override another and leave it as it is.",
         'rulebook example\nhard rule r { says "Drive with care." }\n',
         "rulebook example\nsignal careful\n"
         'hard rule r { says "Drive with care." require always careful }\n',
     ),
     "R0115": Explanation(
         "a line stands in the wrong part of a file",
-        "Header lines (`title`, `law`, `use`) stand between `rulebook NAME` and the first item; a "
-        "vocabulary holds declarations only; a file holds one rulebook or one vocabulary.",
+        "Header lines (`title`, `law`, `use`, `extends`, `traffic`, `semantics`, `step`, "
+        "`priority`) stand between `rulebook NAME` and the first item; a vocabulary holds "
+        "declarations only; a file holds one rulebook or one vocabulary.",
         "vocabulary town {\n  signal fog\n  hard rule r { require not fog }\n}\n",
         "rulebook town\nsignal fog\nhard rule r { require not fog }\n",
     ),
     "R0116": Explanation(
         "something is given twice",
-        "A rulebook has one title and one law, a rule one `require`, `cite` and `says`. Two "
-        "demands are joined by `and`, or stand in two rules.",
+        "A rulebook has one title, one law, and extends one other; a rule has one `require`, "
+        "`cite`, `says` and `when`, and as many `unless` and examples as it needs. Two demands are "
+        "joined by `and`, or stand in two rules.",
         "rulebook example\nsignal p, q\nhard rule r { require p require q }\n",
         "rulebook example\nsignal p, q\nhard rule r { require p and q }\n",
     ),

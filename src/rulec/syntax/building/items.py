@@ -19,7 +19,7 @@ def item(
     span = values.span(node)
     match node.kind:
         case "rulebook_line":
-            return tree.FileLine("rulebook", values.name(leaf_of(node, "NAME")), span)
+            return tree.FileLine("rulebook", values.name(leaf_of(node, "BOOK")), span)
         case "vocabulary_line":
             return tree.FileLine("vocabulary", values.name(leaf_of(node, "NAME")), span)
         case "title_line":
@@ -30,7 +30,7 @@ def item(
         case "use_line":
             return tree.UseLine(values.name(leaf_of(node, "NAME")), span)
         case "extends_line":
-            return tree.ExtendsLine(values.name(leaf_of(node, "NAME")), span)
+            return tree.ExtendsLine(values.name(leaf_of(node, "BOOK")), span)
         case "traffic_line":
             return tree.TrafficLine("left" if leaves(node, "LEFT") else "right", span)
         case "semantics_line":

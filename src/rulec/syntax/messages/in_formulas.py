@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
     OPERATOR_WORDS,
     PREFIX_LETTERS,
     RESERVED,
@@ -232,13 +233,16 @@ def _operators(scene: Scene) -> str:
         return "`weak` stands before `until`, `next` or `previously`"
     if "strong" in (before, text):
         return "`strong` stands before `release`"
+    if scene.operand and text == "{":
+        return "a formula stands in parentheses, or alone, but not in braces"
     if scene.operand and text in _RELATIONS and text != "=":
         return "say what is compared, such as `speed <= 50 km/h`"
     return ""
 
 
 def _joined(scene: Scene) -> str:
-    more = scene.token(scene.at + 1) is not None and scene.text_behind != ")"
+    behind = scene.token(scene.at + 1)
+    more = behind is not None and behind.text not in {")", *CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):
         return "formulas are joined by `and`"
     return ""

@@ -10,6 +10,7 @@ from rulec.syntax.messages.in_items import IN_FORCE, advise_on_dates
 from rulec.syntax.messages.scene import Scene
 
 _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
+_SCOPE: Final = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
 _REMOVING: Final = ("remove", "delete", "repeal", "abolish", "cancel", "skip", "disable")
 _RELATIONS: Final = ("<", "<=", "==", "!=", ">=", ">", ":", ":=")
 _OTHER_CLAUSES: Final = {
@@ -17,6 +18,7 @@ _OTHER_CLAUSES: Final = {
     **dict.fromkeys(("from", "force", "since", "valid"), IN_FORCE),
     **dict.fromkeys(("except", "exception", "exempt"), "an exception is written `unless formula`"),
     **dict.fromkeys(("if", "given", "where"), "a condition is written `when formula`"),
+    "at": _SCOPE,
 }
 _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "where", "weight")
 
@@ -59,7 +61,7 @@ def advise_on_clause(scene: Scene) -> str:
     if scoped and scene.text in ("initially", "throughout", "at") and scene.operand:
         return "the scope stands behind the formula, such as `unless p throughout`"
     if scoped and scene.accepted >= SCOPES and scene.is_word():
-        return "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
+        return _SCOPE
     if scene.first == "require" and scene.operator and scene.text in ("throughout", "at"):
         return "only an `unless` clause has a scope; write `always p` for all of the time"
     if scene.operator and scene.text in _NO_OPERATORS:

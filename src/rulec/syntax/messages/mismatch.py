@@ -6,7 +6,13 @@ from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
-from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS, OPERATOR_LETTERS, RESERVED
+from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
+    ITEM_WORDS,
+    OPERATOR_LETTERS,
+    PROVISION_WORDS,
+    RESERVED,
+)
 from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.expectations import in_words
 from rulec.syntax.messages.in_items import other_word
@@ -49,15 +55,20 @@ _WHAT = {
     "accept": "the example",
     "reject": "the example",
 }
+_CLAUSE_BEGINS = CLAUSE_WORDS | {"throughout", "initially"}
+"""What may stand first on a line of a rule: clauses, and the scope of the exception above."""
+
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
 
 
 def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
     """Why the piece cannot be read."""
+    # A rulebook's name is a name, as far as messages are concerned.
+    accepted = frozenset("NAME" if one == "BOOK" else one for one in mismatch.accepted)
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
     found = inside[at] if at < len(inside) else None
-    scene = Scene(source, piece.kind, inside, at, mismatch.accepted)
+    scene = Scene(source, piece.kind, inside, at, accepted)
     first = scene.first
     end = span_of(source, tokens, piece).end
     span = Span(source, end, end) if found is None else _span(source, found)
@@ -79,7 +90,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         "R0104",
         message,
         span.place,
-        expected=in_words(mismatch.accepted),
+        expected=in_words(accepted),
         help=advise(scene),
         labels=_open_parenthesis(source, scene),
     )
@@ -95,7 +106,7 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
         f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected a clause such as `require` or `accept`",
-        help=did_you_mean(found.text, CLAUSE_WORDS) or other_clause(found.text) or formula,
+        help=did_you_mean(found.text, _CLAUSE_BEGINS) or other_clause(found.text) or formula,
     )
 
 
@@ -105,6 +116,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     if found.kind == "word":
         way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS) or other_word(found.text)
         named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
+        if others and others[0].text in ("=", ":="):
+            way_out = way_out or f"write `param {found.text} = …` or `define {found.text} = …`"
         if not (way_out or named or found.text in RESERVED):
             way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
     return Diagnostic(
@@ -151,8 +164,8 @@ def _is_word_for_name(scene: Scene) -> bool:
         return False
     if "NAME" not in scene.accepted:
         return False
-    if found.text in ("because", "rule") and scene.kind == "item":
-        return False
+    if found.text in ("because", "rule") and scene.first in PROVISION_WORDS:
+        return False  # the name before it is missing, or `rule` stands where it need not
     if scene.operand or scene.quantity:
         return found.text in ITEM_WORDS | CLAUSE_WORDS
     return scene.kind != "state" or found.text in ITEM_WORDS | CLAUSE_WORDS

@@ -62,9 +62,10 @@ class StructureMessages:
                 help="delete it, or look for a `{` that is missing before it",
                 labels=labels,
             )
+        word = self.tokens[index].text
         return Diagnostic(
             "R0109",
-            f"`{self.tokens[index].text}` stands outside of any rule",
+            f"`{'in force' if word == 'in' else word}` stands outside of any rule",
             self.place(index),
             expected="expected a declaration or a rule",
             help="clauses stand between the `{` and the `}` of their rule",

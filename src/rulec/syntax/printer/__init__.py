@@ -4,7 +4,13 @@ Reading what is printed gives the same tree back. Comments are not part of the t
 """
 
 from rulec.syntax.printer.files import header_of, print_file, print_item
-from rulec.syntax.printer.formulas import Style, needs_parentheses, precedence, print_formula
+from rulec.syntax.printer.formulas import (
+    Style,
+    needs_parentheses,
+    precedence,
+    print_formula,
+    print_whole,
+)
 from rulec.syntax.printer.items import print_header_line, print_in_force
 from rulec.syntax.printer.rules import clauses_of, print_example_head, print_rule_head, print_state
 
@@ -22,4 +28,5 @@ __all__ = [
     "print_item",
     "print_rule_head",
     "print_state",
+    "print_whole",
 ]

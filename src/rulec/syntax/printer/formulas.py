@@ -53,7 +53,13 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
             parts = (_operand(value, 1, style), _operand(condition, 1, style))
             return f"{parts[0]} if {parts[1]} else {_operand(otherwise, 0, style)}"
         case tree.Aggregate(kind, variable, body):
-            return f"{kind} {print_parameter(variable)} ({print_formula(body, style)})"
+            return f"{kind} {print_parameter(variable)} ({print_whole(body, style)})"
+
+
+def print_whole(node: tree.Formula, style: Style = "words") -> str:
+    """A formula where a conditional cannot stand without parentheses, such as behind `require`."""
+    text = print_formula(node, style)
+    return f"({text})" if isinstance(node, tree.Conditional) else text
 
 
 def precedence(node: tree.Formula) -> int:

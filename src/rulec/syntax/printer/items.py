@@ -9,6 +9,7 @@ from rulec.syntax.printer.formulas import (
     print_formula,
     print_parameters,
     print_text,
+    print_whole,
 )
 
 
@@ -52,7 +53,7 @@ def print_declaration(item: tree.Declaration, style: Style) -> str:
             default = "" if number is None else f" default {repr(number).removesuffix('.0')}"
             return f"quantity {name.text}{print_parameters(parameters)} in {unit}{default}"
         case tree.FactItem(formula):
-            return f"fact {print_formula(formula, style)}"
+            return f"fact {print_whole(formula, style)}"
 
 
 def print_provision(item: tree.Provision, style: Style) -> str:

@@ -9,6 +9,7 @@ from rulec.syntax.printer.formulas import (
     print_formula,
     print_parameters,
     print_text,
+    print_whole,
     quoted,
 )
 from rulec.syntax.printer.items import print_in_force, print_place
@@ -25,7 +26,7 @@ def print_rule_head(rule: tree.RuleItem) -> str:
 def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, str]]:
     """A rule's clauses but for its examples, in one order, as their words and what they say."""
     unless = (
-        (print_formula(one.formula, style), f" {one.scope}" if one.scope else "")
+        (print_whole(one.formula, style), f" {one.scope}" if one.scope else "")
         for one in rule.unless
     )
     said = [
@@ -34,8 +35,8 @@ def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, s
         ("certainty", rule.certainty),
         ("says", rule.says and print_text(rule.says)),
         ("in", rule.in_force and print_in_force(rule.in_force).removeprefix("in ")),
-        ("when", rule.when and print_formula(rule.when, style)),
-        ("require", rule.require and print_formula(rule.require, style)),
+        ("when", rule.when and print_whole(rule.when, style)),
+        ("require", rule.require and print_whole(rule.require, style)),
         *(("unless", formula + scope) for formula, scope in unless),
     ]
     return [(word, text) for word, text in said if text]

@@ -1,0 +1,197 @@
+"""What a formula asks of a word, and what a letter leaves of that to do.
+
+A formula is a Boolean function of its letter's propositions and of obligations for the rest of the
+word, each an until or a release with what is left of its range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import spot
+
+import buddy  # isort: skip - only once spot has been imported
+
+from rulec.automata.letters import fresh_name
+from rulec.automata.spot_bridge.wording import Wording
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Bound,
+    Comparison,
+    Constant,
+    Formula,
+    Same,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.logic.timing import Range, range_of
+
+_NOT, _OR, _AND = UnaryOperator.NOT, BinaryOperator.OR, BinaryOperator.AND
+_FALSE, _TRUE = Constant(False), Constant(True)
+
+
+class _Obligation(NamedTuple):
+    """``left until right`` if ``strong``, else ``left release right``, within what is left."""
+
+    strong: bool
+    left: Formula
+    right: Formula
+    span: Range
+
+
+class Obligations:
+    """The obligations of a formula without operators of the past, as variables of BDDs.
+
+    ``propositions``, a graph without states, has a variable for each: those of letters, by their
+    ``names``, come before those of obligations. ``first`` is what the formula asks of a letter and
+    of the rest of the word, ``unfolded`` what each obligation asks, by its variable, and ``known``
+    what obligations imply of each other.
+    ``is_safety``: no word is rejected but by one of its prefixes; ``is_cosafety``: none is accepted
+    but by one. Judged by the formula's operators, so that it may be one although neither is true.
+    """
+
+    def __init__(self, formula: Formula, wording: Wording) -> None:
+        self.propositions = spot.make_twa_graph(wording.dictionary)
+        self.names = {one: wording.names[one] for one in atoms_of(formula)}
+        self._letters = {
+            one: buddy.bdd_ithvar(self.propositions.register_ap(name))
+            for one, name in self.names.items()
+        }
+        self._variables: dict[_Obligation, Any] = {}
+        self._taken = {*wording.names.values(), wording.alive or ""}
+        self.first = self._now(formula, True)
+        self.unfolded = {
+            buddy.bdd_var(self._variables[one]): self._unfolded(one) for one in self._all()
+        }
+        self.is_safety = not any(o.strong and o.span.high is None for o in self._variables)
+        self.is_cosafety = all(o.strong or o.span.high is not None for o in self._variables)
+        self.known = self._implications()
+
+    def _all(self) -> Iterator[_Obligation]:
+        """All obligations: unfolding one of them may bring up more."""
+        done = 0
+        while done < len(self._variables):
+            pending = list(self._variables)[done:]
+            done += len(pending)
+            yield from pending
+
+    def _variable(self, one: _Obligation) -> Any:
+        if one not in self._variables:
+            name = fresh_name(f"obligation {len(self._variables)}", self._taken)
+            self._variables[one] = buddy.bdd_ithvar(self.propositions.register_ap(name))
+        return self._variables[one]
+
+    def _now(self, formula: Formula, wanted: bool) -> Any:
+        """That the formula, or its negation, holds: by this letter and what it leaves to do."""
+        match formula:
+            case Atom() | Comparison():
+                return self._letters[formula] if wanted else -self._letters[formula]
+            case Constant(value):
+                return buddy.bddtrue if value is wanted else buddy.bddfalse
+            case Unary(UnaryOperator.NOT, operand):
+                return self._now(operand, not wanted)
+            case Binary(BinaryOperator.AND | BinaryOperator.OR as operator, left, right):
+                first, second = self._now(left, wanted), self._now(right, wanted)
+                return first & second if (operator is _AND) is wanted else first | second
+            case Binary(BinaryOperator.IMPLIES, left, right):
+                return self._now(Binary(_OR, Unary(_NOT, left), right), wanted)
+            case Binary(BinaryOperator.IFF | BinaryOperator.XOR as operator, left, right):
+                same = (operator is BinaryOperator.IFF) is wanted
+                return (self._now(left, True) & self._now(right, same)) | (
+                    self._now(left, False) & self._now(right, not same)
+                )
+            case Unary() | Binary():
+                return self._temporal(formula, range_of(formula), wanted)
+            case Same():
+                raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+
+    def _temporal(self, formula: Unary | Binary, span: Range, wanted: bool) -> Any:
+        match formula:
+            case Unary(UnaryOperator.NEXT | UnaryOperator.EVENTUALLY, operand):
+                one = _Obligation(True, _TRUE, operand, span)
+            case Unary(UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS, operand):
+                one = _Obligation(False, _FALSE, operand, span)
+            case Unary(UnaryOperator.NEVER, operand):
+                one = _Obligation(False, _FALSE, Unary(_NOT, operand), span)
+            case Binary(BinaryOperator.UNTIL | BinaryOperator.THEN, left, right):
+                one = _Obligation(True, left, right, span)
+            case Binary(BinaryOperator.RELEASE, left, right):
+                one = _Obligation(False, left, right, span)
+            case Binary(BinaryOperator.STRONG_RELEASE, left, right, bound):
+                turned = Unary(_NOT, left), Unary(_NOT, right)
+                return self._now(Binary(BinaryOperator.WEAK_UNTIL, *turned, bound), not wanted)
+            case Binary(BinaryOperator.WEAK_UNTIL, left, right) if span == Range(0, None):
+                one = _Obligation(False, right, Binary(_OR, left, right), Range(0, None))
+            case Binary(BinaryOperator.WEAK_UNTIL, left, right):
+                return self._now(_weak_until(left, right, span), wanted)
+            case _:
+                raise ValueError("operators of the past have no future")
+        if not wanted:
+            turned = Unary(_NOT, one.left), Unary(_NOT, one.right)
+            one = _Obligation(not one.strong, *turned, span)
+        return self._unfolded(one)
+
+    def _unfolded(self, one: _Obligation) -> Any:
+        """What an obligation asks of this letter, and what it leaves to the rest of the word."""
+        strong, left, right, (low, high) = one
+        if high is not None and high < low:
+            return buddy.bddfalse if strong else buddy.bddtrue
+        if high is not None and 0 < low < high and left == (_TRUE if strong else _FALSE):
+            # Instant by instant, so that ranges that overlap are seen to ask for the same.
+            asked = buddy.bddfalse if strong else buddy.bddtrue
+            for distance in range(low, high + 1):
+                there = self._unfolded(one._replace(span=Range(distance, distance)))
+                asked = asked | there if strong else asked & there
+            return asked
+        ends_here = low == 0 and high == 0
+        now = self._now(right, True) if low == 0 else buddy.bddfalse if strong else buddy.bddtrue
+        if ends_here:
+            return now
+        rest = Range(max(low - 1, 0), None if high is None else high - 1)
+        later = self._variable(one._replace(span=rest))
+        if strong:
+            return now | (self._now(left, True) & later)
+        return now & (self._now(left, True) | later)
+
+    def _implications(self) -> Any:
+        """What obligations imply of each other: a shorter until a longer one."""
+        families: dict[tuple[bool, Formula, Formula], list[tuple[float, Any]]] = {}
+        for one, variable in self._variables.items():
+            if one.span.low == 0:
+                reach = float("inf") if one.span.high is None else one.span.high
+                families.setdefault(one[:3], []).append((reach, variable))
+        known = buddy.bddtrue
+        for (strong, _, _), family in families.items():
+            family.sort(key=lambda each: each[0], reverse=not strong)
+            for (_, shorter), (_, longer) in pairwise(family):
+                known &= -shorter | longer
+        return known
+
+    def ends_well(self, state: Any) -> bool:
+        """Where nothing comes any more, no until is fulfilled and no release is broken."""
+        for one, variable in self._variables.items():
+            state = buddy.bdd_restrict(state, -variable if one.strong else variable)
+        return bool(state == buddy.bddtrue)
+
+
+def _weak_until(left: Formula, right: Formula, span: Range) -> Formula:
+    """The same by other operators, and by the unbounded ``weak until``."""
+    low, high = span
+    if high is not None:
+        bound = Bound(Fraction(low), Fraction(high), "steps")
+        lasting = Unary(UnaryOperator.ALWAYS, left, Bound(Fraction(0), Fraction(high), "steps"))
+        return Binary(_OR, Binary(BinaryOperator.UNTIL, left, right, bound), lasting)
+    first = Bound(Fraction(0), Fraction(low - 1), "steps")
+    then = Bound(Fraction(low), Fraction(low), "steps")
+    weak = Binary(BinaryOperator.WEAK_UNTIL, left, right)
+    return Binary(
+        _AND,
+        Unary(UnaryOperator.ALWAYS, left, first),
+        Unary(UnaryOperator.WEAK_NEXT, weak, then),
+    )

@@ -1,0 +1,53 @@
+"""The comments of a file, which the tree does not have, and where they stand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rulec.diagnostics import Source
+from rulec.syntax.scanner import Token
+
+_COMMENT = re.compile(r"#[^\n]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """``text`` from its ``#`` on, without blanks at its end; it begins at character ``start``.
+
+    ``trails``: something else stands before it on its line. ``column`` counts from 0.
+    """
+
+    text: str
+    start: int
+    column: int
+    trails: bool
+
+
+def comments_of(source: Source, tokens: Sequence[Token]) -> list[Comment]:
+    """All comments in order: they are what is left between the tokens but for white space."""
+    text = source.text
+    starts = [*(token.start for token in tokens), len(text)]
+    ends = [0, *(token.end for token in tokens)]
+    return [
+        _comment(source, found)
+        for end, start in zip(ends, starts, strict=True)
+        if start > end + 1 or (start > end and text[end] == "#")
+        for found in _COMMENT.finditer(text, end, start)
+    ]
+
+
+def _comment(source: Source, found: re.Match[str]) -> Comment:
+    start = found.start()
+    line_start = source.text.rfind("\n", 0, start) + 1
+    trails = bool(source.text[line_start:start].strip())
+    return Comment(found.group().rstrip(), start, start - line_start, trails)
+
+
+def blank_line_before(text: str, position: int) -> bool:
+    """Is there an empty line between what stands at ``position`` and what stands before it?"""
+    before = position
+    while before and text[before - 1].isspace():
+        before -= 1
+    return text.count("\n", before, position) > 1

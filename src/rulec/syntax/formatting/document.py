@@ -1,0 +1,230 @@
+"""Text that does not know its lines yet, and how it gets them.
+
+After Oppen, "Pretty Printing" (1980), and Wadler, "A Prettier Printer" (2003): a group stands on
+one line if it fits there, otherwise all of its own breaks become line ends. The lines depend on
+nothing but the document, so that what has been laid out once is laid out the same again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from rulec.syntax.formatting.comments import Comment
+
+WIDTH = 100
+"""Columns of a line."""
+
+_DEEPEST = 60
+"""No line begins further to the right: what is nested very deeply needs room, too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    """``flat`` while its group stands on one line, otherwise a line end."""
+
+    flat: str = " "
+
+
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """A space; a line end, ``deeper``, if what follows up to the next break does not fit."""
+
+    deeper: int = 4
+
+
+@dataclass(frozen=True, slots=True)
+class LineEnd:
+    """A line end in any case, with the comments that stand there, ``inner`` still deeper."""
+
+    trailing: Comment | None = None
+    own: tuple[Comment, ...] = ()
+    deeper: int = 0
+    inner: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Remembers where in its row something stands, for a column to be made there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Nest:
+    """Lines that begin inside begin this much deeper."""
+
+    deeper: int
+    inside: Document
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """On one line if it fits; ``forced`` if it cannot be."""
+
+    inside: Document
+    forced: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One after the other."""
+
+    parts: tuple[Document, ...]
+    forced: bool
+
+
+Document = str | Break | Fill | LineEnd | Mark | Nest | Group | Run
+
+
+@dataclass(slots=True)
+class Row:
+    """A line of the result: what it holds, its trailing comment, where its mark is.
+
+    ``opens``: it ends with the brace of a block.
+    """
+
+    code: str
+    comment: Comment | None = None
+    mark: int = 0
+    opens: bool = False
+
+
+def run(*parts: Document) -> Run:
+    """One after the other."""
+    return Run(parts, any(map(has_line_end, parts)))
+
+
+def group(*parts: Document, forced: bool = False) -> Group:
+    """On one line if it fits, and if it is not ``forced`` to break."""
+    inside = run(*parts)
+    return Group(inside, forced or inside.forced)
+
+
+def has_line_end(document: Document) -> bool:
+    """Does it break in any case?"""
+    match document:
+        case LineEnd():
+            return True
+        case Nest(inside=inside):
+            return has_line_end(inside)
+        case Group(forced=forced) | Run(forced=forced):
+            return forced
+        case _:
+            return False
+
+
+_Todo = list[tuple[int, bool, Document]]
+"""What is still to be laid out, the next one last: indentation, on one line, document."""
+
+
+@dataclass(slots=True)
+class _Layout:
+    todo: _Todo
+    width: int
+    rows: list[Row] = field(default_factory=list)
+
+    def go(self) -> list[Row]:
+        self._line(self.todo[0][0])
+        while self.todo:
+            indent, flat, document = self.todo.pop()
+            match document:
+                case str():
+                    self.rows[-1].code += document
+                case Mark():
+                    self.rows[-1].mark = len(self.rows[-1].code)
+                case Run(parts):
+                    self.todo.extend((indent, flat, part) for part in reversed(parts))
+                case Nest(deeper, inside):
+                    self.todo.append((indent + deeper, flat, inside))
+                case Group(inside, forced):
+                    fits = flat or (not forced and self._fits(indent, inside))
+                    self.todo.append((indent, fits, inside))
+                case Break(text):
+                    if flat:
+                        self.rows[-1].code += text
+                    else:
+                        self._line(indent)
+                case Fill(deeper):
+                    if flat or self._next_fits():
+                        self.rows[-1].code += " "
+                    else:
+                        self._line(indent + deeper)
+                case LineEnd(trailing, own, deeper, inner):
+                    self.rows[-1].comment = trailing
+                    for comment in own:
+                        self._line(indent + deeper + inner)
+                        self.rows[-1].code += comment.text
+                    self._line(indent + deeper)
+        return self.rows
+
+    def _line(self, indent: int) -> None:
+        self.rows.append(Row(" " * min(indent, _DEEPEST)))
+
+    def _room(self) -> int:
+        return self.width - len(self.rows[-1].code)
+
+    def _fits(self, indent: int, document: Document) -> bool:
+        """Does it fit on this line, with what has to follow it there?"""
+        room = self._room()
+        inner: _Todo = [(indent, True, document)]
+        behind = len(self.todo)
+        while room >= 0:
+            if inner:
+                _, flat, one = inner.pop()
+            elif behind:
+                behind -= 1
+                _, flat, one = self.todo[behind]
+            else:
+                return True
+            match one:
+                case str():
+                    room -= len(one)
+                case Run(parts):
+                    inner.extend((0, flat, part) for part in reversed(parts))
+                case Nest(inside=inside) | Group(inside=inside):
+                    inner.append((0, flat, inside))
+                case Break(text):
+                    if not flat:
+                        return True
+                    room -= len(text)
+                case Fill():
+                    if not flat:
+                        return True
+                    room -= 1
+                case LineEnd():
+                    return True
+        return False
+
+    def _next_fits(self) -> bool:
+        """Does what follows fit on this line, behind a space, up to where a line may end?"""
+        room = self._room() - 1
+        inner: list[Document] = []
+        behind = len(self.todo)
+        while room >= 0:
+            if inner:
+                one = inner.pop()
+            elif behind:
+                behind -= 1
+                flat, one = self.todo[behind][1:]
+                assert not flat, "a group on one line does not ask"
+            else:
+                return True
+            match one:
+                case str():
+                    room -= len(one)
+                case Run(parts):
+                    inner.extend(reversed(parts))
+                case Nest(inside=inside) | Group(inside=inside):
+                    inner.append(inside)
+                case Break() | Fill() | LineEnd():
+                    return True
+        return False
+
+
+def lay_out(document: Document, indent: int = 0, width: int = WIDTH) -> list[Row]:
+    """The rows of a document; none is longer than ``width`` unless it cannot be broken."""
+    return _Layout([(indent, False, document)], width).go()
+
+
+def on_one_line(document: Document) -> str:
+    """A document that has no line end of its own, as one line."""
+    (row,) = _Layout([(0, True, document)], 0).go()
+    return row.code

@@ -1,0 +1,221 @@
+"""What the grammar matched as a document: where spaces stand and where lines may end.
+
+The file's own words and signs are written again, in their order, one by one. Two things only are
+not: parentheses around what they don't group, and white space.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rulec.syntax.formatting.comments import Comment
+from rulec.syntax.formatting.document import (
+    Break,
+    Document,
+    Fill,
+    LineEnd,
+    Nest,
+    Run,
+    group,
+    run,
+)
+from rulec.syntax.formatting.parentheses import OPERATIONS, level
+from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.keywords import OPERATOR_LETTERS
+
+Node = Branch | Leaf
+Gap = Break | Fill | Literal["", " "]
+"""What stands between two tokens; only the first two can end a line, or hold a comment."""
+
+_LEADS = frozenset(("AS", "IN", "BECAUSE", "DEFAULT", "UNTIL", "GREATER"))
+"""What may begin a line in a header line, a declaration, a provision or a head: no words that may
+be names elsewhere, since a name on a line of its own may begin something new."""
+
+_SCOPES = frozenset(("INITIALLY", "AT_START", "THROUGHOUT", "AT_SOME_POINT", "AT_END"))
+
+_CHAINS = frozenset(("infix", "arithmetic", "compare"))
+
+
+@dataclass(slots=True)
+class Speller:
+    """Walks through a file from its beginning to its end, and gives out each comment once."""
+
+    comments: deque[Comment]
+
+    def take(self, until: int) -> tuple[Comment | None, tuple[Comment, ...]]:
+        """The comments before a position: the one that trails what is before it, and the others."""
+        found: list[Comment] = []
+        while self.holds_comment(until):
+            found.append(self.comments.popleft())
+        trailing = next((one for one in found if one.trails), None)
+        return trailing, tuple(one for one in found if one is not trailing)
+
+    def holds_comment(self, until: int) -> bool:
+        """Is there a comment before a position that has not been taken yet?"""
+        return bool(self.comments) and self.comments[0].start < until
+
+    def gap(self, gap: Gap, following: int) -> Document:
+        """The gap before the token at ``following``, with its comments if it can hold them."""
+        if isinstance(gap, str):
+            return gap
+        trailing, own = self.take(following)
+        if trailing is None and not own:
+            return gap
+        return LineEnd(trailing, own, gap.deeper if isinstance(gap, Fill) else 0)
+
+    def closing_gap(self, flat: str, following: int) -> Document:
+        """The gap before what closes a block; its comments belong to the block."""
+        gap = self.gap(Break(flat), following)
+        return replace(gap, inner=2) if isinstance(gap, LineEnd) else gap
+
+    def spell(self, node: Node) -> Document:
+        """A node of any kind."""
+        match node:
+            case Leaf():
+                return node.text if node.kind == "STRING" else " ".join(node.text.split())
+            case Branch(kind="infix" | "arithmetic" | "compare"):
+                return self._chain(_links(node, level(node)))
+            case Branch("prefix", (Leaf() as sign, *_, operand)):
+                return self._operator(node.children, _behind_prefix(sign, node.children, operand))
+            case Branch("minus", children):
+                return self._operator(children, "")
+            case Branch("group", (opening, inside, closing)):
+                return self._parentheses(opening, inside, closing)
+            case Branch("aggregate", (kind, variable, opening, inside, closing)):
+                head = run(self.spell(kind), " ", self.spell(variable), " ")
+                return run(head, self._parentheses(opening, inside, closing))
+            case Branch("conditional", children):
+                value, if_word, condition, else_word, otherwise = children
+                return self._chain([[value], [if_word, condition], [else_word, otherwise]])
+            case Branch("state", children):
+                return self._chain(_in_pairs(children))
+            case Branch():
+                return self.plain(node.children, node.kind)
+
+    def plain(self, nodes: Sequence[Node], kind: str, deeper: int = 4) -> Run:
+        """Node after node, with spaces and possible line ends as the tokens ask for them."""
+        parts: list[Document] = []
+        for index, node in enumerate(nodes):
+            if index:
+                gap = between(last_leaf(nodes[index - 1]), first_leaf(node), kind, deeper)
+                parts.append(self.gap(gap, first_leaf(node).start))
+            if isinstance(node, Branch) and node.kind not in OPERATIONS:
+                parts.append(self.plain(node.children, node.kind, deeper))
+            else:
+                parts.append(self.spell(node))
+        return run(*parts)
+
+    def worded(self, node: Branch, column: int, deeper: int = 4) -> Run:
+        """A word and what it says, which begins at ``column`` and goes on there."""
+        word, *said = node.children
+        start = self.spell(word)
+        assert isinstance(start, str), "a word is a leaf"
+        lead = self.gap(Break(" " * (column - len(start))), first_leaf(said[0]).start)
+        first = lead.flat if isinstance(lead, Break) else lead
+        return run(start, Nest(column, run(first, self.plain(said, node.kind, deeper))))
+
+    def assigned(self, node: Branch, column: int, *, broken: bool) -> Document:
+        """``word name = value``, with the name at ``column``.
+
+        The value is on lines of its own if it is ``broken`` off, or too long.
+        """
+        at = next(index for index, one in enumerate(node.children) if _is_equals(one)) + 1
+        word = self.spell(node.children[0])
+        assert isinstance(word, str), "a word is a leaf"
+        head = run(word.ljust(column), self.plain(node.children[1:at], node.kind))
+        lead = self.gap(Break(), first_leaf(node.children[at]).start)
+        return group(
+            head, Nest(2, run(lead, self.plain(node.children[at:], node.kind))), forced=broken
+        )
+
+    def _chain(self, links: Sequence[Sequence[Node]]) -> Document:
+        """Operands of operators that bind equally tightly: all on one line, or each on its own."""
+        parts: list[Document] = []
+        for index, link in enumerate(links):
+            if index:
+                parts.append(self.gap(Break(), first_leaf(link[0]).start))
+            parts.append(self._operator(link, _behind_operator(link)))
+        return group(*parts)
+
+    def _operator(self, nodes: Sequence[Node], behind: Gap) -> Run:
+        """An operator with its bound, if any, and its operand; or an operand alone."""
+        *before, operand = nodes
+        parts = [self.spell(node) for node in before]
+        if before:
+            parts.append(self.gap(behind, first_leaf(operand).start))
+        inside = self.spell(operand)
+        chained = isinstance(operand, Branch) and operand.kind in _CHAINS
+        return run(*parts, Nest(2, inside) if chained else inside)
+
+    def _parentheses(self, opening: Node, inside: Node, closing: Node) -> Document:
+        first = self.spell(opening)
+        begins = self.gap(Break(""), first_leaf(inside).start)
+        text = self.spell(inside)
+        ends = self.closing_gap("", first_leaf(closing).start)
+        return group(first, Nest(2, run(begins, text)), ends, self.spell(closing))
+
+
+def first_leaf(node: Node) -> Leaf:
+    """Where a node begins."""
+    while isinstance(node, Branch):
+        node = node.children[0]
+    return node
+
+
+def last_leaf(node: Node) -> Leaf:
+    """Where a node ends."""
+    while isinstance(node, Branch):
+        node = node.children[-1]
+    return node
+
+
+def _links(node: Node, of: int) -> list[list[Node]]:
+    """The operands, each behind its operator, of all operators of one level."""
+    if not isinstance(node, Branch) or node.kind not in _CHAINS or level(node) != of:
+        return [[node]]
+    left, *operator, right = node.children
+    first, *others = _links(right, of)
+    return [*_links(left, of), [*operator, *first], *others]
+
+
+def _in_pairs(children: Iterable[Node]) -> list[list[Node]]:
+    """A state's facts, each behind its ``and``."""
+    first, *others = children
+    return [[first], *([others[at], others[at + 1]] for at in range(0, len(others), 2))]
+
+
+def _behind_prefix(sign: Leaf, children: Sequence[Node], operand: Node) -> Gap:
+    grouped = isinstance(operand, Branch) and operand.kind == "group" and len(children) == 2
+    if sign.text == "!" or (sign.text in OPERATOR_LETTERS and grouped):
+        return ""
+    return _behind_operator(children)
+
+
+def _behind_operator(link: Sequence[Node]) -> Gap:
+    """What is between an operator and its operand; behind a bound a name does not begin a line."""
+    bounded = len(link) > 2 and first_leaf(link[-1]).kind == "NAME"
+    return " " if bounded else Fill()
+
+
+def _is_equals(node: Node) -> bool:
+    return isinstance(node, Leaf) and node.kind == "EQUALS"
+
+
+def between(before: Leaf, behind: Leaf, inside: str, deeper: int) -> Gap:
+    """What stands between two tokens that are no operator's."""
+    match before.kind, behind.kind:
+        case (_, "COMMA" | "RPAR" | "RSQB" | "LSQB") | ("LPAR" | "LSQB" | "MINUS", _):
+            return ""
+        case (_, "COLON"):
+            return " " if inside == "param_item" else ""
+        case ("NOT", _):
+            return "" if before.text == "!" else " "
+        case ("NAME", "LPAR"):
+            return " " if inside in ("rule_head", "example_head") else ""
+        case ("COMMA", _):
+            return Fill(deeper)
+        case (_, kind):
+            return Fill(deeper) if kind in _LEADS or kind in _SCOPES else " "

@@ -1,0 +1,218 @@
+"""``rulec show``."""
+
+import json
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.rulebook.loader import parse_rulebook
+from rulec.runtime.examples import run_all
+from rulec.workflow import compile_rulebook
+
+TWO = """\
+rulebook two
+use road
+signal horn default false
+hard rule quiet { says "No horn." require always not horn }
+soft rule pass_by (v: vehicle, w: bus) {
+  require never (behind(v) then beside(v) then in_front_of(w))
+}
+"""
+
+
+@pytest.fixture
+def two(tmp_path):
+    path = tmp_path / "two.rules"
+    path.write_text(TWO)
+    return str(path)
+
+
+def test_the_whole_page(capsys):
+    assert main(["show", "esterle2019", "R3"]) == 0
+    assert (
+        capsys.readouterr().out
+        == """\
+hard rule R3 (p: pedestrian)
+  cite  Article 21.3
+  says  Stop if pedestrians are using or intend to use a pedestrian crossing.
+
+in English
+  For every pedestrian p: at all times it is not the case that both the surface is “R_pc” and the
+  position of p is “f”.
+
+formula
+  always not (R_pc and f(p))
+
+automaton
+  2 states; a trace starts in state 0, and is accepted or rejected as it says behind its last step
+  state 0
+    R_pc and f(p)   to state 1   rejected
+    otherwise       stays        accepted
+  state 1: violated for good: whatever follows, the trace is rejected
+
+shortest traces
+  accept { f(p) }
+  reject { R_pc and f(p) }
+"""
+    )
+
+
+def test_without_a_rule_every_one_in_brief(two, capsys):
+    assert main(["show", two]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(
+        "hard rule quiet\n  says  No horn.\n\n  At all times “horn” does not hold.\n\n\n"
+        "soft rule pass_by (v: vehicle, w: bus)\n  weight  1\n\n"
+        "  For every vehicle v and every other bus w: it never happens that"
+    )
+    assert "automaton" not in out
+
+
+def test_the_only_rule_in_full(tmp_path, capsys):
+    path = tmp_path / "one.rules"
+    path.write_text("rulebook alone signal p hard rule r { require p or not p }")
+    assert main(["show", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "state 0: satisfied for good" in out
+    assert "no trace is rejected: nothing can violate this rule" in out
+
+
+def test_nothing_can_satisfy_it(tmp_path, capsys):
+    path = tmp_path / "one.rules"
+    path.write_text("rulebook alone signal p hard rule r { require p and not p }")
+    assert main(["show", str(path)]) == 0
+    assert "no trace is accepted: nothing can satisfy this rule" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"), [("quite", "did you mean `quiet`?"), ("zz", "it has `quiet`, `pass_by`")]
+)
+def test_an_unknown_rule(two, name, hint, capsys):
+    assert main(["show", two, name]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert f"two has no rule `{name}`; {hint}" in captured.err
+
+
+def test_an_unknown_rulebook(capsys):
+    assert main(["show", "esterle2018"]) == 2
+    assert "esterle2019" in capsys.readouterr().err
+
+
+def test_an_automaton_is_one_of_a_rule(two, capsys):
+    assert main(["show", two, "--automaton", "dot"]) == 2
+    assert "give the RULE whose automaton to show: `quiet`, `pass_by`" in capsys.readouterr().err
+
+
+def test_json_and_automaton_are_two_answers(capsys):
+    assert main(["show", "esterle2019", "R1", "--json", "--automaton", "dot"]) == 2
+    assert "give --json or --automaton" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("output_format", "beginning"),
+    [("text", "5 states; "), ("dot", "// esterle2019 R1: "), ("svg", "<svg ")],
+)
+def test_the_automaton_alone(output_format, beginning, capsys):
+    assert main(["show", "esterle2019", "R1", "--automaton", output_format]) == 0
+    assert capsys.readouterr().out.startswith(beginning)
+
+
+@pytest.mark.parametrize(
+    ("name", "beginning"),
+    [("r.svg", "<svg "), ("r.gv", "// "), ("r.dot", "// "), ("r.txt", "hard rule R1 ")],
+)
+def test_a_file_in_the_format_of_its_name(name, beginning, tmp_path, capsys):
+    path = tmp_path / name
+    assert main(["show", "esterle2019", "R1", "-o", str(path)]) == 0
+    assert capsys.readouterr().out == f"wrote {path}\n"
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith(beginning)
+    if name == "r.svg":
+        assert ElementTree.fromstring(text).tag == "{http://www.w3.org/2000/svg}svg"
+
+
+def test_a_file_that_cannot_be_written(tmp_path, capsys):
+    assert main(["show", "esterle2019", "R1", "-o", str(tmp_path / "no" / "r.svg")]) == 2
+    assert "R0702" in capsys.readouterr().err
+
+
+def test_too_large_to_draw(tmp_path, capsys):
+    path = tmp_path / "large.rules"
+    path.write_text("rulebook large signal p, q hard rule r { require G (p -> X X X X X X q) }")
+    picture = tmp_path / "large.svg"
+    assert main(["show", str(path), "-o", str(picture)]) == 2
+    assert "too large to draw" in capsys.readouterr().err
+    assert not picture.exists()
+    assert main(["show", str(path)]) == 0
+    assert "65 states and " in capsys.readouterr().out
+    assert main(["show", str(path), "--automaton", "text"]) == 0
+    assert "state 64: violated for good" in capsys.readouterr().out
+
+
+def test_all_of_it_as_data(capsys):
+    assert main(["show", "esterle2019", "R3", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    (rule,) = data["rules"]
+    assert data["rulebook"] == "esterle2019"
+    assert rule["cite"] == "Article 21.3"
+    assert rule["sentence"].startswith("For every pedestrian p: at all times it is not the case")
+    assert rule["accepts"] == {"objects": [], "states": ["f(p)"], "remarks": []}
+    assert rule["rejects"]["states"] == ["R_pc and f(p)"]
+    assert [one["fate"] for one in rule["automaton"]["states"]] == ["open", "violated"]
+    stays = {
+        "source": 0,
+        "target": 0,
+        "condition": "R_cw or not f(p)",
+        "otherwise": True,
+        "accepted": True,
+    }
+    assert stays in rule["automaton"]["transitions"]
+
+
+def test_the_rules_in_brief_as_data(two, capsys):
+    assert main(["show", two, "--json"]) == 0
+    rules = json.loads(capsys.readouterr().out)["rules"]
+    assert [rule["name"] for rule in rules] == ["quiet", "pass_by"]
+    assert all("automaton" not in rule for rule in rules)
+
+
+def test_a_compiled_rulebook_shows_the_same(tmp_path, capsys):
+    assert main(["compile", "esterle2019", "-o", str(tmp_path)]) == 0
+    capsys.readouterr()
+    for arguments in (["R1"], ["R2", "--automaton", "svg"], []):
+        main(["show", "esterle2019", *arguments])
+        source = capsys.readouterr().out
+        assert main(["show", str(tmp_path / "esterle2019.json"), *arguments]) == 0
+        assert capsys.readouterr().out == source
+
+
+def test_the_shortest_traces_can_be_pasted(capsys):
+    book = (
+        "rulebook pasted use road signal p, q default false\n"
+        "hard rule r (v: vehicle) {{ require {formula} {examples} }}"
+    )
+    for formula in (
+        "always (behind(v) implies next (p since q))",
+        "never (behind(v) then beside(v) and left_of(v) then in_front_of(v))",
+        "(p and crossing) until (left_of(v) or q)",
+    ):
+        bare = parse_rulebook(book.format(formula=formula, examples=""))
+        from rulec.report.rule_page import page_of
+
+        page = page_of(bare.rules[0], compile_rulebook(bare).rules[0], bare.vocabulary)
+        examples = " ".join(
+            f"{word} {{ {'; '.join(trace.states)} }}"
+            for word, trace in (("accept", page.accepted), ("reject", page.rejected))
+        )
+        pasted = parse_rulebook(book.format(formula=formula, examples=examples))
+        run = run_all(pasted, compile_rulebook(pasted))
+        assert [one.passed for one in run.outcomes] == [True, True]
+
+
+def test_control_characters_are_not_passed_on(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert main(["show", "esterle2019", "R1"]) == 0
+    assert not re.search(r"[\x00-\x09\x0b-\x1f]", capsys.readouterr().out)

@@ -1,0 +1,234 @@
+"""Bounds, numbers and finite words: every engine says what direct evaluation says."""
+
+import pytest
+import spot
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from past_in_spot import in_spot, spot_automaton
+from timed import (
+    CARS,
+    GAP,
+    SPEED,
+    TIMED_VOCABULARY,
+    comparison,
+    letter_number,
+    letters_of,
+    timed_formulas,
+    timed_words,
+    without_bounds,
+)
+
+from rulec.automata.letters import count_letters, knowledge, propositions_of, reads_of
+from rulec.automata.sampling import agrees, verdict
+from rulec.automata.spot_bridge import explore, in_hoa, translate
+from rulec.automata.tables import build_machine
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from rulec.logic.semantics import holds
+from rulec.logic.timing import PAST, operations_of
+
+both_semantics = st.sampled_from(["stutter", "finite"])
+
+
+def is_easy(formula):
+    """Spot's own way takes for ever with many operators unrolled, and many past ones guessed."""
+    operations = list(operations_of(without_bounds(formula)))
+    return len(operations) <= 20 and sum(one.operator in PAST for one in operations) <= 3
+
+
+def machine_of(formula, semantics):
+    reads = reads_of(formula, TIMED_VOCABULARY)
+    found = translate(formula, reads, semantics)
+    return build_machine(explore(found, reads), reads, count_letters(reads))
+
+
+def by_table(formula, word, semantics):
+    machine = machine_of(formula, semantics)
+    return verdict(machine, [letter_number(machine.reads, state) for state in word])
+
+
+def by_spot(formula, word, semantics):
+    alive = "alive" if semantics == "finite" else None
+    return meets(spot_automaton(formula, alive=alive), formula, word, alive)
+
+
+def by_hoa(formula, word, semantics):
+    reads = reads_of(formula, TIMED_VOCABULARY)
+    found = translate(formula, reads, semantics)
+    text = in_hoa(found.automaton, "rule", ("comment",))
+    return meets(spot.automaton(text), formula, word, found.alive)
+
+
+def meets(automaton, formula, word, alive):
+    """Spot's word automaton meets the automaton. The word decides every proposition."""
+    conjunctions = [
+        " & ".join(
+            ("" if one in letter else "!") + in_spot(one) for one in propositions_of(formula)
+        )
+        or "1"
+        for letter in letters_of(formula, word)
+    ]
+    if alive is None:
+        text = "; ".join([*conjunctions[:-1], f"cycle{{{conjunctions[-1]}}}"])
+    else:
+        text = "; ".join([*(f"{one} & {alive}" for one in conjunctions), f"cycle{{!{alive}}}"])
+    return spot.parse_word(text).as_automaton().intersects(automaton)
+
+
+ENGINES = {"table": by_table, "Spot": by_spot, "HOA file": by_hoa}
+
+P, Q = Atom("p"), Atom("q")
+STATE = {"place": "near", "light": "red", "p": True, "q": False, SPEED: 1, GAP: 0, CARS: 2}
+NOT_P = {**STATE, "p": False}
+Q_TOO = {**STATE, "q": True}
+
+
+def bound(low, high):
+    return Bound(low, high, "steps")
+
+
+def later(operator, low, high, formula=P):
+    return Unary(operator, formula, bound(low, high))
+
+
+ALWAYS, EVENTUALLY, ONCE = UnaryOperator.ALWAYS, UnaryOperator.EVENTUALLY, UnaryOperator.ONCE
+WINDOW = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, Q, later(ONCE, 2, 3)))
+MIXED = Unary(ALWAYS, Unary(EVENTUALLY, later(ALWAYS, 0, 3)))
+UNSETTLED = Unary(ALWAYS, later(ONCE, 1, 3, Unary(UnaryOperator.NEXT, P)))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@given(timed_formulas, timed_words, both_semantics)
+@example(WINDOW, [STATE, NOT_P, NOT_P, {**NOT_P, "q": True}], "stutter")
+@example(WINDOW, [STATE, NOT_P, NOT_P, NOT_P, {**NOT_P, "q": True}], "stutter")
+@example(WINDOW, [STATE, Q_TOO], "finite")
+@example(MIXED, [STATE, NOT_P], "stutter")
+@example(MIXED, [NOT_P, STATE], "stutter")
+@example(MIXED, [NOT_P, STATE], "finite")
+@example(UNSETTLED, [STATE, STATE], "stutter")
+@example(UNSETTLED, [STATE, STATE], "finite")
+@example(Unary(UnaryOperator.WEAK_NEXT, P, bound(2, 2)), [STATE, STATE], "finite")
+@example(Unary(UnaryOperator.NEXT, P, bound(2, 2)), [STATE, STATE], "finite")
+@example(later(UnaryOperator.PREVIOUSLY, 0, 0), [STATE], "stutter")
+@example(Binary(BinaryOperator.THEN, P, Q, bound(0, 0)), [Q_TOO, Q_TOO], "stutter")
+@example(Unary(ALWAYS, comparison("count y: car (near(y))", "=", 2)), [STATE], "finite")
+def test_engine_agrees_with_direct_evaluation(engine, formula, word, semantics):
+    assume(engine != "Spot" or is_easy(formula))
+    expected = holds(formula, letters_of(formula, word), semantics)
+    assert ENGINES[engine](formula, word, semantics) == expected
+
+
+LONG = [
+    Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(EVENTUALLY, 0, 40, Q))),
+    Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ALWAYS, 0, 40, Q))),
+    Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ONCE, 0, 40, Q))),
+    Unary(EVENTUALLY, Binary(BinaryOperator.AND, P, later(ALWAYS, 0, 40, Q))),
+]
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@pytest.mark.parametrize("formula", LONG)
+def test_a_long_bound_takes_as_many_states_as_it_has_steps(formula, semantics):
+    """One for each number of steps left, 0 to 39; one for nothing pending; lost, or won."""
+    machine = machine_of(formula, semantics)
+    assert len(machine.following) == 40 + 2
+    assert agrees(machine, formula, semantics)
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_ranges_that_overlap_ask_for_the_same_instants(semantics):
+    """Which of the coming 40 instants must have q: no set but unions of ranges of 25."""
+    formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ALWAYS, 16, 40, Q)))
+    machine = machine_of(formula, semantics)
+    assert len(machine.following) < 1000 < 2**16
+    assert agrees(machine, formula, semantics)
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_random_words_tell_machines_apart(semantics):
+    """So they are worth being asked: one step more or less shows."""
+    for formula, other in [
+        (LONG[0], Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(EVENTUALLY, 0, 41, Q)))),
+        (LONG[2], Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ONCE, 0, 39, Q)))),
+    ]:
+        assert not agrees(machine_of(formula, semantics), other, semantics)
+
+
+@given(timed_formulas, both_semantics)
+def test_machines_are_canonical(formula, semantics):
+    """The same language by other operators: another automaton, the same machine."""
+    twice = Unary(UnaryOperator.NOT, Unary(UnaryOperator.NOT, formula))
+    split = Binary(
+        BinaryOperator.OR,
+        Binary(BinaryOperator.AND, formula, formula),
+        Binary(BinaryOperator.AND, formula, Unary(UnaryOperator.NOT, formula)),
+    )
+    assert machine_of(formula, semantics) == machine_of(twice, semantics)
+    assert machine_of(formula, semantics) == machine_of(split, semantics)
+
+
+@given(timed_formulas, both_semantics)
+def test_machines_are_minimal(formula, semantics):
+    machine = machine_of(formula, semantics)
+    columns = list(zip(*machine.following, *machine.accepting, strict=True))
+    assert len(set(columns)) == len(columns)
+    blocks = [tuple(row) for row in machine.accepting]
+    for _ in machine.following:
+        blocks = [(blocks[s], *(blocks[t] for t in row)) for s, row in enumerate(machine.following)]
+        numbers = {block: n for n, block in enumerate(dict.fromkeys(blocks))}
+        blocks = [(numbers[block],) for block in blocks]
+    assert len(set(blocks)) == len(blocks)
+
+
+@given(timed_formulas)
+def test_the_automaton_is_the_formula_under_what_is_known(formula):
+    """The whole language, not some words of it: against Spot's own way with past and bounds."""
+    assume(is_easy(formula))
+    reads = reads_of(formula, TIMED_VOCABULARY)
+    facts = in_spot(knowledge(reads, propositions_of(formula)))
+    found = translate(formula, reads)
+    automaton = spot.automaton(in_hoa(found.automaton, "rule", ()))
+    assert spot.are_equivalent(automaton, spot_automaton(formula, f"G{facts}"))
+    assert spot.is_deterministic(automaton)
+    assert spot.is_complete(automaton)
+    assert automaton.acc().is_parity()[0]
+    known = {str(one) for one in propositions_of(formula)}
+    assert {ap.ap_name() for ap in automaton.ap()} <= known
+
+
+@given(timed_formulas)
+def test_so_it_is_on_finite_words(formula):
+    assume(is_easy(formula))
+    reads = reads_of(formula, TIMED_VOCABULARY)
+    facts = in_spot(knowledge(reads, propositions_of(formula)), "alive")
+    found = translate(formula, reads, "finite")
+    assert found.alive == "alive"
+    meant = spot_automaton(formula, f"G{facts}", alive="alive")
+    automaton = spot.automaton(in_hoa(found.automaton, "rule", ()))
+    assert spot.are_equivalent(automaton, meant)
+    assert spot.is_deterministic(automaton)
+    assert spot.is_complete(automaton)
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_a_signal_called_alive_is_no_end_of_the_word(semantics):
+    alive = Atom("alive")
+    reads = (*reads_of(P, TIMED_VOCABULARY),)
+    reads = (type(reads[0])("alive", ()),)
+    for formula, verdicts in [
+        (Unary(ALWAYS, alive), [True, False, False]),
+        (Unary(EVENTUALLY, alive), [True, True, False]),
+    ]:
+        found = translate(formula, reads, semantics)
+        assert found.alive == ("alive (2)" if semantics == "finite" else None)
+        machine = build_machine(explore(found, reads), reads, 2)
+        assert [verdict(machine, word) for word in ([1, 1], [1, 0], [0, 0])] == verdicts
+
+
+def test_different_comparisons_with_one_text_stay_different():
+    slow, fast = (comparison("speed", relation, 1) for relation in "<>")
+    fast = type(fast)(fast.terms, fast.relation, fast.limit, slow.text)
+    formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, slow, Unary(UnaryOperator.NEXT, fast)))
+    machine = machine_of(formula, "stutter")
+    numbers = [letter_number(machine.reads, {SPEED: speed}) for speed in (0, 2, 1, 2)]
+    assert [verdict(machine, numbers[:n]) for n in (1, 2, 3, 4)] == [False, True, True, True]
+    assert not verdict(machine, numbers[:1] * 2)

@@ -1,0 +1,72 @@
+"""Verdicts for people and for machines: where a rule comes from, and what it weighs."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from books import P, book, compile_here, rule
+
+from rulec.report import verdicts
+from rulec.runtime.explanation import explain
+from rulec.runtime.verify import verify
+from rulec.trace import Trace
+
+
+def compiled(**more):
+    rules = compile_here(book(rule("A", P)))
+    return replace(rules, rules=(replace(rules.rules[0], **more),))
+
+
+def violated(rules):
+    trace = Trace("t", 1.0, {}, ({},))
+    return trace, verify(trace, rules)
+
+
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [
+        ({}, "hard rule A [Art. A]: beyond"),
+        ({"cite": ""}, "hard rule A: beyond"),
+        # The rulebook is called `test`: its own rules need not say so.
+        ({"book": "test"}, "hard rule A [Art. A]: beyond"),
+        ({"book": "vienna"}, "hard rule A [vienna, Art. A]: beyond"),
+        ({"book": "vienna", "cite": ""}, "hard rule A [vienna]: beyond"),
+        ({"level": "legal"}, "hard rule A in legal [Art. A]: beyond"),
+        (
+            {"strength": "soft", "level": "courtesy", "weight": Fraction(5, 2)},
+            "soft rule A in courtesy weight 2.5 [Art. A]: beyond",
+        ),
+        ({"strength": "soft"}, "soft rule A [Art. A]: beyond"),
+        ({"level": "a\x1b[31m"}, "hard rule A in a\\x1b[31m [Art. A]: beyond"),
+    ],
+)
+def test_a_violation_names_the_rule_as_its_head_does(more, line):
+    rules = compiled(**more)
+    _, verdict = violated(rules)
+    assert line in verdicts.as_text(verdict, rules)
+
+
+@pytest.mark.parametrize(
+    ("more", "level", "weight"),
+    [
+        ({}, None, 1),
+        ({"level": "courtesy", "weight": Fraction(2)}, "courtesy", 2),
+        ({"weight": Fraction(1, 4)}, None, 0.25),
+    ],
+)
+def test_level_and_weight_as_data(more, level, weight):
+    rules = compiled(**more)
+    _, verdict = violated(rules)
+    (violation,) = json.loads(verdicts.as_json(verdict, rules))["violations"]
+    assert (violation["level"], violation["weight"]) == (level, weight)
+    assert isinstance(violation["weight"], type(weight))
+
+
+def test_an_explanation_as_data_names_the_book():
+    rules = compiled(book="vienna")
+    trace, verdict = violated(rules)
+    why = explain(verdict.violations[0], trace, rules)
+    (violation,) = json.loads(verdicts.as_json(verdict, rules, [why]))["violations"]
+    assert violation["explanation"]["book"] == "vienna"
+    assert violation["explanation"]["cite"] == "Art. A"
