@@ -2,7 +2,8 @@
 
 ``RULEC_REFRESH=1 pytest tests/programs`` rewrites the expected files; read the difference before it
 is committed. A bad file's first line says how many mistakes it has: one error for each. The
-vocabularies that bad files use are in ``bad/vocabulary``.
+vocabularies that bad files use are in ``bad/vocabulary``, the rulebooks that files extend in
+folders of their own.
 """
 
 import os
@@ -57,6 +58,7 @@ def test_a_bad_file_says_what_is_expected(path: Path) -> None:
     found = diagnostics_of(path)
     text = render_diagnostics(found).replace(f"{HERE}/", "")
     text = re.sub(r"(?<=::: ).*/rulebooks/", "rulebooks/", text)
+    text = re.sub(r"available: `another_vocabulary`[^)\n]*", "available: …", text)
     expected = path.with_suffix(".expected")
     if os.environ.get("RULEC_REFRESH"):
         expected.write_text(text, encoding="utf-8")

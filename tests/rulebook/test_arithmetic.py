@@ -226,3 +226,19 @@ def test_a_bare_zero_fits_every_kind_and_nothing_else_does(number, unit):
     assert formula_of("gap > 0") == formula_of("gap > 0 km") == formula_of("gap - 0 > 0 * speed")
     (comparison,) = atoms_of(formula_of(f"gap > {number} {unit}"))
     assert comparison.limit == Fraction(number) * UNITS["length"][unit]
+
+
+def test_what_depends_on_the_same_condition_twice_has_no_impossible_cases():
+    once = formula_of("react + react + react + react + react + react + react < 3 s")
+    assert once == Constant(False)
+    two = formula_of("gap < react * 2 m/s + react * 3 m/s - react * 1 m/s")
+    wet, dry = ((Atom("wet"), 4), (Unary(UnaryOperator.NOT, Atom("wet")), 2))
+    sides = [
+        Binary(BinaryOperator.AND, test, Comparison(((Fraction(1), Quantity("gap")),), "<", limit))
+        for test, limit in (wet, dry)
+    ]
+    assert two == Binary(BinaryOperator.OR, *sides)
+    # The first condition decides; the second one cannot come true.
+    assert formula_of(
+        "gap < ((1 m if wet else 2 m) if wet else (1 m if wet else 2 m))"
+    ) == formula_of("gap < (1 m if wet else 2 m)")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean
+from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean, named
 from rulec.files import opened
 from rulec.resources import rulebooks_folder
 from rulec.syntax import MAX_BYTES
@@ -169,7 +169,6 @@ def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
 
 
 def _suggest(name: str, known: Sequence[str]) -> str:
-    names = [f"`{one}`" for one in known]
-    available = f"available: {', '.join(names)}" if names else "none is available"
+    available = f"available: {named(known)}" if known else "none is available"
     question = did_you_mean(name, known)
     return f"{question} ({available})" if question else available

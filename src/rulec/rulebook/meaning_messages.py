@@ -383,7 +383,7 @@ def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnos
 
 
 def parameter_of_another_kind(
-    item: tree.ParamItem | tree.SetItem, found: Number, wanted: Dimension
+    item: tree.ParamItem | tree.SetItem, found: Number, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
     """A parameter's value of another dimension than it has."""
     assert not isinstance(item.value, bool), "only an option is on or off"
@@ -394,6 +394,7 @@ def parameter_of_another_kind(
         item.value.span.place,
         expected=f"expected a {wanted.name}",
         help="check the unit",
+        labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),
     )
 
 

@@ -6,10 +6,10 @@ which exactly one holds at any time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 
 from rulec.logic.formula import (
     Binary,
@@ -63,7 +63,9 @@ class Linear:
         return self.text if self.binding >= binding else f"({self.text})"
 
 
-Case = tuple[tuple[Formula, ...], Linear]
+Conditions = tuple[Formula, ...]
+
+Case = tuple[Conditions, Linear]
 """The conditions under which a number is this one; none for a number without cases."""
 
 
@@ -108,28 +110,38 @@ def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> N
 
 def combined(left: Number, right: Number, combine: Callable[[Linear, Linear], Linear]) -> Number:
     """An operation case by case. Raises TooManyCasesError."""
-    if len(left.cases) * len(right.cases) > MOST_CASES:
-        raise TooManyCasesError
-    return Number(
-        tuple(
-            ((*first, *second), combine(one, other))
-            for (first, one), (second, other) in product(left.cases, right.cases)
-        )
+    return _in_cases(
+        (both, combine(one, other)) for both, one, other in _pairs(left.cases, right.cases)
     )
+
+
+def _pairs(
+    left: Sequence[Case], right: Sequence[Case]
+) -> Iterator[tuple[Conditions, Linear, Linear]]:
+    """The cases of two numbers side by side, without those that exclude each other."""
+    for (first, one), (second, other) in product(left, right):
+        both = (*first, *(condition for condition in second if condition not in first))
+        if not any(negated(condition) in first for condition in second):
+            yield both, one, other
+
+
+def _in_cases(cases: Iterable[Case]) -> Number:
+    found = Number(tuple(islice(cases, MOST_CASES + 1)))
+    if len(found.cases) > MOST_CASES:
+        raise TooManyCasesError
+    return found
 
 
 def either(condition: Formula, value: Number, otherwise: Number) -> Number:
     """``value if condition else otherwise``. Raises TooManyCasesError."""
-    if len(value.cases) + len(otherwise.cases) > MOST_CASES:
-        raise TooManyCasesError
     if isinstance(condition, Constant):
         return value if condition.value else otherwise
-    denied = negated(condition)
-    return Number(
-        (
-            *(((condition, *when), linear) for when, linear in value.cases),
-            *(((denied, *when), linear) for when, linear in otherwise.cases),
-        )
+    sides = ((condition, value), (negated(condition), otherwise))
+    return _in_cases(
+        ((test, *(one for one in when if one != test)), linear)
+        for test, number in sides
+        for when, linear in number.cases
+        if negated(test) not in when
     )
 
 
@@ -206,14 +218,15 @@ _MIRRORED: dict[Relation, Relation] = {
 
 def compared(left: Number, relation: Relation, right: Number) -> Formula:
     """``left relation right`` as a formula. Raises TooManyCasesError."""
-    difference = combined(left, right, lambda one, other: added(one, other, -1))
-    texts = [
-        f"{one.text} {relation} {other.text}"
-        for (_, one), (_, other) in product(left.cases, right.cases)
+    cases = [
+        (both, added(one, other, -1), f"{one.text} {relation} {other.text}")
+        for both, one, other in _pairs(left.cases, right.cases)
     ]
+    if len(cases) > MOST_CASES:
+        raise TooManyCasesError
     return any_of(
         all_of([*conditions, _comparison(linear, relation, text)])
-        for (conditions, linear), text in zip(difference.cases, texts, strict=True)
+        for conditions, linear, text in cases
     )
 
 

@@ -14,8 +14,6 @@ from rulec.rulebook import overlay_messages as say
 from rulec.rulebook.model import Remark
 from rulec.syntax import tree
 
-LATEST = "9999-12-31"
-
 
 @dataclass(frozen=True, slots=True)
 class RuleEntry:
@@ -50,6 +48,8 @@ class Overlay:
     parameters: dict[str, list[Value]] = field(default_factory=dict)
     definitions: dict[str, tree.DefineItem] = field(default_factory=dict)
     rules: dict[str, RuleEntry] = field(default_factory=dict)
+    gone: dict[str, tree.Name] = field(default_factory=dict)
+    """Where a rule was last dropped or passed over in silence."""
     remarks: list[Remark] = field(default_factory=list)
     declared_at: dict[str, tree.Name] = field(default_factory=dict)
     """Where each option, parameter and definition was first named."""
@@ -61,7 +61,7 @@ class Overlay:
     unsure: bool = False
     """A rulebook of the chain could not be read whole: names may be missing for that reason."""
     unsure_rules: bool = False
-    """A rule could not be read, not even its name."""
+    """The head of a rule could not be read: it may have any name."""
     suspects: set[str] = field(default_factory=set)
     """Names in what could not be read."""
 
@@ -99,10 +99,10 @@ class _Layer:
 
     def take(self, item: tree.Item) -> None:
         """Lay one item over what there is."""
-        if isinstance(item, tree.RuleItem | tree.ParamItem | tree.SetItem):
-            dates = item.in_force
-            if dates is not None and dates.until and dates.until < dates.since:
-                self.result.mistakes.append(say.never_in_force(dates))
+        match item:
+            case tree.RuleItem() | tree.ParamItem() | tree.SetItem():
+                if item.in_force is not None and never_in_force(item.in_force):
+                    self.result.mistakes.append(say.never_in_force(item.in_force))
         match item:
             case tree.RuleItem(override=False):
                 self._rule(item)
@@ -130,16 +130,18 @@ class _Layer:
             case tree.DropItem(name, because):
                 if self._inherited(name, "drop"):
                     del self.result.rules[name.text]
+                    self.result.gone[name.text] = name
                     self.result.remarks.append(Remark(name.text, because.value, "dropped"))
             case tree.SoftenItem():
                 self._soften(item)
             case tree.SilentItem(name, because):
                 if name.text not in self.result.rules or self._inherited(name, "be silent on"):
                     self.result.rules.pop(name.text, None)
+                    self.result.gone[name.text] = name
                 self.result.remarks.append(Remark(name.text, because.value, "silent"))
             case tree.BrokenItem(names):
                 self.result.suspects |= names
-                self.result.unsure_rules |= item.nameless and item.word == "rule"
+                self.result.unsure_rules |= item.word == "rule"
                 self.result.unsure |= item.nameless and item.word != "rule"
             case _:
                 return
@@ -233,7 +235,7 @@ class _Layer:
     def _inherited(self, name: tree.Name, verb: str) -> bool:
         """Is it an inherited rule? What else it is, is reported."""
         known = self.result.rules.get(name.text)
-        before = None if known is None else known.changed
+        before = self.result.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
             self.result.mistakes.append(say.changed_twice(name, "rule", before))
             return False
@@ -252,6 +254,11 @@ class _Layer:
         base = self.file.extends
         extends = None if base is None else base.name.text
         self.result.mistakes.append(say.nothing_to(verb, kind, name, list(known), extends))
+
+
+def never_in_force(dates: tree.InForce | None) -> bool:
+    """Do the dates end before they begin?"""
+    return dates is not None and bool(dates.until) and dates.until < dates.since
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:

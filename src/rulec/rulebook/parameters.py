@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook.numbers import Number
-from rulec.rulebook.overlay import Value
+from rulec.rulebook.overlay import Value, never_in_force
 from rulec.rulebook.provisions import in_force
 from rulec.rulebook.scope import Call, Scope
 from rulec.syntax import tree
@@ -38,7 +38,8 @@ def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
     nearest = max((one.level for one in good), default=0)
     candidates = [one for one in good if one.level == nearest]
     if not candidates:
-        scope.report(say.no_value_in_force(use, values, provisions.at))
+        if not any(never_in_force(one.item.in_force) for one in values):
+            scope.report(say.no_value_in_force(use, values, provisions.at))
         return None
     if len(candidates) > 1:
         scope.report(say.two_values_in_force(candidates, name, provisions.at))
@@ -66,7 +67,8 @@ def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
     if wanted is None:
         wanted = _first_value(name, value, inner, evaluate)
     if wanted is not None and found.dimension not in (None, wanted):
-        scope.report(say.parameter_of_another_kind(item, found, wanted))
+        first = scope.provisions.overlay.declared_at[name]
+        scope.report(say.parameter_of_another_kind(item, found, wanted, first))
         return None
     if found.dimension is not None:
         return found

@@ -68,11 +68,8 @@ def _too_many(line: tree.PriorityLine) -> Diagnostic:
 def _contradiction(
     higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
 ) -> Diagnostic:
-    labels = tuple(
-        Label(levels[name.text].span.place, f"`{name.text}` was placed here")
-        for name in (higher, lower)
-        if name.text in levels
-    )
+    named = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
+    labels = tuple(Label(levels[name].span.place, f"`{name}` was placed here") for name in named)
     same = higher.text == lower.text
     return Diagnostic(
         "R0321",

@@ -85,11 +85,12 @@ def _check_definition(
     mistakes: list[Diagnostic] = []
     typed = tuple(one for one in item.parameters if one.type is not None)
     variables = variables_of(typed, declared, mistakes)
-    mistakes += (
-        twice("parameter", one.name, variables[one.name.text].span)
-        for one in item.parameters
-        if one.type is None and one.name.text in variables
-    )
+    seen: dict[str, tree.Parameter] = {}
+    for one in item.parameters:
+        first = seen.setdefault(one.name.text, one)
+        # Two with types have been found already.
+        if first is not one and (first.type is None or one.type is None):
+            mistakes.append(twice("parameter", one.name, first.span))
     scope = Scope(
         declared,
         provisions,

@@ -71,9 +71,20 @@ class Scope:
     taken: frozenset[str] = frozenset()
     in_moment: bool = False
     of_definition: bool = False
+    blamed: set[int] = field(default_factory=set)
+    """Where uses of definitions begin that have been found to be wrong."""
 
     def report(self, mistake: Diagnostic) -> None:
-        """Note a mistake, with the uses of definitions that led to it."""
+        """Note a mistake, with the uses of definitions that led to it.
+
+        A definition has been checked by itself. If what is wrong is how it is used, one mistake is
+        enough to say so.
+        """
+        outermost = self.calls[0].span if self.calls else None
+        if outermost is not None and mistake.severity == "error":
+            if outermost.start in self.blamed:
+                return
+            self.blamed.add(outermost.start)
         labels: list[Label] = []
         for call in reversed(self.calls):
             if call.span is None:
@@ -193,7 +204,8 @@ def _unknown_variable(name: tree.Name, scope: Scope, known: Sequence[str]) -> Di
     if variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
     else:
-        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: vehicle)`"
+        kind = next(iter(scope.declared.types), "vehicle")
+        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
     return Diagnostic(
         "R0203",
         f"the {owner} has no variable `{name.text}`",
