@@ -2,7 +2,6 @@
 
 import json
 import re
-import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.compiled_file import to_json
-from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.examples import run_all
 from rulec.runtime.verify import run
@@ -26,35 +24,6 @@ def blocks(language):
             re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
         ):
             yield pytest.param(text, id=f"{page.name}-{number}")
-
-
-def commands():
-    for block in blocks("console"):
-        (text,) = block.values
-        for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
-            command, _, output = part.partition("\n")
-            if command != "tests/run":  # this is it
-                yield pytest.param(command, output, id=f"{block.id}-{command}")
-
-
-def without_times(text):
-    return re.sub(r"computed in .* s|\"seconds\": [0-9.]+", "", text)
-
-
-@pytest.mark.parametrize(("command", "output"), list(commands()))
-def test_commands_print_what_is_shown(command, output, tmp_path, monkeypatch, capsys):
-    for folder in ("docs", "rulebooks"):
-        (tmp_path / folder).symlink_to(ROOT / folder)
-    monkeypatch.chdir(tmp_path)
-    program, *arguments = shlex.split(command)
-    assert program == "./rulec"
-    main(arguments)
-    captured = capsys.readouterr()
-    assert without_times(captured.out + captured.err) == without_times(output)
-
-
-def test_there_are_commands():
-    assert len(list(commands())) >= 5
 
 
 @pytest.mark.parametrize("text", list(blocks("rulec")))
