@@ -65,4 +65,4 @@ def test_every_command_is_found():
             r"^\$ ((?:\./)?rulec .*)", page.read_text(encoding="utf-8"), re.MULTILINE
         )
         assert [head[2:] for head, _ in SESSIONS[page.name] if head[0] == "$"] == shown
-    assert len(WITH_COMMANDS) >= 4
+    assert len(WITH_COMMANDS) >= 3
