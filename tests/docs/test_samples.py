@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -32,17 +30,6 @@ def test_rulebooks_check(text):
         rulebook = parse_rulebook(text)
         run = run_all(rulebook, compile_rulebook(rulebook))
         assert [one.name for one in run.outcomes if not one.passed] == []
-
-
-def test_the_python_sample_prints_what_is_shown():
-    page = (ROOT / "docs" / "python.md").read_text()
-    program, output = re.search(
-        r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL
-    ).groups()
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout == output
 
 
 def test_the_run_of_a_compiled_machine_is_as_documented():
