@@ -34,10 +34,16 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A rulebook without errors, and the warnings about it."""
+    """A rulebook without errors, the warnings about it, and the trees that it comes from.
+
+    ``books`` are those that it extends, the most general first, and itself; ``vocabularies`` those
+    that they use.
+    """
 
     rulebook: Rulebook
     warnings: tuple[Diagnostic, ...] = ()
+    books: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
+    vocabularies: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
 
 
 def load_rulebook(
@@ -145,9 +151,10 @@ def _resolved(
     found = _Vocabularies(tuple(search_path))
     books = [*based.books, Book(file, path)]
     trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
+    vocabularies = tuple(one for one in trees if one is not None)
     rulebook, meanings = resolve(
         file,
-        [one for one in trees if one is not None],
+        vocabularies,
         bases=[book.file for book in based.books],
         sources=(source_file(source.name, data), *based.sources, *found.sources),
         opaque=found.failed or based.failed,
@@ -156,7 +163,7 @@ def _resolved(
     everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
     if rulebook is None or any(one.severity == "error" for one in everything):
         raise RulecError(everything)
-    return Loaded(rulebook, everything)
+    return Loaded(rulebook, everything, tuple(book.file for book in books), vocabularies)
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
