@@ -25,6 +25,7 @@ from rulec.runtime.verify import check_step
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
+    from rulec.analysis.difference import Difference
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
@@ -122,6 +123,30 @@ def run_examples(
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def compare_rulebooks(
+    first: str | Path,
+    second: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Difference:
+    """Compare the rules of two rulebooks, given by name or by their sources' paths.
+
+    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
+    as for ``rulec.analysis.difference.difference``. Raises RulecError.
+    """
+    from rulec.analysis.difference import difference
+    from rulec.rulebook.loader import read_rulebook
+
+    folders = [Path(folder) for folder in search_path]
+    loaded = [read_rulebook(one, folders, at) for one in (first, second)]
+    warn(list(dict.fromkeys(warning for one in loaded for warning in one.warnings)))
+    return difference(loaded[0].rulebook, loaded[1].rulebook, patterns, step_s, tell)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

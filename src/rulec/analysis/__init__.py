@@ -1,1 +1,1 @@
-"""Questions about rulebooks: how two differ, and what is odd in one."""
+"""Questions about rulebooks rather than about traces."""

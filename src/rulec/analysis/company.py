@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from math import ceil
 
 from rulec.analysis.columns import body_of, speaks_of_extra, truths_of
 from rulec.analysis.errors import UndecidedError
@@ -39,6 +40,7 @@ def company_for(situation: Situation, scene: Scene) -> Company | None:
     if not counts:
         return ()
     kinds = kinds_of(situation, scene)
+    enough = [_enough(count, situation) for count in counts]
     start = tuple(dict(situation.counted)[count] for count in counts)
     waiting: list[tuple[tuple[int, ...], Company]] = [(start, ())]
     seen = {start}
@@ -48,7 +50,9 @@ def company_for(situation: Situation, scene: Scene) -> Company | None:
         if len(company) == MOST_COMPANY:
             raise UndecidedError(f"it takes more than {MOST_COMPANY} objects to be counted")
         for kind in kinds:
-            after = tuple(a + b for a, b in zip(sums, kind.adds, strict=True))
+            after = tuple(
+                min(a + b, most) for a, b, most in zip(sums, kind.adds, enough, strict=True)
+            )
             if after not in seen:
                 seen.add(after)
                 waiting.append((after, (*company, kind)))
@@ -75,6 +79,17 @@ def company_of(situation: Situation, scene: Scene, types: Sequence[str]) -> Comp
         if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
             return company
     return None
+
+
+def _enough(count: Count, situation: Situation) -> int:
+    """From where on it makes no difference how many more are counted, if there is such a number."""
+    most = 0
+    for read, _ in situation.sides:
+        if any(term == count for _, term in read.terms):
+            if len(read.terms) > 1:
+                return MOST_COMPANY + 1
+            most = max(most, *(ceil(one.limit) + 1 for one in read.thresholds))
+    return most
 
 
 def _wanted(situation: Situation) -> list[Count]:

@@ -17,28 +17,20 @@ from typing import Literal
 from rulec.analysis.alphabet import Alphabet
 from rulec.analysis.columns import machine_column
 from rulec.analysis.common_words import common_words
+from rulec.analysis.distinct import Side
 from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import Scene
 from rulec.analysis.search import shortest
 from rulec.analysis.staging import Claim, alone, staged
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Variable
 from rulec.runtime.terms import names_in
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
 Relation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
 """What the first rule is to the second one: stricter forbids all that the other does, and more."""
-
-
-@dataclass(frozen=True, slots=True)
-class Side:
-    """A rule of one of the rulebooks that are compared, in its own words."""
-
-    rulebook: CompiledRulebook
-    facts: tuple[Fact, ...]
-    rule: CompiledRule
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +53,8 @@ class Comparison:
 
 def compare(one: Side, other: Side) -> Comparison:
     """Compare two rules, both compiled for the same step if they have bounds in seconds."""
+    if one.law == other.law:
+        return Comparison("equal")
     found = _compare(one, other)
     common = common_types(one.rule.variables, other.rule.variables, one.rulebook.vocabulary)
     if common is None or found.undecided:
