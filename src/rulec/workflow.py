@@ -25,7 +25,9 @@ from rulec.runtime.verify import check_step
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
+    from rulec.analysis.audit import Audit
     from rulec.analysis.difference import Difference
+    from rulec.analysis.inheritance import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
@@ -140,13 +142,51 @@ def compare_rulebooks(
     ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
     as for ``rulec.analysis.difference.difference``. Raises RulecError.
     """
-    from rulec.analysis.difference import difference
+    from rulec.analysis.difference import difference, setting_pairs
+    from rulec.analysis.inheritance import inheritance
     from rulec.rulebook.loader import read_rulebook
 
     folders = [Path(folder) for folder in search_path]
     loaded = [read_rulebook(one, folders, at) for one in (first, second)]
     warn(list(dict.fromkeys(warning for one in loaded for warning in one.warnings)))
-    return difference(loaded[0].rulebook, loaded[1].rulebook, patterns, step_s, tell)
+    told = [inheritance(one.books, one.rulebook.at) for one in loaded]
+    found = difference(loaded[0].rulebook, loaded[1].rulebook, patterns, step_s, tell)
+    return replace(found, settings=setting_pairs(*told))
+
+
+def read_inheritance(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> Inheritance:
+    """Where everything in a rulebook comes from. As for ``load_rulebook``."""
+    from rulec.analysis.inheritance import inheritance
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    return inheritance(loaded.books, loaded.rulebook.at)
+
+
+def audit_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    *,
+    run: bool = False,
+) -> Audit:
+    """What a rulebook, given by name or by its source's path, rests on.
+
+    ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
+    ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    from rulec.analysis.audit import audit
+    from rulec.analysis.inheritance import inheritance
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    warn(loaded.warnings)
+    outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
+    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    return audit(loaded.rulebook, inheritance(loaded.books, loaded.rulebook.at), failing)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

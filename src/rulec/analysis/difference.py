@@ -10,6 +10,7 @@ from fractions import Fraction
 from rulec.analysis.common_words import common_words
 from rulec.analysis.comparison import Comparison, Relation, compare, read_by
 from rulec.analysis.distinct import Distinct, at_one_step
+from rulec.analysis.inheritance import Inheritance, ProvisionHistory, ProvisionKind
 from rulec.analysis.state_table import StateTable, state_table
 from rulec.automata.compiled import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook
@@ -60,6 +61,16 @@ class OneSided:
 
 
 @dataclass(frozen=True, slots=True)
+class SettingPair:
+    """An option or a parameter of both, with two values, as written and in force on the day."""
+
+    kind: ProvisionKind
+    name: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, slots=True)
 class Difference:
     """How a rulebook differs from another one."""
 
@@ -68,6 +79,7 @@ class Difference:
     pairs: tuple[RulePair, ...]
     only_first: tuple[OneSided, ...]
     only_second: tuple[OneSided, ...]
+    settings: tuple[SettingPair, ...] = ()
 
     @property
     def is_none(self) -> bool:
@@ -102,6 +114,22 @@ class Difference:
         ):
             if trace is not None:
                 yield forbids, allows, state_table(trace, names, words.vocabulary)
+
+
+def setting_pairs(one: Inheritance, other: Inheritance) -> tuple[SettingPair, ...]:
+    """The options and parameters that both have with different values."""
+    theirs = {each.name: each for each in other.provisions if each.kind != "definition"}
+    found = []
+    for ours in one.provisions:
+        if ours.name in theirs and theirs[ours.name].kind == ours.kind:
+            values = [_value(ours), _value(theirs[ours.name])]
+            if values[0] != values[1]:
+                found.append(SettingPair(ours.kind, ours.name, *values))
+    return tuple(found)
+
+
+def _value(provision: ProvisionHistory) -> str:
+    return next((one.text for one in provision.settings if one.current), "")
 
 
 def difference(

@@ -53,6 +53,7 @@ def as_text(found: Difference) -> str:
     blocks += ["\n".join(_pair(pair, found)) for pair in found.pairs if is_worth_a_block(pair)]
     blocks += [_only(found.only_first, one, other)] if found.only_first else []
     blocks += [_only(found.only_second, other, one)] if found.only_second else []
+    blocks += [_settings(found)] if found.settings else []
     same = [pair.name for pair in found.pairs if not is_worth_a_block(pair)]
     blocks += ["\n".join(_listed("the same in both: ", same))] if same else []
     blocks.append(summary(found))
@@ -132,6 +133,15 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
     ]
     title = click.style(f"only in {has}", bold=True)
     return "\n".join([title, *lines])
+
+
+def _settings(found: Difference) -> str:
+    lines = [
+        f"  {one.kind} {one.name}: {one.first} in {found.first.name}, "
+        f"{one.second} in {found.second.name}"
+        for one in found.settings
+    ]
+    return "\n".join([click.style("set otherwise", bold=True), *map(visible, lines)])
 
 
 def only_why(one: OneSided, lacks: str) -> str:

@@ -23,6 +23,12 @@ def as_html(found: Difference) -> str:
     ):
         if rules:
             parts += [f"<h2>Only in {_text(has)}</h2>", _only(rules, lacks)]
+    if found.settings:
+        rows = [
+            [_text(cell) for cell in (f"{each.kind} {each.name}", each.first, each.second)]
+            for each in found.settings
+        ]
+        parts += ["<h2>Set otherwise</h2>", table(["", _text(one), _text(other)], rows)]
     same = [pair.name for pair in found.pairs if not is_worth_a_block(pair)]
     if same:
         names = ", ".join(f"<code>{_text(name)}</code>" for name in same)

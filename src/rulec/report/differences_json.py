@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from rulec.analysis.difference import Difference, OneSided, RulePair
@@ -21,6 +22,7 @@ def as_json(found: Difference) -> str:
         "rules": [_pair(pair) for pair in found.pairs],
         "only_first": _only(found.only_first),
         "only_second": _only(found.only_second),
+        "settings": [asdict(one) for one in found.settings],
     }
     return json.dumps(document, ensure_ascii=False, indent=2)
 
