@@ -10,28 +10,31 @@ from rulec.vocabulary import Declaration, ObjectType, Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class CommonWords:
-    """The words of both, and the declarations that one of them lacks."""
+    """The words of both; the declarations that one lacks; names for what is not alike in both."""
 
     vocabulary: Vocabulary
     not_shared: frozenset[str]
+    unlike: frozenset[str]
 
 
 def common_words(one: Vocabulary, other: Vocabulary) -> CommonWords:
     """The words of two vocabularies together.
 
     Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
-    name means different things.
+    type is not the same in both.
     """
     types: dict[str, ObjectType] = dict(one.types)
     for name, kind in other.types.items():
         if types.setdefault(name, kind).parent != kind.parent:
             raise UndecidedError(f"`{name}` is not the same type in both")
     declarations: dict[str, Declaration] = dict(one.declarations)
+    unlike = set()
     for name, item in other.declarations.items():
         known = declarations.setdefault(name, item)
         if replace(known, default=None) != replace(item, default=None):
-            raise UndecidedError(f"`{name}` is not declared alike in both")
-        if known.default != item.default:
+            unlike.add(name)
+        elif known.default != item.default:
             declarations[name] = replace(known, default=None)
     not_shared = frozenset(one.declarations.keys() ^ other.declarations.keys())
-    return CommonWords(Vocabulary(one.name, types, declarations), not_shared)
+    words = Vocabulary(one.name, types, declarations)
+    return CommonWords(words, not_shared, frozenset(unlike))

@@ -85,7 +85,11 @@ def forbidden_by_one(one: Side, other: Side) -> Trace | None:
     """
     words = common_words(one.rulebook.vocabulary, other.rulebook.vocabulary)
     facts = tuple(dict.fromkeys((*one.facts, *other.facts)))
-    unsaid = words.not_shared - read_by(one.rule) - read_by(other.rule)
+    read = {*read_by(one.rule), *read_by(other.rule)}
+    read.update(name for fact in facts for name in names_in(fact.formula))
+    for name in sorted(words.unlike & read):
+        raise UndecidedError(f"`{name}` is not declared alike in both")
+    unsaid = (words.not_shared | words.unlike) - read_by(one.rule) - read_by(other.rule)
     objects = {variable.name: variable.type for variable in one.rule.variables}
     scene = Scene(objects, words.vocabulary, facts, unsaid)
     own = {variable.name: variable.name for variable in one.rule.variables}
