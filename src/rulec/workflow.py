@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rulec.analysis.inheritance import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.rulebook.loader import Loaded
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
@@ -143,26 +144,24 @@ def compare_rulebooks(
     as for ``rulec.analysis.difference.difference``. Raises RulecError.
     """
     from rulec.analysis.difference import difference, setting_pairs
-    from rulec.analysis.inheritance import inheritance
-    from rulec.rulebook.loader import read_rulebook
 
-    folders = [Path(folder) for folder in search_path]
-    loaded = [read_rulebook(one, folders, at) for one in (first, second)]
-    warn(list(dict.fromkeys(warning for one in loaded for warning in one.warnings)))
-    told = [inheritance(one.books, one.rulebook.at) for one in loaded]
-    found = difference(loaded[0].rulebook, loaded[1].rulebook, patterns, step_s, tell)
-    return replace(found, settings=setting_pairs(*told))
+    (one, ours), (other, theirs) = (
+        read_with_inheritance(each, search_path, at) for each in (first, second)
+    )
+    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
+    return replace(found, settings=setting_pairs(ours, theirs))
 
 
-def read_inheritance(
+def read_with_inheritance(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> Inheritance:
-    """Where everything in a rulebook comes from. As for ``load_rulebook``."""
+) -> tuple[Loaded, Inheritance]:
+    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
     from rulec.analysis.inheritance import inheritance
     from rulec.rulebook.loader import read_rulebook
 
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
-    return inheritance(loaded.books, loaded.rulebook.at)
+    return loaded, inheritance(loaded.books, loaded.rulebook.at)
 
 
 def audit_rulebook(
@@ -179,14 +178,12 @@ def audit_rulebook(
     ``at``: as for ``load_rulebook``. Raises RulecError.
     """
     from rulec.analysis.audit import audit
-    from rulec.analysis.inheritance import inheritance
-    from rulec.rulebook.loader import read_rulebook
 
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    loaded, inherited = read_with_inheritance(reference, search_path, at)
     warn(loaded.warnings)
     outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
     failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
-    return audit(loaded.rulebook, inheritance(loaded.books, loaded.rulebook.at), failing)
+    return audit(loaded.rulebook, inherited, failing)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

@@ -12,12 +12,12 @@ OLD = """\
 rulebook old
 use road
 law "Act" as of 2020-01-01
-quantity lateral_gap(c: cyclist) in m default 10
+quantity side_gap(c: cyclist) in m default 10
 signal horn default false
 param least : length = 1.5 m
 hard rule leave_room (c: cyclist) {
   cite "§ 5"
-  require always (beside(c) implies lateral_gap(c) >= least)
+  require always (beside(c) implies side_gap(c) >= least)
 }
 hard rule no_passing (v: vehicle) {
   require never (behind(v) then beside(v) and right_of(v) then in_front_of(v))
@@ -52,10 +52,10 @@ new compared to old; the law of 2020-01-01
 
 leave_room: new is stricter: it forbids all that old forbids, and more
   new forbids, old allows
-    state                 0
-    ────────────────────────────
-    station(c)            beside
-    lateral_gap(c) in m   1.5
+    state              0
+    ─────────────────────────
+    station(c)         beside
+    side_gap(c) in m   1.5
 
 no_passing: new is laxer: it allows all that old allows, and more
   old forbids, new allows
@@ -113,7 +113,7 @@ def test_json(capsys):
     room = found["rules"][0]
     assert room["second_forbids"] is None
     assert room["first_forbids"]["objects"] == {"c": "cyclist"}
-    assert room["first_forbids"]["states"][0]["lateral_gap"] == {"c": 1.5}
+    assert room["first_forbids"]["states"][0]["side_gap"] == {"c": 1.5}
     assert [one["because"] for one in found["only_second"]] == ["in the act on noise"]
     assert found["settings"] == [
         {"kind": "parameter", "name": "least", "first": "2 m", "second": "1.5 m"}

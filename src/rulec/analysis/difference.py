@@ -11,7 +11,7 @@ from rulec.analysis.common_words import common_words
 from rulec.analysis.comparison import Comparison, Relation, compare, read_by
 from rulec.analysis.distinct import Distinct, at_one_step
 from rulec.analysis.inheritance import Inheritance, ProvisionHistory, ProvisionKind
-from rulec.analysis.state_table import StateTable, state_table
+from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.compiled import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook
 from rulec.trace import Trace
@@ -103,7 +103,7 @@ class Difference:
                 if trace is not None:
                     yield trace
 
-    def tables(self, pair: RulePair) -> Iterator[tuple[str, str, StateTable]]:
+    def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
         """What one rulebook's rule forbids and the other's allows: both names, and the states."""
         words = common_words(self.first.vocabulary, self.second.vocabulary)
         names = read_by(pair.machines[0]) | read_by(pair.machines[1])
@@ -113,7 +113,7 @@ class Difference:
             (pair.comparison.second_forbids, other, one),
         ):
             if trace is not None:
-                yield forbids, allows, state_table(trace, names, words.vocabulary)
+                yield forbids, allows, trace_table(trace, names, words.vocabulary)
 
 
 def setting_pairs(one: Inheritance, other: Inheritance) -> tuple[SettingPair, ...]:

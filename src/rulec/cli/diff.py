@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     type=click.Choice(FORMATS),
     default="text",
     show_default=True,
-    help="Text, JSON, a page, or a table with a line for each rule.",
+    help="Text, Markdown, JSON, a page, or a table with a line for each rule.",
 )
 @click.option(
     "-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write to FILE."

@@ -10,11 +10,11 @@ import click
 
 from rulec.analysis.comparison import Relation
 from rulec.analysis.difference import Difference, OneSided, RulePair
-from rulec.analysis.state_table import StateTable
+from rulec.analysis.trace_table import TraceTable
 from rulec.report.excerpt import visible
-from rulec.report.state_table import as_lines
+from rulec.report.trace_table import as_lines
 
-FORMATS = ("text", "json", "html", "csv")
+FORMATS = ("text", "markdown", "json", "html", "csv")
 
 WIDTH = 100
 
@@ -35,9 +35,15 @@ def render(found: Difference, output_format: str) -> str:
 
             return as_json(found)
         case "html":
-            from rulec.report.differences_html import as_html
+            from rulec.report.differences_markdown import as_markdown
+            from rulec.report.html_page import as_html
 
-            return as_html(found)
+            title = f"{found.first.name} compared to {found.second.name}"
+            return as_html(as_markdown(found), title, "")
+        case "markdown":
+            from rulec.report.differences_markdown import as_markdown
+
+            return as_markdown(found)
         case "csv":
             from rulec.report.differences_csv import as_csv
 
@@ -119,7 +125,7 @@ def _pair(pair: RulePair, found: Difference) -> Iterator[str]:
         yield from _table(table)
 
 
-def _table(table: StateTable) -> list[str]:
+def _table(table: TraceTable) -> list[str]:
     if not table.rows:
         (first, last), *_ = table.columns
         return [f"    any trace of {last - first + 1} states"]

@@ -1,50 +1,110 @@
-"""What all pages share: a head, a style that follows the reader's theme, no script."""
+"""Our own Markdown as one HTML page: for the screen, light or dark, and for paper; no scripts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from html import escape
+from itertools import pairwise
+from pathlib import Path
 
-_STYLE = """
-:root { color-scheme: light dark; --line: #8886; --soft: #8882; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; }
-table { border-collapse: collapse; margin: .5em 0 1em; font-variant-numeric: tabular-nums; }
-th, td { border: 1px solid var(--line); padding: .2em .6em; text-align: left; }
-thead th, .name { background: var(--soft); }
-h2 { margin-top: 2em; font-size: 1.1em; }
-.wide { overflow-x: auto; }
-.equal { color: light-dark(#176b2c, #7ed491); }
-.stricter { color: light-dark(#a1260d, #ff9b85); }
-.laxer { color: light-dark(#0b539b, #86bdf5); }
-.incomparable { color: light-dark(#7b1fa2, #dba1f2); }
-.undecided { color: light-dark(#7a5b00, #e6c45c); }
-"""
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from pygments import highlight
+from pygments.formatters import HtmlFormatter
+from pygments.lexer import Lexer
+from pygments.lexers.diff import DiffLexer
+
+from rulec.report.anchors import anchors
+from rulec.report.pygments_lexer import RulecLexer
+
+_STYLE = Path(__file__).with_name("html_page.css")
+
+_LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
-def page(title: str, parts: Iterable[str]) -> str:
-    """A whole document; ``parts`` are HTML already."""
-    body = "\n".join(parts)
+def as_html(markdown: str, title: str, contents: str) -> str:
+    """The page.
+
+    Args:
+        markdown: what is on it; HTML in it is shown as text.
+        title: what the browser calls it.
+        contents: the heading below which the list of contents stands.
+    """
+    parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
+    tokens = parser.parse(markdown)
+    _name_headings(tokens)
+    _scope_cells(tokens)
+    body = parser.renderer.render(list(_wrapped(tokens, contents)), parser.options, {})
     return (
-        "<!doctype html>\n"
-        '<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width">\n'
-        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n"
-        f"<body>\n<h1>{escape(title)}</h1>\n{body}\n</body>\n</html>"
+        "<!DOCTYPE html>\n"
+        '<html lang="en">\n'
+        "<head>\n"
+        '<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n'
+        f"<title>{escape(title)}</title>\n"
+        f"<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
+        "</head>\n"
+        f"<body>\n<main>\n{body}</main>\n</body>\n"
+        "</html>"
     )
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table; the cells are HTML already, the first one of each row names it."""
-    lines = ['<div class="wide"><table>', "<thead>", _row(head, "th"), "</thead>", "<tbody>"]
-    lines += [_named(row) for row in rows]
-    return "\n".join([*lines, "</tbody>", "</table></div>"])
+def _highlighted(text: str, language: str, _: str) -> str:
+    lexer = _LEXERS.get(language)
+    if lexer is None:
+        return ""
+    # Classes, not colours, so that they follow the reader's theme.
+    shown = highlight(text, lexer(), HtmlFormatter(nowrap=True))
+    return str(shown)
 
 
-def _row(cells: Sequence[str], tag: str) -> str:
-    return f"<tr>{''.join(f'<{tag}>{cell}</{tag}>' for cell in cells)}</tr>"
+def _name_headings(tokens: Sequence[Token]) -> None:
+    """Every heading can be linked to."""
+    found = [
+        (token, "".join(child.content for child in inline.children or ()))
+        for token, inline in pairwise(tokens)
+        if token.type == "heading_open"
+    ]
+    for (token, _), name in zip(found, anchors([text for _, text in found]), strict=True):
+        token.attrSet("id", name)
 
 
-def _named(cells: Sequence[str]) -> str:
-    first, *rest = cells
-    others = "".join(f"<td>{cell}</td>" for cell in rest)
-    return f'<tr><th scope="row" class="name">{first}</th>{others}</tr>'
+def _scope_cells(tokens: Sequence[Token]) -> None:
+    """The first cell of a row is the row's header, for who has the table read aloud."""
+    first = False
+    for token in tokens:
+        if token.type == "tr_open":
+            first = True
+        elif token.type == "th_open":
+            token.attrSet("scope", "col")
+        elif token.type == "td_open" and first:
+            token.tag = "th"
+            token.attrSet("scope", "row")
+        elif token.type == "td_close" and first:
+            token.tag = "th"
+            first = False
+
+
+def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:
+    """Wide tables and formulas scroll by themselves; the contents are for finding the way."""
+    below_contents = False
+    for token in tokens:
+        if token.type == "inline" and token.content == contents:
+            below_contents = True
+        opens_contents = below_contents and token.type == "bullet_list_open"
+        closes_contents = below_contents and token.type == "bullet_list_close" and not token.level
+        if opens_contents and not token.level:
+            yield _raw(f'<nav aria-label="{escape(contents)}">\n')
+        if token.type == "table_open":
+            yield _raw('<div class="wide" tabindex="0">\n')
+        yield token
+        if token.type == "table_close":
+            yield _raw("</div>\n")
+        if closes_contents:
+            below_contents = False
+            yield _raw("</nav>\n")
+
+
+def _raw(html: str) -> Token:
+    return Token("html_block", "", 0, content=html)

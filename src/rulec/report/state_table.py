@@ -1,36 +1,57 @@
-"""A trace as a table of text."""
+"""An example as a table: a column for each state, a row for each thing that it speaks of."""
 
 from __future__ import annotations
 
-from rulec.analysis.state_table import StateTable
-from rulec.report.excerpt import visible
-from rulec.report.explanation import shown
+from dataclasses import dataclass
+
+from rulec.logic.english import listed, spoken
+from rulec.rulebook.model import Example
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+
+NOTHING = "–"
+"""What stands where a state does not say something that has no default either."""
 
 
-def titles(table: StateTable) -> list[str]:
-    """The numbers of the states that each column stands for."""
-    return [str(first) if first == last else f"{first}-{last}" for first, last in table.columns]
+@dataclass(frozen=True, slots=True)
+class StateTable:
+    """``rows`` are what it is about and its value in each of the states.
+
+    A value in parentheses is a default: the state does not mention it.
+    """
+
+    n_states: int
+    rows: tuple[tuple[str, tuple[str, ...]], ...]
 
 
-def rows(table: StateTable) -> list[tuple[str, list[str]]]:
-    """What each row is about, and its cells."""
-    return [
-        (
-            visible(f"{row.title} in {row.unit}" if row.unit else row.title),
-            ["" if value is None else shown(value) for value in row.values],
+def state_table(example: Example, vocabulary: Vocabulary) -> StateTable:
+    """The table, its rows in the order in which the example first mentions them."""
+    mentioned = dict.fromkeys(key for state in example.states for key in state)
+    rows = []
+    for name, objects in mentioned:
+        item = vocabulary.declarations[name]
+        cells = tuple(
+            _value(item, state[name, objects]) if (name, objects) in state else _default(item)
+            for state in example.states
         )
-        for row in table.rows
-    ]
+        rows.append((_about(item, objects), cells))
+    return StateTable(len(example.states), tuple(rows))
 
 
-def as_lines(table: StateTable, indent: str) -> list[str]:
-    """The table with a line below its head."""
-    whole = [("state", titles(table)), *rows(table)]
-    width = max(len(title) for title, _ in whole)
-    widths = [max(len(cells[n]) for _, cells in whole) for n in range(len(table.columns))]
-    lines = []
-    for title, cells in whole:
-        padded = "  ".join(cell.ljust(size) for cell, size in zip(cells, widths, strict=True))
-        lines.append(f"{indent}{title:<{width}}   {padded}".rstrip())
-    lines.insert(1, f"{indent}{'─' * (width + 1 + sum(widths) + 2 * len(widths))}")
-    return lines
+def _about(item: Declaration, objects: tuple[str, ...]) -> str:
+    unit = f", {item.unit}" if isinstance(item, Quantity) else ""
+    of = f" of {listed(objects)}" if objects else ""
+    return f"{spoken(item.name)}{of}{unit}"
+
+
+def _value(item: Declaration, value: bool | str | float) -> str:
+    match item, value:
+        case Signal(), _:
+            return "yes" if value else "no"
+        case Enumeration(), _:
+            return spoken(str(value))
+        case _:
+            return repr(float(value)).removesuffix(".0")
+
+
+def _default(item: Declaration) -> str:
+    return NOTHING if item.default is None else f"({_value(item, item.default)})"

@@ -22,14 +22,14 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class StateTable:
+class TraceTable:
     """States that are the same one after the other share a column, from the first to the last."""
 
     columns: tuple[tuple[int, int], ...]
     rows: tuple[Row, ...]
 
 
-def state_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> StateTable:
+def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
     """The table of what a trace says of these declarations, for all of its objects."""
     starts = [
         number
@@ -43,4 +43,4 @@ def state_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> StateT
             values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
             rows.append(Row(str(Atom(name, items)), unit, values))
-    return StateTable(tuple(zip(starts, ends, strict=True)), tuple(rows))
+    return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))
