@@ -25,8 +25,11 @@ from rulec.runtime.verify import check_step
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
+    from rulec.analysis.audit import Audit
+    from rulec.analysis.inheritance import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.rulebook.loader import Loaded
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
@@ -122,6 +125,39 @@ def run_examples(
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def read_with_inheritance(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> tuple[Loaded, Inheritance]:
+    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
+    from rulec.analysis.inheritance import inheritance
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    return loaded, inheritance(loaded.books, loaded.rulebook.at)
+
+
+def audit_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    *,
+    run: bool = False,
+) -> Audit:
+    """What a rulebook, given by name or by its source's path, rests on.
+
+    ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
+    ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    from rulec.analysis.audit import audit
+
+    loaded, inherited = read_with_inheritance(reference, search_path, at)
+    warn(loaded.warnings)
+    outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
+    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    return audit(loaded.rulebook, inherited, failing)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
