@@ -28,7 +28,7 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
 
 
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    """R0401, R0402 or R0409: why the rule has no machine; None if Spot's process has ended.
+    """R0401, R0402 or R0409; ``failed`` is None if it was the end of Spot's process.
 
     Raises RuntimeError for a bug.
     """
