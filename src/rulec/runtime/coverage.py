@@ -12,7 +12,7 @@ from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
 from rulec.runtime.moment import Moment, holds
 from rulec.runtime.verify import columns_of
-from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
+from rulec.runtime.wanted import Wanted, possible_letters, truths, wanted
 from rulec.vocabulary import Enumeration, Vocabulary
 
 
@@ -80,7 +80,7 @@ def _coverage(
     rule: Rule, compiled: CompiledRule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
-    letters = _letters(machine)
+    letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
@@ -119,15 +119,6 @@ def _moments(
         trace = example_trace(rule, one.example)
         columns = columns_of(trace, rulebook)
         yield from (columns.moment(number) for number in range(len(trace.states)))
-
-
-def _letters(machine: Machine) -> Mapping[int, int]:
-    """For every class that some state of the world is in, the first of its letters."""
-    first: dict[int, int] = {}
-    for letter, symbol in enumerate(machine.letters):
-        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
-            first[symbol] = letter
-    return first
 
 
 def _edges(

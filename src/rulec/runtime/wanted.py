@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf
@@ -34,6 +34,15 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
         return True
     bounds = (-inf, *scale(read).floors, inf)
     return bounds[digit] < bounds[digit + 1]
+
+
+def possible_letters(machine: Machine) -> Mapping[int, int]:
+    """For every class of letters that some state of the world is in, the first of its letters."""
+    first: dict[int, int] = {}
+    for letter, symbol in enumerate(machine.letters):
+        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
+            first[symbol] = letter
+    return first
 
 
 def truths(comparison: Comparison, machine: Machine) -> set[bool]:
