@@ -2,6 +2,7 @@
 
 import os
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
@@ -11,3 +12,15 @@ settings.register_profile(
     "long", max_examples=5000, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile(os.environ.get("RULEC_TEST_PROFILE", "quick"))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _own_cache(tmp_path_factory):
+    """Tests neither use what the user's own checks have left, nor leave anything there."""
+    before = os.environ.get("RULEC_CACHE_DIR")
+    os.environ["RULEC_CACHE_DIR"] = str(tmp_path_factory.mktemp("cache"))
+    yield
+    if before is None:
+        del os.environ["RULEC_CACHE_DIR"]
+    else:
+        os.environ["RULEC_CACHE_DIR"] = before

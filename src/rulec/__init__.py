@@ -1,5 +1,7 @@
 """rulec, a compiler for traffic law: rulebooks in, automata out, every maneuver judged.
 
+A look at all of it::
+
     import rulec
 
     rules = rulec.compile_rulebook("esterle2019")     # a name, a source path, a compiled file

@@ -10,10 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from errno import EACCES, EISDIR
 from pathlib import Path
-from typing import IO
+from typing import IO, Final
 from unicodedata import normalize
 
 from rulec.diagnostics import Diagnostic, Label, Place, RulecError, Source, Span
+
+MAX_SOURCE_BYTES: Final = 5_000_000
+"""A rulebook has thousands of characters; millions are a mistake."""
 
 
 @contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -20,6 +22,18 @@ def grammar_file(name: str) -> Path:
 def rulebooks_folder() -> Path:
     """The folder of the rulebooks and vocabularies that ship with rulec."""
     return _folder("rulebooks")
+
+
+def package_files() -> Iterator[tuple[str, os.stat_result]]:
+    """The files of code and grammar that rulec consists of, in an order that stays."""
+    folders = [str(_PACKAGE), str(_folder("grammar"))]
+    while folders:
+        with os.scandir(folders.pop()) as found:
+            for entry in sorted(found, key=lambda one: one.name):
+                if entry.is_dir(follow_symlinks=False):
+                    folders += [] if entry.name == "__pycache__" else [entry.path]
+                elif entry.name.endswith((".py", ".lark", ".json")):
+                    yield entry.path, entry.stat()
 
 
 def scenarios_folder() -> Path:

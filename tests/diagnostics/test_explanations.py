@@ -21,7 +21,7 @@ CODE = re.compile(r"\[(R\d{4})\]")
 
 
 def checked(text, folder):
-    return diagnose("example.rules", text.encode())
+    return diagnose("example.rules", text.encode()).findings
 
 
 def compiled(text, folder):

@@ -28,7 +28,7 @@ def test_checking_says_what_loading_says(path):
         loading = read_rulebook(path).warnings
     except RulecError as error:
         loading = error.diagnostics
-    found = diagnose(str(path), path.read_bytes(), path)
+    found = diagnose(str(path), path.read_bytes(), path).findings
     tree, _ = parse(decode(str(path), path.read_bytes()))
     if tree.kind == "vocabulary" and tree.name is not None:
         # A vocabulary cannot be loaded as a rulebook, and can be checked.
@@ -42,7 +42,7 @@ def test_a_mutated_vocabulary_has_mistakes_with_places_or_none(text, data):
     start = data.draw(st.integers(0, len(text)))
     end = min(len(text), start + data.draw(st.integers(0, 20)))
     middle = data.draw(st.binary(max_size=4) | st.sampled_from([b"{", b"}", b" is ", b"type a "]))
-    for one in diagnose("fuzz.rules", text[:start] + middle + text[end:]):
+    for one in diagnose("fuzz.rules", text[:start] + middle + text[end:]).findings:
         assert one.place is not None
         assert one.place.file == "fuzz.rules"
 

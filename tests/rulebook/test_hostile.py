@@ -77,7 +77,7 @@ HOSTILE = {
 
 
 def errors_of(text):
-    found = diagnose("hostile.rules", text.encode())
+    found = diagnose("hostile.rules", text.encode()).findings
     return [one for one in found if one.severity == "error"]
 
 

@@ -29,21 +29,31 @@ from rulec.report.formats import FORMATS
     show_default=True,
     help="What makes the exit status 1.",
 )
+@click.option(
+    "--no-cache",
+    is_flag=True,
+    help="Check anew also what has not changed since the last time.",
+)
 @at_option
-def command(sources: tuple[str, ...], output_format: str, fail_on: str, at: str) -> int:
+def command(
+    sources: tuple[str, ...], output_format: str, fail_on: str, at: str, no_cache: bool
+) -> int:
     """Check rulebooks and vocabularies, and write nothing.
 
     Each is a name, a file, a folder (all .rules files in it), or `-` for standard input.
 
     Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
     """
+    from rulec.files import MAX_SOURCE_BYTES
     from rulec.report.console import print_diagnostics, print_result, wants_color
     from rulec.report.formats import render
     from rulec.rulebook.checking import check
     from rulec.settings import search_path
-    from rulec.syntax import MAX_BYTES
 
-    done = check(sources, lambda: sys.stdin.buffer.read(MAX_BYTES + 1), search_path(), at)
+    def standard_input() -> bytes:
+        return sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
+
+    done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
     color = wants_color(sys.stdout)
     text = render(done.findings, output_format, color=color, complete=not done.unread)
     if text:

@@ -57,10 +57,10 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
 
 
 def _standard_input(*, check: bool, diff: bool) -> int:
+    from rulec.files import MAX_SOURCE_BYTES
     from rulec.rulebook.formatting import formatted
-    from rulec.syntax import MAX_BYTES
 
-    file = formatted("standard input", None, sys.stdin.buffer.read(MAX_BYTES + 1))
+    file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
     if not (check or diff):
         # Not as text: in the terminal's encoding it might be another one.
         sys.stdout.buffer.write(file.after)

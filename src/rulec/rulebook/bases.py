@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, Label, RulecError
-from rulec.rulebook.finding import find_base, is_same_file, read_bytes
+from rulec.rulebook.finding import Dependency, find_base, is_same_file, read_bytes
 from rulec.rulebook.model import SourceFile
 from rulec.syntax import decode, parse, tree
 
@@ -34,6 +34,7 @@ class Bases:
     books: list[Book] = field(default_factory=list)
     sources: list[SourceFile] = field(default_factory=list)
     mistakes: list[Diagnostic] = field(default_factory=list)
+    dependencies: list[Dependency] = field(default_factory=list)
     failed: bool = False
 
 
@@ -64,7 +65,11 @@ def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) 
             found.failed = True
             break
         found.mistakes += mistakes
-        found.sources.append(source_file(above.name, data))
+        record = source_file(above.name, data)
+        found.sources.append(record)
+        user = str(here.path or "")
+        needed = Dependency("base", line.name.text, user, str(above), record.sha256)
+        found.dependencies.append(needed)
         here = Book(parsed, above)
         way.append(here)
         found.books.insert(0, here)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import NoReturn
 
@@ -15,7 +16,7 @@ from rulec.rulebook.finding import (
     find_rulebook,
     read_bytes,
 )
-from rulec.rulebook.loader import diagnose
+from rulec.rulebook.recollection import Question, recall, remember
 
 _STANDARD_INPUT = Path("standard input")
 
@@ -34,6 +35,8 @@ def check(
     standard_input: Callable[[], bytes],
     search_path: Sequence[Path] = (),
     at: str = "",
+    *,
+    recalls: bool = False,
 ) -> Checked:
     """Check what the references mean, each file once, and say each finding once.
 
@@ -44,6 +47,7 @@ def check(
         search_path: folders of rulebooks and vocabularies.
         at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
             today.
+        recalls: may findings come from the cache where nothing has changed, and go there?
     """
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
@@ -58,9 +62,27 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
-        for one in diagnose(str(path), data, path, search_path, at):
+        for one in _findings(path, data, search_path, at, recalls=recalls):
             findings.setdefault(_identity(one), one)
     return Checked(tuple(files.values()), tuple(findings.values()), tuple(unread))
+
+
+def _findings(
+    path: Path, data: bytes, search_path: Sequence[Path], at: str, *, recalls: bool
+) -> tuple[Diagnostic, ...]:
+    place = "" if path is _STANDARD_INPUT else str(path)
+    folders = tuple(str(folder) for folder in search_path)
+    today = date.today().isoformat()  # noqa: DTZ011 - the reader's own day
+    question = Question(str(path), place, data, folders, at, today)
+    known = recall(question) if recalls else None
+    if known is not None:
+        return known
+    from rulec.rulebook.loader import diagnose  # takes longer than to recall
+
+    diagnosis = diagnose(str(path), data, path, search_path, at)
+    if recalls and diagnosis.dependencies is not None:
+        remember(question, diagnosis.findings, diagnosis.dependencies)
+    return diagnosis.findings
 
 
 def _meant(

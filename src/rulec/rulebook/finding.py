@@ -4,17 +4,31 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean, named
-from rulec.files import opened
+from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
-from rulec.syntax import MAX_BYTES
 
 _SUFFIX = ".rules"
 _LEAD = re.compile(r"(?:\s+|#[^\n]*)*(\w*)")
 _LEAD_BYTES = 65536
+
+
+@dataclass(frozen=True, slots=True)
+class Dependency:
+    """A file that was looked for by ``name`` on behalf of the file ``user``, and its content then.
+
+    ``user`` is empty where that is no file.
+    """
+
+    kind: Literal["base", "vocabulary"]
+    name: str
+    user: str
+    path: str
+    sha256: str
 
 
 def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
@@ -28,11 +42,18 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
         path = Path(text)
         inside = path / f"{path.name}{_SUFFIX}"
         return inside if _is_file(inside) else path
-    for folder in _folders(search_path):
-        for candidate in (folder / f"{text}{_SUFFIX}", folder / text / f"{text}{_SUFFIX}"):
-            if text and _is_file(candidate):
-                return candidate
+    found = _by_name(text, search_path)
+    if found is not None:
+        return found
     raise RulecError(_no_rulebook(text, available_rulebooks(search_path)))
+
+
+def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
+    for folder in _folders(search_path):
+        for candidate in (folder / f"{name}{_SUFFIX}", folder / name / f"{name}{_SUFFIX}"):
+            if name and _is_file(candidate):
+                return candidate
+    return None
 
 
 def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
@@ -57,13 +78,10 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     Raises:
         RulecError: R0703 at the ``use`` line.
     """
-    file = f"{name}{_SUFFIX}"
-    folders = _vocabulary_folders(user, search_path)
-    for folder in folders:
-        candidate = folder / file
-        if _is_file(candidate) and (user is None or not is_same_file(candidate, user)):
-            return candidate
-    known = [path.stem for path in _vocabularies_in(folders)]
+    found = locate_vocabulary(name, user, search_path)
+    if found is not None:
+        return found
+    known = [path.stem for path in _vocabularies_in(_vocabulary_folders(user, search_path))]
     raise RulecError(
         Diagnostic(
             "R0703",
@@ -75,22 +93,37 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     )
 
 
+def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
+    """As ``find_vocabulary``; None if there is none."""
+    for folder in _vocabulary_folders(user, search_path):
+        candidate = folder / f"{name}{_SUFFIX}"
+        if _is_file(candidate) and (user is None or not is_same_file(candidate, user)):
+            return candidate
+    return None
+
+
 def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
     """The file of a rulebook that another one extends: beside it, on the search path, or ours.
 
     Raises:
         RulecError: R0703 at the ``extends`` line.
     """
-    beside: list[Path] = []
-    if user is not None:
-        # A rulebook in a folder of its own has the others beside that folder.
-        beside = [user.parent, user.parent.parent]
-    try:
-        return find_rulebook(name, [*beside, *search_path])
-    except RulecError as error:
-        (one,) = error.diagnostics
-        expected = "expected the name of a rulebook"
-        raise RulecError(replace(one, place=line.place, expected=expected)) from None
+    found = locate_base(name, user, search_path)
+    if found is not None:
+        return found
+    missing = _no_rulebook(name, available_rulebooks([*_around(user), *search_path]))
+    expected = "expected the name of a rulebook"
+    raise RulecError(replace(missing, place=line.place, expected=expected))
+
+
+def locate_base(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
+    """As ``find_base``; None if there is none."""
+    return _by_name(name, [*_around(user), *search_path])
+
+
+def _around(user: Path | None) -> list[Path]:
+    # A rulebook in a folder of its own has the others beside that folder.
+    return [] if user is None else [user.parent, user.parent.parent]
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
@@ -101,7 +134,7 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
     """
     labels = (Label(use.place, "it is used here"),) if use else ()
     with opened(path, labels=labels) as stream:
-        return stream.read(MAX_BYTES + 1)
+        return stream.read(MAX_SOURCE_BYTES + 1)
 
 
 def _folders(search_path: Sequence[Path]) -> list[Path]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 from rulec.rulebook.bases import Book, read_bases, source_file
 from rulec.rulebook.finding import (
+    Dependency,
     available_rulebooks,
     find_rulebook,
     find_vocabulary,
@@ -22,6 +23,7 @@ from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
 
 __all__ = [
+    "Diagnosis",
     "Loaded",
     "available_rulebooks",
     "diagnose",
@@ -34,10 +36,28 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A rulebook without errors, and the warnings about it."""
+    """A rulebook without errors, the warnings about it, and the trees that it comes from.
+
+    ``books`` are those that it extends, the most general first, and itself; ``vocabularies`` those
+    that they use.
+    """
 
     rulebook: Rulebook
     warnings: tuple[Diagnostic, ...] = ()
+    books: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
+    vocabularies: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """All that there is to say about a file.
+
+    ``dependencies`` are the other files that it depends on; None if one of them is missing, so that
+    any new file could make a difference.
+    """
+
+    findings: tuple[Diagnostic, ...]
+    dependencies: tuple[Dependency, ...] | None = ()
 
 
 def load_rulebook(
@@ -102,7 +122,7 @@ def diagnose(
     path: Path | None = None,
     search_path: Sequence[Path] = (),
     at: str = "",
-) -> tuple[Diagnostic, ...]:
+) -> Diagnosis:
     """Everything that there is to say about a rulebook or a vocabulary, errors and warnings.
 
     Args:
@@ -116,11 +136,11 @@ def diagnose(
         source = decode(name, data)
         file, mistakes = parse(source)
         if file.kind == "rulebook":
-            return _resolved(source, data, path, search_path, (file, mistakes), at).warnings
+            return _resolved(source, data, path, search_path, (file, mistakes), at)[1]
         _, meanings = resolve_vocabulary(file)
     except RulecError as error:
-        return error.diagnostics
-    return _in_order(name, [*mistakes, *meanings])
+        return Diagnosis(error.diagnostics)
+    return Diagnosis(_in_order(name, [*mistakes, *meanings]))
 
 
 def _load(
@@ -129,7 +149,10 @@ def _load(
     file, mistakes = parse(source)
     if file.kind == "vocabulary" and file.name is not None:
         raise RulecError(_not_a_rulebook(file))
-    return _resolved(source, data, path, search_path, (file, mistakes), at)
+    loaded, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at)
+    if loaded is None:
+        raise RulecError(diagnosis.findings)
+    return loaded
 
 
 def _resolved(
@@ -139,24 +162,30 @@ def _resolved(
     search_path: Sequence[Path],
     parsed: tuple[tree.File, tuple[Diagnostic, ...]],
     at: str,
-) -> Loaded:
+) -> tuple[Loaded | None, Diagnosis]:
+    """The rulebook if it has no errors, and what there is to say about it."""
     file, mistakes = parsed
     based = read_bases(file, path, search_path)
     found = _Vocabularies(tuple(search_path))
     books = [*based.books, Book(file, path)]
     trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
+    vocabularies = tuple(one for one in trees if one is not None)
+    opaque = found.failed or based.failed
     rulebook, meanings = resolve(
         file,
-        [one for one in trees if one is not None],
+        vocabularies,
         bases=[book.file for book in based.books],
         sources=(source_file(source.name, data), *based.sources, *found.sources),
-        opaque=found.failed or based.failed,
+        opaque=opaque,
         at=at or (file.law.as_of if file.law else "") or date.today().isoformat(),  # noqa: DTZ011
     )
     everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
+    needed = None if opaque else (*based.dependencies, *found.dependencies)
+    diagnosis = Diagnosis(everything, needed)
     if rulebook is None or any(one.severity == "error" for one in everything):
-        raise RulecError(everything)
-    return Loaded(rulebook, everything)
+        return None, diagnosis
+    trees_of_books = tuple(book.file for book in books)
+    return Loaded(rulebook, everything, trees_of_books, vocabularies), diagnosis
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
@@ -189,6 +218,7 @@ class _Vocabularies:
     sources: list[SourceFile] = field(default_factory=list)
     mistakes: list[Diagnostic] = field(default_factory=list)
     failed: bool = False
+    dependencies: list[Dependency] = field(default_factory=list)
     read_already: list[Path] = field(default_factory=list)
 
     def read(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
@@ -196,9 +226,13 @@ class _Vocabularies:
         name = use.name
         try:
             path = find_vocabulary(name.text, name.span, user, self.search_path)
+            data = read_bytes(path, name.span)
+            record = source_file(path.name, data)
+            self.dependencies.append(
+                Dependency("vocabulary", name.text, str(user or ""), str(path), record.sha256)
+            )
             if any(is_same_file(path, one) for one in self.read_already):
                 return None
-            data = read_bytes(path, name.span)
             source = decode(str(path), data)
         except RulecError as error:
             self.mistakes += error.diagnostics
@@ -210,7 +244,7 @@ class _Vocabularies:
             self.mistakes.append(_not_the_vocabulary(use, file, path))
             self.failed = True
             return None
-        self.sources.append(source_file(path.name, data))
+        self.sources.append(record)
         self.mistakes += mistakes
         return file
 

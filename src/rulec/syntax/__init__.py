@@ -16,6 +16,6 @@ writes them, and a test says when they are out of date.
 
 from rulec.syntax.parser import parse, parse_formula
 from rulec.syntax.printer import print_file, print_formula
-from rulec.syntax.text import MAX_BYTES, decode
+from rulec.syntax.text import decode
 
-__all__ = ["MAX_BYTES", "decode", "parse", "parse_formula", "print_file", "print_formula"]
+__all__ = ["decode", "parse", "parse_formula", "print_file", "print_formula"]

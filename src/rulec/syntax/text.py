@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from rulec.diagnostics import Diagnostic, Place, RulecError, Source
-from rulec.files import decoded, without_null
-
-MAX_BYTES: Final = 5_000_000
-"""A rulebook has thousands of characters; millions are a mistake."""
+from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
 
 
 def decode(name: str, data: bytes) -> Source:
     """The text of a rulebook file; a byte order mark is dropped.
 
     Raises:
-        RulecError: more than ``MAX_BYTES``, not UTF-8, or not a text at all.
+        RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
     """
     _check_size(name, len(data))
     return decoded(name, data)
@@ -32,11 +27,11 @@ def checked(source: Source) -> Source:
 
 
 def _check_size(name: str, size: int) -> None:
-    if size > MAX_BYTES:
+    if size > MAX_SOURCE_BYTES:
         raise RulecError(
             Diagnostic(
                 "R0102",
-                f"the file is too large: at most {MAX_BYTES:,} bytes are read",
+                f"the file is too large: at most {MAX_SOURCE_BYTES:,} bytes are read",
                 Place(name),
                 help="split it into several rulebooks",
             )

@@ -1,0 +1,198 @@
+"""What a check found is recalled while nothing has changed, and only then."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from rulec.rulebook import checking, loader, recollection
+from rulec.rulebook.recollection import Question, cache_folder, recall, remember
+
+WORDS = "vocabulary words {\n  signal p, q \n}\n"
+BASE = "rulebook base\nuse words\nhard rule first { require p }\n"
+BOOK = "rulebook book\nextends base\nhard rule second { require always q }\n"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+    project = tmp_path / "project"
+    project.mkdir()
+    monkeypatch.chdir(project)
+    for name, text in (("words", WORDS), ("base", BASE), ("book", BOOK)):
+        (project / f"{name}.rules").write_text(text)
+    return project
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """The files that have been checked anew."""
+    names = []
+
+    def noting(name, *others):
+        names.append(name)
+        return original(name, *others)
+
+    original = loader.diagnose
+    monkeypatch.setattr(loader, "diagnose", noting)
+    return names
+
+
+def check(reference="book.rules", at="", search_path=(), data=b""):
+    done = checking.check([reference], lambda: data, search_path, at, recalls=True)
+    assert not done.unread
+    return [(one.code, one.place.file, one.message) for one in done.findings]
+
+
+def test_what_has_not_changed_is_recalled(folder, made):
+    first = check()
+    assert check() == first
+    assert made == ["book.rules"]
+
+
+@pytest.mark.parametrize("name", ["book", "base", "words"])
+def test_a_change_anywhere_counts(folder, made, name):
+    assert check() == []
+    path = folder / f"{name}.rules"
+    path.write_text(f"# another\n{path.read_text()}".replace(" q ", " qq "))
+    again = check()
+    assert len(made) == 2
+    # `qq` is in `book` or in the vocabulary alone, so one of them lacks a word; `base` has no `q`.
+    assert [code for code, _, _ in again] == ([] if name == "base" else ["R0202"])
+
+
+def test_a_mistake_is_recalled_in_every_detail(folder, made):
+    (folder / "book.rules").write_text(BOOK.replace("always q", "always qq or p(v) or 1 m"))
+    found = [checking.check(["book.rules"], bytes, recalls=True).findings for _ in range(2)]
+    assert found[0] == found[1] != ()
+    assert made == ["book.rules"]
+
+
+def test_a_file_that_comes_nearer_counts(folder, made):
+    (folder / "vocabulary").mkdir()
+    (folder / "words.rules").rename(folder / "vocabulary" / "words.rules")
+    assert check() == []
+    (folder / "words.rules").write_text("vocabulary words {\n  signal p\n}\n")
+    assert [code for code, _, _ in check()] == ["R0202"]
+
+
+def test_a_file_that_goes_or_comes_counts(folder, made):
+    (folder / "words.rules").rename(folder / "other.txt")
+    assert "R0703" in [code for code, _, _ in check()]
+    (folder / "other.txt").rename(folder / "words.rules")
+    assert check() == []
+    (folder / "words.rules").unlink()
+    assert "R0703" in [code for code, _, _ in check()]
+
+
+def test_the_day_counts(folder, made):
+    check()
+    check(at="2020-01-01")
+    check(at="2020-01-02")
+    check(at="2020-01-01")
+    assert len(made) == 3
+
+
+def test_a_rulebook_is_asked_again_on_another_day(folder):
+    question = Question("a.rules", "a.rules", b"x", (), "", "2026-01-01")
+    remember(question, (), ())
+    assert recall(question) == ()
+    tomorrow = Question("a.rules", "a.rules", b"x", (), "", "2026-01-02")
+    assert recall(tomorrow) is None
+
+
+def test_the_search_path_counts(folder, made, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        text = WORDS if name == "one" else WORDS.replace(", q", "")
+        (tmp_path / name / "words.rules").write_text(text)
+    (folder / "words.rules").unlink()
+    assert check(search_path=[tmp_path / "one"]) == []
+    assert [code for code, _, _ in check(search_path=[tmp_path / "two"])] == ["R0202"]
+
+
+def test_standard_input_is_recalled_by_its_text(folder, made):
+    assert check("-", data=BOOK.encode()) == []
+    assert check("-", data=BOOK.encode()) == []
+    assert check("-", data=BOOK.replace("always q", "always x").encode()) != []
+    assert len(made) == 2
+
+
+def test_another_rulec_checks_anew(folder, made, monkeypatch):
+    check()
+    monkeypatch.setattr(recollection, "__version__", "0.0.0")
+    check()
+    assert len(made) == 2
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_bytes(b""),
+        lambda path: path.write_bytes(path.read_bytes()[:-9]),
+        lambda path: path.write_bytes(b"\xff\xfe{}"),
+        lambda path: path.write_text("[]"),
+        lambda path: path.write_text(
+            json.dumps({**json.loads(path.read_text()), "findings": [{"code": "R9999"}]})
+        ),
+        lambda path: path.write_text(
+            json.dumps({**json.loads(path.read_text()), "dependencies": [{"kind": "x"}]})
+        ),
+    ],
+)
+def test_damage_costs_time_only(folder, made, damage):
+    check()
+    (kept,) = cache_folder().iterdir()
+    damage(kept)
+    assert check() == []
+    assert len(made) == 2
+    assert check() == []
+    assert len(made) == 2
+
+
+def test_no_place_to_keep_it_costs_time_only(folder, made, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("not a folder")
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "file" / "cache"))
+    assert check() == check() == []
+    assert len(made) == 2
+
+
+def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
+    monkeypatch.delenv("RULEC_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache_folder() == tmp_path / "rulec"
+    monkeypatch.setenv("XDG_CACHE_HOME", "not/absolute")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert cache_folder() == tmp_path / ".cache" / "rulec"
+
+
+def test_the_longest_unused_go_first(folder, monkeypatch):
+    monkeypatch.setattr(recollection, "MOST_FILES", 3)
+    questions = [Question(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
+    for age, question in enumerate(questions):
+        remember(question, (), ())
+        newest = cache_folder() / f"{question.place()}.json"
+        if newest.exists():
+            os.utime(newest, (age, age))
+    known = [recall(question) is not None for question in questions]
+    assert known[3] or len(list(cache_folder().iterdir())) <= 3
+    assert not known[0]
+
+
+def test_recalling_imports_neither_the_parser_nor_the_language(folder):
+    program = (
+        "import sys; from rulec.cli.main import main; status = main(['check', 'book.rules']);"
+        "assert status == 0; print(*sorted(m for m in sys.modules"
+        " if m.startswith(('rulec.syntax', 'rulec.logic', 'lark', 'rulec.rulebook.loader'))))"
+    )
+    run = [
+        subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, check=True
+        ).stdout.splitlines()
+        for _ in range(2)
+    ]
+    assert run[0][0] == run[1][0] == "1 file checked, nothing found"
+    assert "rulec.syntax" in run[0][1]
+    assert run[1][1] == ""
