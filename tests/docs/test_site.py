@@ -80,7 +80,7 @@ def test_every_public_name_is_described(pages):
     import rulec
 
     assert {f"rulec.{name}" for name in rulec.__all__ if name != "__version__"} <= (
-        pages["api.html"].ids
+        pages["python.html"].ids
     )
 
 
