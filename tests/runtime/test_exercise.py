@@ -60,6 +60,12 @@ def test_the_verdicts_that_a_rule_has(formula, expected):
     assert verdicts(run.compiled.rules[0].machine) == expected
 
 
+def test_states_that_a_fact_rules_out_show_nothing():
+    run = run_of("fact not (p and q)", "hard rule A { require never (p and q) accept { p } }")
+    assert verdicts(run.compiled.rules[0].machine) == {True}
+    assert list(unexercised(run)) == []
+
+
 def test_a_verdict_that_a_rule_never_has_is_not_asked_for():
     assert said("hard rule A { require never (p and not p) accept { p } }") == []
     assert said("hard rule A { require p and not p reject { p } }") == []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf
 
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
 from rulec.logic.comparing import stands
 from rulec.logic.formula import Comparison, Formula, Quantity, atoms_of
 from rulec.rulebook.model import ExampleState
@@ -41,7 +41,9 @@ def possible_letters(machine: Machine) -> Mapping[int, int]:
     """For every class of letters that some state of the world is in, the first of its letters."""
     first: dict[int, int] = {}
     for letter, symbol in enumerate(machine.letters):
-        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
+        if symbol == IMPOSSIBLE or symbol in first:
+            continue
+        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
             first[symbol] = letter
     return first
 
