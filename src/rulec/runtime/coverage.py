@@ -15,7 +15,7 @@ from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
 from rulec.runtime.moment import Moment
 from rulec.runtime.verify import columns_of
-from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
+from rulec.runtime.wanted import Wanted, possible_letters, truths, wanted
 from rulec.vocabulary import Enumeration, Vocabulary
 
 
@@ -89,7 +89,7 @@ def _coverage(
     facts: Sequence[Formula],
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
-    letters = _letters(machine)
+    letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
@@ -128,17 +128,6 @@ def _moments(
         trace = example_trace(rule, one.example)
         columns = columns_of(trace, rulebook)
         yield from (columns.moment(number) for number in range(len(trace.states)))
-
-
-def _letters(machine: Machine) -> Mapping[int, int]:
-    """For every class that some state of the world is in, the first of its letters."""
-    first: dict[int, int] = {}
-    for letter, symbol in enumerate(machine.letters):
-        if symbol == IMPOSSIBLE or symbol in first:
-            continue
-        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
-            first[symbol] = letter
-    return first
 
 
 def _edges(

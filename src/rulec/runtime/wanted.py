@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf
 
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
 from rulec.logic.comparing import stands
 from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atoms_of
 from rulec.logic.one_state import holds
@@ -39,6 +39,17 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
         return True
     bounds = (-inf, *scale(read).floors, inf)
     return bounds[digit] < bounds[digit + 1]
+
+
+def possible_letters(machine: Machine) -> Mapping[int, int]:
+    """For every class of letters that some state of the world is in, the first of its letters."""
+    first: dict[int, int] = {}
+    for letter, symbol in enumerate(machine.letters):
+        if symbol == IMPOSSIBLE or symbol in first:
+            continue
+        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
+            first[symbol] = letter
+    return first
 
 
 def truths(comparison: Comparison, machine: Machine) -> set[bool]:
