@@ -13,12 +13,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.automata.letters import reads_of
+from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.facts import FactInstance, fact_groups, fact_instances
+from rulec.automata.letters import propositions_of, reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.printing import time_in_words
+from rulec.logic.printing import in_words, time_in_words
 from rulec.logic.timing import NotAMultipleError, in_steps, operations_of, speaks_of_seconds
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.version import __version__
@@ -51,7 +52,7 @@ def compile_rulebook(
     Raises:
         RulecError: R0401 for each rule whose automaton is too large, R0402 for each whose
             automaton failed its check, R0403 if Spot is not installed, R0407 for each rule with a
-            bound that is not a multiple of the step.
+            bound that is not a multiple of the step, R0409 for facts that contradict each other.
     """
     compiled: list[CompiledRule] = []
     problems: list[Diagnostic] = []
@@ -76,7 +77,8 @@ def compile_rulebook(
                 if answer is None:
                     break
     if problems:
-        raise RulecError(problems)
+        # Facts that contradict each other do so in every rule.
+        raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         rulebook.name,
         rulebook.vocabulary,
@@ -88,6 +90,9 @@ def compile_rulebook(
         rulec=__version__,
         spot=spot,
         semantics=rulebook.semantics,
+        facts=tuple(
+            CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
+        ),
         levels=rulebook.levels,
         priorities=rulebook.priorities,
         extends=rulebook.extends,
@@ -150,8 +155,11 @@ def _job(rulebook: Rulebook, rule: Rule, step: Fraction | None, cpu_limit_s: int
     ]
     if step is not None:
         remarks.append(f"one letter is {time_in_words(step, 's')}")
-    reads = reads_of(formula, rulebook.vocabulary)
-    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, cpu_limit_s)
+    vocabulary = rulebook.vocabulary
+    reads = reads_of(formula, vocabulary)
+    instances = fact_instances(rule.variables, rulebook.facts, vocabulary)
+    groups = fact_groups(propositions_of(formula), instances, vocabulary)
+    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, groups, cpu_limit_s)
 
 
 def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
@@ -199,6 +207,8 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
             place,
             help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
         )
+    if failed is not None and failed.why == "facts":
+        return _contradiction(rule, failed.contradiction)
     why = (
         "it reads too many signals, enumerations and numbers at once"
         if failed is not None and failed.why == "letters"
@@ -210,6 +220,25 @@ def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
         place,
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
         "rules beside each other do not" + _bounds_help(rule),
+    )
+
+
+def _contradiction(rule: Rule, instances: tuple[FactInstance, ...]) -> Diagnostic:
+    facts = list(dict.fromkeys(one.fact for one in instances))
+    first, *others = facts
+    said = ", ".join(f"`{in_words(one.formula)}`" for one in facts)
+    types = {variable.name: variable.type for variable in rule.variables}
+    who = sorted({f"a `{types[name]}`" for one in instances for name in one.variables})
+    return Diagnostic(
+        "R0409",
+        f"these facts contradict each other: {said}" if others else f"{said} can never be a fact",
+        at(first.span),
+        expected="no state can be so",
+        help="a fact is what holds in every state: correct or remove one of them"
+        if others
+        else "a fact is what holds in every state: correct or remove it",
+        labels=tuple(Label(one.span.place, "and so") for one in others if one.span is not None),
+        notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
     )
 
 

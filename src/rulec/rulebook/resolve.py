@@ -8,6 +8,7 @@ from typing import Literal
 from rulec.diagnostics import Diagnostic, Place
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import declare
+from rulec.rulebook.fact_checks import contradicted
 from rulec.rulebook.facts import fact_of
 from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
 from rulec.rulebook.overlay import Overlay, overlay
@@ -64,8 +65,11 @@ def resolve(
         mistakes += found
         if in_force(entry.item.in_force, at):
             rules.append(rule)
-    mistakes = _once(mistakes)
     good = [rule for rule in rules if rule is not None]
+    if not declared.mistakes:
+        words = declared.vocabulary(file.name.text if file.name else "")
+        mistakes += [one for rule in good for one in contradicted(rule, facts, words)]
+    mistakes = _once(mistakes)
     wrong = any(one.severity == "error" for one in mistakes)
     whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
     # A rulebook without rules is there to be extended.

@@ -6,11 +6,13 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.automata.machine import Machine
+from rulec.automata.letters import letters_with
+from rulec.automata.machine import IMPOSSIBLE, Machine
 from rulec.logic.formula import Comparison, Proposition, atoms_of
+from rulec.logic.one_state import holds
 from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
-from rulec.runtime.moment import Moment, holds
+from rulec.runtime.moment import Moment
 from rulec.runtime.verify import columns_of
 from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -125,7 +127,9 @@ def _letters(machine: Machine) -> Mapping[int, int]:
     """For every class that some state of the world is in, the first of its letters."""
     first: dict[int, int] = {}
     for letter, symbol in enumerate(machine.letters):
-        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
+        if symbol == IMPOSSIBLE or symbol in first:
+            continue
+        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
             first[symbol] = letter
     return first
 
@@ -162,8 +166,19 @@ def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tu
 def _possible(
     proposition: Proposition, machine: Machine, vocabulary: Vocabulary
 ) -> tuple[bool, ...]:
+    """The values that a proposition can have, true first."""
     if isinstance(proposition, Comparison):
-        return tuple(sorted(truths(proposition, machine), reverse=True))
-    declaration = vocabulary.declarations[proposition.name]
-    only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
-    return (True,) if only else (True, False)
+        values = tuple(sorted(truths(proposition, machine), reverse=True))
+    else:
+        declaration = vocabulary.declarations[proposition.name]
+        only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
+        values = (True,) if only else (True, False)
+    if IMPOSSIBLE not in machine.letters:
+        return values
+    true = letters_with(machine.reads, [proposition])[proposition]
+    met = {
+        bool(true >> letter & 1)
+        for letter, symbol in enumerate(machine.letters)
+        if symbol != IMPOSSIBLE
+    }
+    return tuple(value for value in values if value in met)

@@ -81,4 +81,15 @@ COMPILING = {
         "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
         "compiled",
     ),
+    "R0409": Explanation(
+        "facts contradict each other",
+        "A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
+        "all, there is no state that a rule could speak of. The message names facts that "
+        "contradict each other, none of them needlessly.",
+        "rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
+        "fact not fog\nhard rule r { require always not (wet and fog) }\n",
+        "rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
+        "hard rule r { require always not wet }\n",
+        "compiled",
+    ),
 }
