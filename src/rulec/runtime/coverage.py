@@ -6,9 +6,10 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.facts import fact_instances
 from rulec.automata.letters import letters_with
 from rulec.automata.machine import IMPOSSIBLE, Machine
-from rulec.logic.formula import Comparison, Proposition, atoms_of
+from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.one_state import holds
 from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
@@ -74,12 +75,18 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [one for one in run.outcomes if one.rule is rule]
         if outcomes or run.pattern is None:
-            found.append(_coverage(rule, compiled, outcomes, run.compiled))
+            known = fact_instances(rule.variables, run.rulebook.facts, run.rulebook.vocabulary)
+            facts = [one.formula for one in known]
+            found.append(_coverage(rule, compiled, outcomes, run.compiled, facts))
     return tuple(found)
 
 
 def _coverage(
-    rule: Rule, compiled: CompiledRule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+    rule: Rule,
+    compiled: CompiledRule,
+    outcomes: Sequence[Outcome],
+    rulebook: CompiledRulebook,
+    facts: Sequence[Formula],
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
     letters = possible_letters(machine)
@@ -87,7 +94,7 @@ def _coverage(
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
-        symbol: wanted(letter, machine, rule.formula, vocabulary)
+        symbol: wanted(letter, machine, rule.formula, vocabulary, facts)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
