@@ -26,7 +26,7 @@ from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
-    from rulec.analysis.inheritance import Inheritance
+    from rulec.analysis.history import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.loader import Loaded
