@@ -178,3 +178,18 @@ def test_what_facts_rule_out_is_not_missing_from_examples():
     (found,) = coverage(run_all(book, compile_rulebook(book)))
     assert found.missing_values == ()
     assert found.missing_edges == ()
+
+
+def test_numbers_are_not_suggested_against_a_fact():
+    """59 km/h would do for the rule, but without lights no car is that fast."""
+    book = parse_rulebook(
+        "rulebook a signal lights, near default false quantity speed in km/h default 0\n"
+        "fact lights or speed < 50 km/h\n"
+        "hard rule r { require always (near implies speed < 60 km/h and not lights) }"
+    )
+    (found,) = coverage(run_all(book, compile_rulebook(book)))
+    suggested = [edge.states[-1] for edge in found.missing_edges if edge.accepted]
+    assert [dict(state.says) for state in suggested] == [
+        {("near", ()): False, ("lights", ()): False}
+    ]
+    assert suggested[0].besides == ("speed < 60 km/h", "lights or speed < 50 km/h")

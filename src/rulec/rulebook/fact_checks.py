@@ -18,10 +18,10 @@ from rulec.vocabulary.choices import choices
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
-    """What a state of an example says, and the defaults of what else its rule reads.
+class Told:
+    """What a state of an example says, and the defaults of what else a rule reads.
 
-    What neither of them speaks of is not known.
+    What neither of them speaks of is not known. ``read`` are those: declarations and objects.
     """
 
     said: ExampleState
@@ -30,12 +30,14 @@ class _Told:
     vocabulary: Vocabulary
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """The value of a signal or an enumeration."""
         found = self.said.get((name, items))
         if found is None and (name, items) in self.read:
             found = self.vocabulary.declarations[name].default
         return Unknown(name, items) if found is None else found
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The value of a quantity."""
         found = self.value(name, items)
         # A number's decimals are what is written.
         return found if isinstance(found, Unknown) else Fraction(repr(found))
@@ -49,12 +51,12 @@ def contradicted(rule: Rule, facts: Sequence[Fact], vocabulary: Vocabulary) -> I
             (one.name, one.arguments) for one in asked(rule.formula, objects, vocabulary.is_subtype)
         )
         for number, state in enumerate(example.states):
-            broken = _broken(_Told(state, read, objects, vocabulary), facts)
+            broken = _broken(Told(state, read, objects, vocabulary), facts)
             if broken is not None:
                 yield _no_state(example, number, *broken)
 
 
-def _broken(state: _Told, facts: Sequence[Fact]) -> tuple[Fact, str] | None:
+def _broken(state: Told, facts: Sequence[Fact]) -> tuple[Fact, str] | None:
     """The first fact that does not hold, and how it is said of the objects."""
     for fact in facts:
         names = [variable.name for variable in fact.variables]

@@ -6,15 +6,16 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.facts import fact_instances
 from rulec.automata.letters import letters_with
 from rulec.automata.machine import IMPOSSIBLE, Machine
-from rulec.logic.formula import Comparison, Proposition, atoms_of
+from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.one_state import holds
 from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
 from rulec.runtime.moment import Moment
 from rulec.runtime.verify import columns_of
-from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
+from rulec.runtime.wanted import Wanted, possible_letters, truths, wanted
 from rulec.vocabulary import Enumeration, Vocabulary
 
 
@@ -74,20 +75,26 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [one for one in run.outcomes if one.rule is rule]
         if outcomes or run.pattern is None:
-            found.append(_coverage(rule, compiled, outcomes, run.compiled))
+            known = fact_instances(rule.variables, run.rulebook.facts, run.rulebook.vocabulary)
+            facts = [one.formula for one in known]
+            found.append(_coverage(rule, compiled, outcomes, run.compiled, facts))
     return tuple(found)
 
 
 def _coverage(
-    rule: Rule, compiled: CompiledRule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+    rule: Rule,
+    compiled: CompiledRule,
+    outcomes: Sequence[Outcome],
+    rulebook: CompiledRulebook,
+    facts: Sequence[Formula],
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
-    letters = _letters(machine)
+    letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
-        symbol: wanted(letter, machine, rule.formula, vocabulary)
+        symbol: wanted(letter, machine, rule.formula, vocabulary, facts)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
@@ -121,17 +128,6 @@ def _moments(
         trace = example_trace(rule, one.example)
         columns = columns_of(trace, rulebook)
         yield from (columns.moment(number) for number in range(len(trace.states)))
-
-
-def _letters(machine: Machine) -> Mapping[int, int]:
-    """For every class that some state of the world is in, the first of its letters."""
-    first: dict[int, int] = {}
-    for letter, symbol in enumerate(machine.letters):
-        if symbol == IMPOSSIBLE or symbol in first:
-            continue
-        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
-            first[symbol] = letter
-    return first
 
 
 def _edges(
