@@ -16,7 +16,9 @@ NO_LAW = {"vocabulary", "schemas", "esterle2019"}
 
 FOLDER = rulebooks_folder()
 NATIONAL = sorted(
-    path.name for path in FOLDER.iterdir() if path.is_dir() and path.name not in NO_LAW
+    path.stem
+    for path in FOLDER.glob("*/*.rules")
+    if path.stem == path.parent.name and path.stem not in NO_LAW
 )
 _CASES = Path(__file__).parents[1] / "law" / "cases.toml"
 CASES: list[dict[str, Any]] = parsed_toml(
