@@ -25,6 +25,8 @@ from rulec.runtime.verify import check_step
 from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
+    from rulec.analysis.audit import Audit
+    from rulec.analysis.inheritance import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
@@ -122,6 +124,41 @@ def run_examples(
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def read_inheritance(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> Inheritance:
+    """Where everything in a rulebook comes from. As for ``load_rulebook``."""
+    from rulec.analysis.inheritance import inheritance
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    return inheritance(loaded.books, loaded.rulebook.at)
+
+
+def audit_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    *,
+    run: bool = False,
+) -> Audit:
+    """What a rulebook, given by name or by its source's path, rests on.
+
+    ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
+    ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    from rulec.analysis.audit import audit
+    from rulec.analysis.inheritance import inheritance
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    warn(loaded.warnings)
+    outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
+    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    return audit(loaded.rulebook, inheritance(loaded.books, loaded.rulebook.at), failing)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

@@ -52,6 +52,9 @@ def test_every_field_of_a_finding():
         ["explain", "R0101", "--output-format", "json"],
         ["list", "scenarios", "--json"],
         ["show", "esterle2019", "R1", "--json"],
+        ["audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"],
+        ["tree", "esterle2019", "--json"],
+        ["tree", "--json"],
     ],
 )
 def test_every_field_of_an_answer(arguments, capsys):

@@ -14,7 +14,7 @@ SAMPLES = [
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
     for number, text in enumerate(
         re.findall(
-            r"^```rulec(?: vocabulary)?\n(.*?)^```",
+            r"^```rulec(?: vocabulary| file)?\n(.*?)^```",
             page.read_text(encoding="utf-8"),
             re.DOTALL | re.MULTILINE,
         )

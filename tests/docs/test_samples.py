@@ -2,15 +2,11 @@
 
 import json
 import re
-import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from rulec.automata.compiled_file import to_json
-from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.examples import run_all
 from rulec.runtime.verify import run
@@ -28,52 +24,12 @@ def blocks(language):
             yield pytest.param(text, id=f"{page.name}-{number}")
 
 
-def commands():
-    for block in blocks("console"):
-        (text,) = block.values
-        for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
-            command, _, output = part.partition("\n")
-            if command != "tests/run":  # this is it
-                yield pytest.param(command, output, id=f"{block.id}-{command}")
-
-
-def without_times(text):
-    return re.sub(r"computed in .* s|\"seconds\": [0-9.]+", "", text)
-
-
-@pytest.mark.parametrize(("command", "output"), list(commands()))
-def test_commands_print_what_is_shown(command, output, tmp_path, monkeypatch, capsys):
-    for folder in ("docs", "rulebooks"):
-        (tmp_path / folder).symlink_to(ROOT / folder)
-    monkeypatch.chdir(tmp_path)
-    program, *arguments = shlex.split(command)
-    assert program == "./rulec"
-    main(arguments)
-    captured = capsys.readouterr()
-    assert without_times(captured.out + captured.err) == without_times(output)
-
-
-def test_there_are_commands():
-    assert len(list(commands())) >= 5
-
-
 @pytest.mark.parametrize("text", list(blocks("rulec")))
 def test_rulebooks_check(text):
     if re.search(r"^rulebook ", text, re.MULTILINE):
         rulebook = parse_rulebook(text)
         run = run_all(rulebook, compile_rulebook(rulebook))
         assert [one.name for one in run.outcomes if not one.passed] == []
-
-
-def test_the_python_sample_prints_what_is_shown():
-    page = (ROOT / "docs" / "python.md").read_text()
-    program, output = re.search(
-        r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL
-    ).groups()
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout == output
 
 
 def test_the_run_of_a_compiled_machine_is_as_documented():

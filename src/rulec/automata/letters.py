@@ -167,8 +167,8 @@ def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposi
         atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
         facts += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
         if atoms and not read.others:
-            facts.append(_joined(OR, atoms))
-    return _joined(AND, facts) if facts else Constant(True)
+            facts.append(joined(OR, atoms))
+    return joined(AND, facts) if facts else Constant(True)
 
 
 def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
@@ -195,7 +195,7 @@ def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator
     cases: dict[tuple[bool, ...], Formula] = {}
     for digit in range(read.size):
         values = tuple(digit in digits for digits in true_at)
-        cases[values] = _joined(
+        cases[values] = joined(
             AND,
             [
                 one if value else Unary(NOT, one)
@@ -203,15 +203,15 @@ def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator
             ],
         )
     if len(cases) < 1 << len(comparisons):
-        yield _joined(OR, list(cases.values()))
+        yield joined(OR, list(cases.values()))
 
 
-def _joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
-    """The formulas under one operator, as a tree no deeper than it has to be."""
+def joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
+    """The formulas, one at least, under one operator, as a tree no deeper than it has to be."""
     if len(formulas) == 1:
         return formulas[0]
     half = len(formulas) // 2
-    left, right = _joined(operator, formulas[:half]), _joined(operator, formulas[half:])
+    left, right = joined(operator, formulas[:half]), joined(operator, formulas[half:])
     return Binary(operator, left, right)
 
 

@@ -125,6 +125,17 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     return value
 
 
+def only_sources(rulebooks: Iterable[str], done: str) -> None:
+    """Compiled rulebooks do not say enough to be ``done``, such as ``"be audited"``.
+
+    Raises:
+        click.UsageError: one of these is compiled.
+    """
+    compiled = next((one for one in rulebooks if one.endswith(".json")), None)
+    if compiled is not None:
+        raise click.UsageError(f"`{compiled}` is compiled and cannot {done}; give its source")
+
+
 def at_option(function: Decorated) -> Decorated:
     """``--at DATE``: the day whose law it is."""
     option = click.option(

@@ -15,6 +15,7 @@ from rulec.diagnostics import RulecError
 from rulec.version import __version__
 
 VERBS = {
+    "audit": "Say what rulebooks rest on: rules without a source or examples, what was left out.",
     "check": "Check rulebooks and vocabularies.",
     "compile": "Compile a rulebook to automata files.",
     "completion": "Print the script that completes rulec's commands in a shell.",
@@ -26,6 +27,7 @@ VERBS = {
     "show": "Show a rule in English, as a formula, as an automaton, by examples.",
     "test": "Run the examples of rulebooks.",
     "traces": "Write all maneuvers of a scenario as traces.",
+    "tree": "Show what a rulebook inherits, overrides and drops.",
     "verify": "Judge traces by a rulebook.",
 }
 

@@ -32,6 +32,12 @@ def list_rulebooks(search_path: Sequence[Path] = ()) -> list[Entry]:
     return [Entry(name, _title(_tree(path)), path) for name, path in paths.items()]
 
 
+def rulebook_trees(search_path: Sequence[Path] = ()) -> list[tree.File]:
+    """The trees of the rulebooks that can be read, by their names in alphabetical order."""
+    paths = (find_rulebook(name, search_path) for name in available_rulebooks(search_path))
+    return [file for path in paths if (file := _tree(path)) is not None and file.name is not None]
+
+
 def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:
     """The vocabularies with what they declare."""
     return [

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rulec.logic.formula import Comparison, Count, Formula, Relation
-from rulec.logic.printing import in_words
+from rulec.logic.printing import in_words, term_in_words
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.extent import excess
@@ -18,7 +18,6 @@ from rulec.rulebook.numbers import (
     constant,
     measured,
     negated,
-    term_text,
 )
 from rulec.rulebook.scope import BoundVariable, Scope
 from rulec.syntax import tree
@@ -57,7 +56,7 @@ def aggregate(
         kind.text,
         negated(body) if node.kind == "every" else body,
     )
-    count = measured(term, _ONE, DIMENSIONS["number"], term_text(term))
+    count = measured(term, _ONE, DIMENSIONS["number"], term_in_words(term))
     if node.kind == "count":
         return count
     relation: Relation = "<" if node.kind == "every" else ">="

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.logic.formula import Atom, Quantity
+from rulec.logic.printing import term_in_words
 from rulec.rulebook.declared import Declared
-from rulec.rulebook.numbers import Number, term_text
+from rulec.rulebook.numbers import Number
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
 from rulec.vocabulary import Enumeration
@@ -51,7 +52,7 @@ def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: Declare
     """Something that the formula needs, that has no default, and that the state does not say."""
     item = declared.items[what.name]
     if isinstance(what, Quantity):
-        ways = [f"`{term_text(what)} = … {declared.unit_text(what.name)}`"]
+        ways = [f"`{term_in_words(what)} = … {declared.unit_text(what.name)}`"]
     elif isinstance(item, Enumeration):
         ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
     else:
@@ -84,10 +85,10 @@ def without_number(fact: tree.StateLiteral, what: Quantity, declared: Declared) 
     unit = declared.unit_text(what.name)
     return Diagnostic(
         "R0313",
-        f"`{term_text(what)}` is a number (in {unit}) and cannot be true or false",
+        f"`{term_in_words(what)}` is a number (in {unit}) and cannot be true or false",
         fact.span.place,
         expected="expected its value",
-        help=f"write `{term_text(what)} = 5 {unit}`",
+        help=f"write `{term_in_words(what)} = 5 {unit}`",
         labels=(Label(declared.spans[what.name].place, f"`{what.name}` is declared here"),),
     )
 
@@ -112,7 +113,7 @@ def other_dimension(
     found = given.dimension.name if given.dimension else "number"
     return Diagnostic(
         "R0312",
-        f"`{term_text(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
+        f"`{term_in_words(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {found}",
         fact.value.span.place,
         expected=f"expected a {unit.dimension.name}",
@@ -125,11 +126,13 @@ def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic
     assert fact.value is not None, "only a value can be too large"
     return Diagnostic(
         "R0112",
-        f"this number is too large for `{term_text(what)}`, which counts in {unit.text}",
+        f"this number is too large for `{term_in_words(what)}`, which counts in {unit.text}",
         fact.value.span.place,
         help=f"write a number below 1e308 {unit.text}",
     )
 
 
 def _subject(what: Atom | Quantity) -> str:
-    return term_text(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))
+    return (
+        term_in_words(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))
+    )

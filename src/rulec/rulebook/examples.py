@@ -8,15 +8,13 @@ from dataclasses import replace
 from rulec.diagnostics import Span
 from rulec.logic.formula import (
     Atom,
-    Binary,
     Comparison,
-    Count,
     Formula,
     Quantity,
     Term,
-    Unary,
     atoms_of,
 )
+from rulec.logic.renaming import renamed
 from rulec.rulebook import example_messages as say
 from rulec.rulebook.declaration_messages import twice, unknown_type
 from rulec.rulebook.declared import Declared
@@ -80,38 +78,8 @@ def _in_term(term: Term, kinds: Mapping[str, str], declared: Declared) -> Iterat
     for name, kind in kinds.items():
         if declared.fits(kind, term.type):
             # What is asked of the object that stands in the count's place.
-            about = _with_object(term.body, term.variable, name)
+            about = renamed(term.body, {term.variable: name})
             yield from _needed(about, {**kinds}, declared)
-
-
-def _with_object(formula: Formula, variable: str, name: str) -> Formula:
-    """The formula with an object's name in a variable's place."""
-
-    def renamed(arguments: tuple[str, ...]) -> tuple[str, ...]:
-        return tuple(name if one == variable else one for one in arguments)
-
-    match formula:
-        case Atom():
-            return replace(formula, arguments=renamed(formula.arguments))
-        case Comparison():
-            terms = tuple(
-                (coefficient, replace(term, arguments=renamed(term.arguments)))
-                if isinstance(term, Quantity)
-                else (coefficient, _count_with(term, variable, name))
-                for coefficient, term in formula.terms
-            )
-            return replace(formula, terms=terms)
-        case Unary(_, operand):
-            return replace(formula, operand=_with_object(operand, variable, name))
-        case Binary(_, left, right):
-            sides = (_with_object(one, variable, name) for one in (left, right))
-            return replace(formula, left=next(sides), right=next(sides))
-        case _:
-            return formula
-
-
-def _count_with(count: Count, variable: str, name: str) -> Count:
-    return replace(count, body=_with_object(count.body, variable, name))
 
 
 def _state(

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.rulebook.declared import Declared
 from rulec.rulebook.meaning import truth
 from rulec.rulebook.model import Fact, Variable
 from rulec.rulebook.provisions import Provisions
-from rulec.rulebook.scope import BoundVariable, Scope
-from rulec.rulebook.uses import atoms_in
+from rulec.rulebook.scope import SIDES, BoundVariable, Scope
+from rulec.rulebook.uses import parts_of
 from rulec.syntax import tree
 
 
@@ -26,8 +26,10 @@ def fact_of(
     if isinstance(formula, tree.Prefix) and formula.operator == "always" and not formula.bound:
         # Facts hold always; one may say so.
         formula = formula.operand
-    variables = _variables(formula, declared, mistakes)
-    scope = Scope(declared, provisions, variables, mistakes, in_moment=True)
+    variables = _variables(_asked_for(formula, declared, provisions), declared, mistakes)
+    scope = Scope(
+        declared, provisions, variables, mistakes, in_moment=True, taken=frozenset(variables)
+    )
     provisions.begin()
     found = truth(formula, scope)
     if found is None or mistakes:
@@ -37,10 +39,10 @@ def fact_of(
 
 
 def _variables(
-    formula: tree.Formula, declared: Declared, mistakes: list[Diagnostic]
+    asked_for: Iterable[tuple[tree.Name, str]], declared: Declared, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     found: dict[str, BoundVariable] = {}
-    for name, wanted in _asked_for(formula, declared):
+    for name, wanted in asked_for:
         known = found.get(name.text)
         if known is None or known.type is None or declared.fits(wanted, known.type):
             found[name.text] = BoundVariable(wanted, name.span, name.text)
@@ -49,12 +51,41 @@ def _variables(
     return found
 
 
-def _asked_for(formula: tree.Formula, declared: Declared) -> Iterator[tuple[tree.Name, str]]:
-    """Every object that the formula speaks of, with the type that is needed there."""
-    for use in atoms_in(formula):
-        item = declared.items.get(use.name.text) or declared.value_of.get(use.name.text)
-        if item is not None and len(item.parameters) == len(use.arguments):
-            yield from zip(use.arguments, item.parameters, strict=True)
+def _asked_for(
+    formula: tree.Formula,
+    declared: Declared,
+    provisions: Provisions,
+    counted: frozenset[str] = frozenset(),
+) -> Iterator[tuple[tree.Name, str]]:
+    """Every object that the formula speaks of, with the type that is needed there.
+
+    ``counted`` are the variables of the counts around it, which are no objects of the fact's.
+    """
+    if isinstance(formula, tree.AtomUse):
+        wanted = _parameters(formula, declared, provisions)
+        if len(wanted) == len(formula.arguments):
+            for name, kind in zip(formula.arguments, wanted, strict=True):
+                if kind is not None and name.text not in counted:
+                    yield name, kind
+    elif isinstance(formula, tree.Aggregate):
+        counted |= {formula.variable.name.text}
+    for part in parts_of(formula):
+        yield from _asked_for(part, declared, provisions, counted)
+
+
+def _parameters(
+    use: tree.AtomUse, declared: Declared, provisions: Provisions
+) -> Sequence[str | None]:
+    """The types of what is asked for by this name; None for one that may be anything."""
+    name = use.name.text
+    definition = provisions.definitions.get(name)
+    if definition is not None:
+        kinds = [one.type.text if one.type else None for one in definition.parameters]
+        return [kind if kind in declared.types else None for kind in kinds]
+    item = declared.items.get(name) or declared.value_of.get(
+        SIDES[name]["right"] if name in SIDES else name
+    )
+    return () if item is None else item.parameters
 
 
 def _two_types(name: tree.Name, known: BoundVariable, wanted: str) -> Diagnostic:

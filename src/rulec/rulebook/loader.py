@@ -36,10 +36,16 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A rulebook without errors, and the warnings about it."""
+    """A rulebook without errors, the warnings about it, and the trees that it comes from.
+
+    ``books`` are those that it extends, the most general first, and itself; ``vocabularies`` those
+    that they use.
+    """
 
     rulebook: Rulebook
     warnings: tuple[Diagnostic, ...] = ()
+    books: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
+    vocabularies: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +149,10 @@ def _load(
     file, mistakes = parse(source)
     if file.kind == "vocabulary" and file.name is not None:
         raise RulecError(_not_a_rulebook(file))
-    rulebook, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at)
-    findings = diagnosis.findings
-    if rulebook is None or any(one.severity == "error" for one in findings):
-        raise RulecError(findings)
-    return Loaded(rulebook, findings)
+    loaded, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at)
+    if loaded is None:
+        raise RulecError(diagnosis.findings)
+    return loaded
 
 
 def _resolved(
@@ -157,16 +162,18 @@ def _resolved(
     search_path: Sequence[Path],
     parsed: tuple[tree.File, tuple[Diagnostic, ...]],
     at: str,
-) -> tuple[Rulebook | None, Diagnosis]:
+) -> tuple[Loaded | None, Diagnosis]:
+    """The rulebook if it has no errors, and what there is to say about it."""
     file, mistakes = parsed
     based = read_bases(file, path, search_path)
     found = _Vocabularies(tuple(search_path))
     books = [*based.books, Book(file, path)]
     trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
+    vocabularies = tuple(one for one in trees if one is not None)
     opaque = found.failed or based.failed
     rulebook, meanings = resolve(
         file,
-        [one for one in trees if one is not None],
+        vocabularies,
         bases=[book.file for book in based.books],
         sources=(source_file(source.name, data), *based.sources, *found.sources),
         opaque=opaque,
@@ -174,7 +181,11 @@ def _resolved(
     )
     everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
     needed = None if opaque else (*based.dependencies, *found.dependencies)
-    return rulebook, Diagnosis(everything, needed)
+    diagnosis = Diagnosis(everything, needed)
+    if rulebook is None or any(one.severity == "error" for one in everything):
+        return None, diagnosis
+    trees_of_books = tuple(book.file for book in books)
+    return Loaded(rulebook, everything, trees_of_books, vocabularies), diagnosis
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:

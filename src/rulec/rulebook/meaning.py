@@ -16,6 +16,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
+from rulec.logic.printing import term_in_words
 from rulec.rulebook import meaning_messages as say
 from rulec.rulebook.bounds import bound_of
 from rulec.rulebook.counts import aggregate
@@ -34,7 +35,6 @@ from rulec.rulebook.numbers import (
     negated,
     opposite,
     scaled,
-    term_text,
 )
 from rulec.rulebook.numerals import literal
 from rulec.rulebook.parameters import parameter
@@ -161,7 +161,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         unit = scope.declared.unit_of(found.name)
         if unit is None:
             return None
-        return measured(found, unit.factor, unit.dimension, term_text(found))
+        return measured(found, unit.factor, unit.dimension, term_in_words(found))
     return found
 
 

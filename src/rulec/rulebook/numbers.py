@@ -11,20 +11,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
 
+from rulec.logic.comparing import comparison
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
-    Comparison,
     Constant,
-    Count,
     Formula,
-    Quantity,
     Relation,
     Term,
     Unary,
     UnaryOperator,
 )
-from rulec.logic.printing import in_words
 from rulec.vocabulary.units import Dimension
 
 MOST_CASES = 64
@@ -206,16 +203,6 @@ def opposite(linear: Linear) -> Linear:
     )
 
 
-_MIRRORED: dict[Relation, Relation] = {
-    "<": ">",
-    "<=": ">=",
-    "=": "=",
-    "!=": "!=",
-    ">=": "<=",
-    ">": "<",
-}
-
-
 def compared(left: Number, relation: Relation, right: Number) -> Formula:
     """``left relation right`` as a formula. Raises TooManyCasesError."""
     cases = [
@@ -225,48 +212,9 @@ def compared(left: Number, relation: Relation, right: Number) -> Formula:
     if len(cases) > MOST_CASES:
         raise TooManyCasesError
     return any_of(
-        all_of([*conditions, _comparison(linear, relation, text)])
+        all_of([*conditions, comparison(linear.coefficients, relation, -linear.constant, text)])
         for conditions, linear, text in cases
     )
-
-
-def _comparison(difference: Linear, relation: Relation, text: str) -> Formula:
-    terms = sorted(difference.coefficients.items(), key=lambda pair: term_text(pair[0]))
-    limit = -difference.constant
-    if not terms:
-        return Constant(_holds(Fraction(0), relation, limit))
-    _, lead = terms[0]
-    return Comparison(
-        tuple((coefficient / lead, term) for term, coefficient in terms),
-        relation if lead > 0 else _MIRRORED[relation],
-        limit / lead,
-        text,
-    )
-
-
-def _holds(value: Fraction, relation: Relation, limit: Fraction) -> bool:
-    match relation:
-        case "<":
-            return value < limit
-        case "<=":
-            return value <= limit
-        case "=":
-            return value == limit
-        case "!=":
-            return value != limit
-        case ">=":
-            return value >= limit
-        case ">":
-            return value > limit
-
-
-def term_text(term: Term) -> str:
-    """A quantity or a count as a rulebook would say it."""
-    match term:
-        case Quantity(name, arguments):
-            return f"{name}({', '.join(arguments)})" if arguments else name
-        case Count(variable, kind, body):
-            return f"count {variable}: {kind} ({in_words(body)})"
 
 
 def all_of(formulas: Sequence[Formula]) -> Formula:

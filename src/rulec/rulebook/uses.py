@@ -25,23 +25,27 @@ def names_used(item: tree.Item) -> Iterator[str]:
 
 def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
     """Every name in a formula with its arguments, with repetitions; not those in bounds."""
+    if isinstance(formula, tree.AtomUse):
+        yield formula
+    for part in parts_of(formula):
+        yield from atoms_in(part)
+
+
+def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
+    """What a formula's outermost operator is about, from left to right."""
     match formula:
-        case tree.AtomUse():
-            yield formula
         case tree.Prefix(operand=operand) | tree.Minus(operand) | tree.Aggregate(body=operand):
-            yield from atoms_in(operand)
+            return (operand,)
         case (
             tree.Infix(left=left, right=right)
             | tree.Compare(left=left, right=right)
             | tree.Arithmetic(left=left, right=right)
         ):
-            yield from atoms_in(left)
-            yield from atoms_in(right)
+            return left, right
         case tree.Conditional(value, condition, otherwise):
-            for part in (value, condition, otherwise):
-                yield from atoms_in(part)
-        case tree.Truth() | tree.Number():
-            return
+            return value, condition, otherwise
+        case tree.AtomUse() | tree.Truth() | tree.Number():
+            return ()
 
 
 def names_in(formula: tree.Formula) -> Iterator[str]:

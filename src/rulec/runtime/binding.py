@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import permutations, product
 
 from rulec.automata.compiled import CompiledRule
 from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.choices import choices
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,24 +32,9 @@ def bindings(
     never there together is left out. A rule without variables has one binding, the empty one.
     """
     names = [variable.name for variable in rule.variables]
-    for chosen in _choices([variable.type for variable in rule.variables], vocabulary, objects):
+    for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):
         stretches = [present.get(item, (0, n_states - 1)) for item in chosen]
         first = max((start for start, _ in stretches), default=0)
         last = min((end for _, end in stretches), default=n_states - 1)
         if first <= last:
             yield Binding(dict(zip(names, chosen, strict=True)), first, last)
-
-
-def _choices(
-    types: Sequence[str], vocabulary: Vocabulary, objects: Mapping[str, str]
-) -> Iterator[tuple[str, ...]]:
-    fitting = [
-        [item for item, kind in objects.items() if vocabulary.is_subtype(kind, wanted)]
-        for wanted in types
-    ]
-    if len(set(types)) == 1:
-        yield from permutations(fitting[0], len(types))
-        return
-    for chosen in product(*fitting):
-        if len(set(chosen)) == len(chosen):
-            yield chosen

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from rulec.logic.comparing import stands
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -26,7 +27,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.runtime.numbers import exact, stands
+from rulec.runtime.numbers import exact
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
 

@@ -9,7 +9,7 @@ from functools import lru_cache
 from math import inf, nextafter
 
 from rulec.automata.machine import NumberRead, Threshold
-from rulec.logic.formula import Quantity, Relation
+from rulec.logic.formula import Quantity
 from rulec.runtime.terms import variables_of
 from rulec.trace import Value
 
@@ -26,23 +26,6 @@ def exact(value: Fraction | float) -> Fraction:
 def _decimal(value: float) -> Fraction:
     # A subclass, such as numpy's, may have its own idea of repr.
     return Fraction(float.__repr__(value))
-
-
-def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
-    """Does a number stand in a relation to a limit?"""
-    match relation:
-        case "<":
-            return number < limit
-        case "<=":
-            return number <= limit
-        case "=":
-            return number == limit
-        case "!=":
-            return number != limit
-        case ">=":
-            return number >= limit
-        case ">":
-            return number > limit
 
 
 def floor_of(threshold: Threshold) -> float:

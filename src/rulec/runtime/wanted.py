@@ -8,9 +8,10 @@ from fractions import Fraction
 from math import ceil, floor, inf
 
 from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.logic.comparing import stands
 from rulec.logic.formula import Comparison, Formula, Quantity, atoms_of
 from rulec.rulebook.model import ExampleState
-from rulec.runtime.numbers import exact, scale, stands
+from rulec.runtime.numbers import exact, scale
 from rulec.vocabulary import Enumeration, Vocabulary
 
 _MOST_PLACES = 17

@@ -36,4 +36,13 @@ FILES = {
         "rulec compile esterle2019 -o out",
         "command",
     ),
+    "R0705": Explanation(
+        "an older audit cannot be read",
+        "An audit can be compared with another rulebook, or with a file that `rulec audit` has "
+        "written as JSON. This file is something else, or was cut off.",
+        "echo '{}' > old.json\nrulec audit esterle2019 --compare old.json",
+        "rulec audit esterle2019 --output-format json > old.json\n"
+        "rulec audit esterle2019 --compare old.json",
+        "command",
+    ),
 }

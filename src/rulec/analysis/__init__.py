@@ -1,0 +1,1 @@
+"""Questions about rulebooks rather than about traces."""

@@ -1,0 +1,259 @@
+"""Where everything in a rulebook comes from: which book of its chain said, changed or dropped it.
+
+``rulebook.overlay`` says what a chain comes to; here is the way there. Both read the same trees,
+and this one expects that the overlay has found no mistake in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from typing import Literal
+
+from rulec.rulebook.overlay import merged
+from rulec.rulebook.provisions import in_force
+from rulec.syntax import tree
+from rulec.syntax.printer import print_formula
+
+Deed = Literal["declared", "overridden", "softened", "dropped", "silent"]
+
+ProvisionKind = Literal["option", "parameter", "definition"]
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A rulebook of a family: what it is, the base name of its file, and what it builds upon."""
+
+    name: str
+    title: str = ""
+    law: str = ""
+    as_of: str = ""
+    file: str = ""
+    extends: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What one book did with a rule.
+
+    ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
+    what the rule was from then on, None where it is gone.
+    """
+
+    book: str
+    deed: Deed
+    rule: tree.RuleItem | None
+    clauses: tuple[str, ...] = ()
+    because: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleHistory:
+    """A rule, or a topic that a book is silent on, and what was done with it in order."""
+
+    name: str
+    steps: tuple[Step, ...]
+
+    @property
+    def last(self) -> Step:
+        """What was done with it last."""
+        return self.steps[-1]
+
+    @property
+    def rule(self) -> tree.RuleItem | None:
+        """The rule as it is in the end; None if it is gone."""
+        return self.last.rule
+
+    def before(self, book: str) -> tree.RuleItem | None:
+        """The rule that a book has inherited; None if it has inherited none."""
+        found = [step for step in self.steps if step.book != book]
+        return found[-1].rule if found else None
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts."""
+
+    book: str
+    text: str
+    since: str = ""
+    until: str = ""
+    current: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ProvisionHistory:
+    """An option, a parameter or a definition with all that it was given, in order.
+
+    ``head`` is how it is used: its name, with a definition's parameters.
+    """
+
+    kind: ProvisionKind
+    name: str
+    head: str
+    settings: tuple[Setting, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Inheritance:
+    """A chain of rulebooks, the most general first, and what became of everything in it."""
+
+    books: tuple[Member, ...]
+    rules: tuple[RuleHistory, ...]
+    provisions: tuple[ProvisionHistory, ...]
+
+    @property
+    def book(self) -> str:
+        """The name of the rulebook at the end of the chain."""
+        return self.books[-1].name
+
+
+def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
+    """What a chain of rulebooks without mistakes did with each rule and provision.
+
+    Args:
+        chain: their trees, the most general first.
+        at: the day (ISO) whose law it is; it decides which value of a parameter counts.
+    """
+    told = _Tale()
+    for level, file in enumerate(chain):
+        book = member_of(file).name
+        for item in file.items:
+            told.take(item, book, level)
+    return Inheritance(
+        tuple(map(member_of, chain)),
+        tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
+        tuple(_provision(name, one, at) for name, one in told.provisions.items()),
+    )
+
+
+def member_of(file: tree.File) -> Member:
+    """What a rulebook says of itself."""
+    return Member(
+        file.name.text if file.name else "",
+        file.title.text.value if file.title else "",
+        file.law.text.value if file.law else "",
+        file.law.as_of if file.law else "",
+        PurePath(file.span.source.name).name,
+        file.extends.name.text if file.extends else "",
+    )
+
+
+_Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
+
+
+@dataclass(slots=True)
+class _Tale:
+    """What has happened so far; of a provision with the book and its number in the chain."""
+
+    rules: dict[str, list[Step]] = field(default_factory=dict)
+    provisions: dict[str, list[tuple[_Given, str, int]]] = field(default_factory=dict)
+
+    def take(self, item: tree.Item, book: str, level: int) -> None:
+        match item:
+            case tree.RuleItem(override=False):
+                self._note(item.name, Step(book, "declared", item))
+            case tree.RuleItem():
+                before = self._rule(item.name)
+                after = merged(before, item)
+                changed = tuple(changed_clauses(before, after))
+                self._note(item.name, Step(book, "overridden", after, changed))
+            case tree.SoftenItem(name, level_name, weight, because):
+                before = self._rule(name)
+                after = replace(
+                    before,
+                    strength="soft",
+                    level=level_name or before.level,
+                    weight=weight or before.weight,
+                )
+                changed = tuple(changed_clauses(before, after))
+                why = because.value if because else ""
+                self._note(name, Step(book, "softened", after, changed, why))
+            case tree.DropItem(name, because):
+                self._note(name, Step(book, "dropped", None, (), because.value))
+            case tree.SilentItem(name, because):
+                self._note(name, Step(book, "silent", None, (), because.value))
+            case tree.OptionItem() | tree.ParamItem() | tree.SetItem() | tree.DefineItem():
+                self.provisions.setdefault(item.name.text, []).append((item, book, level))
+            case _:
+                return
+
+    def _note(self, name: tree.Name, step: Step) -> None:
+        self.rules.setdefault(name.text, []).append(step)
+
+    def _rule(self, name: tree.Name) -> tree.RuleItem:
+        rule = self.rules[name.text][-1].rule
+        assert rule is not None, "nobody changes a rule that is gone"
+        return rule
+
+
+HARDNESS = "hard or soft"
+"""What the word before ``rule`` is called among the clauses."""
+
+_CLAUSES = {
+    "strength": HARDNESS,
+    "variables": "variables",
+    "level": "level",
+    "weight": "weight",
+    "cite": "cite",
+    "says": "says",
+    "source": "source",
+    "certainty": "certainty",
+    "in_force": "in force",
+    "require": "require",
+    "when": "when",
+    "unless": "unless",
+    "examples": "examples",
+}
+"""Field of a rule's tree -> what it is called."""
+
+
+def changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> Iterator[str]:
+    """The kinds of clauses in which two rules differ, whatever their spelling."""
+    for name, spoken in _CLAUSES.items():
+        if getattr(before, name) != getattr(after, name):
+            yield spoken
+
+
+def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> ProvisionHistory:
+    first = given[0][0]
+    current = _current(given, at)
+    settings = tuple(
+        Setting(book, _text(item), *_dates(item), current=index == current)
+        for index, (item, book, _) in enumerate(given)
+    )
+    match first:
+        case tree.OptionItem():
+            return ProvisionHistory("option", name, name, settings)
+        case tree.DefineItem(parameters=parameters):
+            shown = (
+                f"{one.name.text}: {one.type.text}" if one.type else one.name.text
+                for one in parameters
+            )
+            head = f"{name}({', '.join(shown)})" if parameters else name
+            return ProvisionHistory("definition", name, head, settings)
+        case _:
+            return ProvisionHistory("parameter", name, name, settings)
+
+
+def _current(given: Sequence[tuple[_Given, str, int]], at: str) -> int | None:
+    """The one of the nearest book that is in force; None if there is none."""
+    good = [index for index, (item, _, _) in enumerate(given) if in_force(_when(item), at)]
+    return max(good, key=lambda index: (given[index][2], index), default=None)
+
+
+def _when(item: _Given) -> tree.InForce | None:
+    return item.in_force if isinstance(item, tree.ParamItem | tree.SetItem) else None
+
+
+def _dates(item: _Given) -> tuple[str, str]:
+    dates = _when(item)
+    return ("", "") if dates is None else (dates.since, dates.until)
+
+
+def _text(item: _Given) -> str:
+    body = item.body if isinstance(item, tree.DefineItem) else item.value
+    if isinstance(body, bool):
+        return "on" if body else "off"
+    return print_formula(body, "written")

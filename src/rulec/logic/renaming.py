@@ -1,0 +1,63 @@
+"""Formulas with other variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rulec.logic.comparing import comparison
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Quantity,
+    Same,
+    Term,
+    Unary,
+)
+
+
+def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+    """The formula with all its free variables renamed at once; those not in ``names`` stay.
+
+    Different variables keep different names, and no count inside has a new name for its variable.
+    """
+    match formula:
+        case Atom():
+            return replace(formula, arguments=_each(formula.arguments, names))
+        case Comparison(terms, relation, limit, text):
+            # Other names may come in another order.
+            return comparison(
+                {_term(term, names): factor for factor, term in terms},
+                relation,
+                limit,
+                _ARGUMENT.sub(lambda found: found[1] + names.get(found[2], found[2]), text),
+            )
+        case Same(left, right):
+            return Same(*_each((left, right), names))
+        case Constant():
+            return formula
+        case Unary(_, operand):
+            return replace(formula, operand=renamed(operand, names))
+        case Binary(_, left, right):
+            return replace(formula, left=renamed(left, names), right=renamed(right, names))
+
+
+_ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
+
+
+def _term(term: Term, names: Mapping[str, str]) -> Term:
+    match term:
+        case Quantity(name, arguments):
+            return Quantity(name, _each(arguments, names))
+        case Count(variable, kind, body):
+            free = {old: new for old, new in names.items() if old != variable}
+            return Count(variable, kind, renamed(body, free))
+
+
+def _each(arguments: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(names.get(one, one) for one in arguments)

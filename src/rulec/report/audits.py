@@ -1,0 +1,133 @@
+"""Audits of rulebooks as text, as Markdown, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from itertools import groupby
+
+import click
+
+from rulec.analysis.audit import KINDS, Audit, Changes, Finding
+from rulec.report.excerpt import visible
+from rulec.report.markdown import code, escaped, table
+
+FORMATS = ("text", "markdown", "json")
+
+Compared = Mapping[str, Changes]
+"""Rulebook -> what has changed since an older audit of it."""
+
+
+def render(audits: Sequence[Audit], compared: Compared, output_format: str) -> str:
+    """All audits in one of ``FORMATS``."""
+    match output_format:
+        case "json":
+            return _as_json(audits, compared)
+        case "markdown":
+            return "\n\n".join(_as_markdown(one, compared.get(one.rulebook)) for one in audits)
+        case _:
+            return "\n\n\n".join(_as_text(one, compared.get(one.rulebook)) for one in audits)
+
+
+def counts(audit: Audit) -> Iterator[tuple[str, str]]:
+    """What there is, in words and in numbers."""
+    found = audit.counts
+    of_all = f"of {found.rules:,}"
+    yield "rules", f"{found.rules:,} ({found.hard:,} hard, {found.soft:,} soft)"
+    yield "with a provision cited", f"{found.cited:,} {of_all}"
+    yield "with examples for both verdicts", f"{found.tested:,} {of_all}"
+    yield "verified in the law itself", f"{found.verified:,} {of_all}"
+    yield "examples", f"{found.examples:,}"
+    yield "provisions of the law", f"{found.articles:,}"
+    yield "words of the vocabulary in use", f"{found.words_used:,} of {found.words:,}"
+
+
+def law_of(audit: Audit) -> str:
+    """Which law it is, and of which day."""
+    since = f", as of {audit.as_of}" if audit.as_of else ""
+    return f"{audit.law}{since}" if audit.law else "no law is named"
+
+
+def _as_text(audit: Audit, compared: Changes | None) -> str:
+    title = f": {audit.title}" if audit.title else ""
+    rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
+    width = max(len(name) for name, _ in rows)
+    blocks = [
+        click.style(visible(f"{audit.rulebook}{title}"), bold=True)
+        + "".join(f"\n  {name:<{width}}  {visible(value)}" for name, value in rows)
+    ]
+    for kind, found in groupby(audit.findings, key=lambda one: one.kind):
+        blocks.append(f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(found))}")
+    if audit.articles:
+        width = max(len(visible(one.cite)) for one in audit.articles)
+        lines = "\n".join(
+            f"  {visible(one.cite):<{width}}  {', '.join(one.rules)}" for one in audit.articles
+        )
+        title = f"{click.style('provisions', bold=True)} of the law, and the rules that cite them"
+        blocks.append(f"{title}\n{lines}")
+    if compared is not None:
+        blocks.append(_changes_as_text(compared))
+    return "\n\n".join(blocks)
+
+
+def _lines(found: Sequence[Finding], signs: str = " ") -> str:
+    width = max(len(visible(one.name)) for one in found)
+    return "\n".join(
+        f"{signs} {visible(one.name):<{width}}  {visible(one.note)}".rstrip() for one in found
+    )
+
+
+def _changes_as_text(compared: Changes) -> str:
+    lines = [
+        f"{sign} {one.kind}: {visible(one.name)}"
+        for sign, found in (("+", compared.appeared), ("-", compared.vanished))
+        for one in found
+    ]
+    title = click.style("changed", bold=True)
+    return f"{title}: + is new, - is gone\n" + "\n".join(f"  {one}" for one in lines or ["nothing"])
+
+
+def _as_markdown(audit: Audit, compared: Changes | None) -> str:
+    title = f": {escaped(audit.title)}" if audit.title else ""
+    blocks = [
+        f"# Audit of {code(audit.rulebook)}{title}",
+        f"Law: {escaped(law_of(audit))}. Judged by the law of {audit.at}.",
+        table(["count", "number"], [[name, value] for name, value in counts(audit)]),
+        "## Findings",
+        table(
+            ["kind", "what it is about", "note"],
+            [
+                [one.kind, escaped(one.name), escaped(one.note) if one.note else ""]
+                for one in audit.findings
+            ],
+        )
+        if audit.findings
+        else "None.",
+    ]
+    if audit.findings:
+        kinds = dict.fromkeys(one.kind for one in audit.findings)
+        blocks.append("\n".join(f"- *{kind}*: {KINDS[kind]}" for kind in kinds))
+    if audit.articles:
+        rows = [[escaped(one.cite), ", ".join(map(code, one.rules))] for one in audit.articles]
+        blocks += ["## Provisions of the law", table(["provision", "rules"], rows)]
+    if compared is not None:
+        blocks += ["## Changes", _changes_as_markdown(compared)]
+    return "\n\n".join(blocks)
+
+
+def _changes_as_markdown(compared: Changes) -> str:
+    rows = [
+        [word, one.kind, escaped(one.name)]
+        for word, found in (("new", compared.appeared), ("gone", compared.vanished))
+        for one in found
+    ]
+    return table(["change", "kind", "what it is about"], rows) if rows else "None."
+
+
+def _as_json(audits: Sequence[Audit], compared: Compared) -> str:
+    document = []
+    for one in audits:
+        changed = compared.get(one.rulebook)
+        document.append(asdict(one) | {"changes": None if changed is None else asdict(changed)})
+    return json.dumps({"audits": document}, ensure_ascii=False, indent=2)

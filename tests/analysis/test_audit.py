@@ -1,0 +1,154 @@
+"""What an audit finds, and what it does not."""
+
+from dataclasses import replace
+
+import island
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.analysis.audit import (
+    KINDS,
+    Article,
+    Audit,
+    Counts,
+    Finding,
+    articles_of,
+    audit,
+    changes,
+    compared,
+)
+from rulec.analysis.inheritance import inheritance
+from rulec.logic.formula import Constant
+from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.model import Rule
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return island.write(tmp_path_factory.mktemp("books"))
+
+
+def audited(path, at, failing=()):
+    loaded = read_rulebook(path, at=at)
+    return audit(loaded.rulebook, inheritance(loaded.books, at), failing)
+
+
+def found(one, kind):
+    return [(each.name, each.note) for each in one.findings if each.kind == kind]
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [
+        ("uncited", [("own", "")]),
+        (
+            "untested",
+            [
+                ("softer", "no example that it accepts or rejects"),
+                ("own", "no example that it rejects"),
+            ],
+        ),
+        ("failing", [("own", "example 1")]),
+        ("unverified", [("softer", "")]),
+        ("secondary", [("changed", "a book")]),
+        ("unstated", [("own", "")]),
+        ("soft-only", [("§ 2", "softer")]),
+        ("softened", [("softer", "only recommended")]),
+        ("dropped", [("taken_out", "there are no sirens")]),
+        ("silent", [("left_open", "nobody knows"), ("parking", "left to the villages")]),
+        ("dated", [("own", "in force from 2024-06-01")]),
+        ("out-of-force", [("expired", "in force until 2000-01-01")]),
+        ("unused", [("unused_word", "")]),
+    ],
+)
+def test_every_kind(path, kind, expected):
+    assert found(audited(path, "2024-06-01", [("own", "1")]), kind) == expected
+
+
+def test_every_kind_is_tested():
+    (cases,) = [mark for mark in test_every_kind.pytestmark if mark.name == "parametrize"]
+    assert [kind for kind, _ in cases.args[1]] == list(KINDS)
+
+
+def test_what_is_there(path):
+    one = audited(path, "2024-06-01")
+    assert (one.rulebook, one.law, one.at) == ("village", "", "2024-06-01")
+    # kept, changed, softer, own; two examples each of kept and changed, and one of own.
+    assert one.counts == Counts(4, 3, 1, 3, 2, 1, 5, 3, 4, 3)
+    assert one.articles == (
+        Article("§ 2", ("softer",)),
+        Article("§ 9", ("kept",)),
+        Article("§ 11", ("changed",)),
+    )
+
+
+def test_a_day_on_which_a_rule_is_not_yet_in_force(path):
+    one = audited(path, "2024-05-31")
+    assert ("own", "in force from 2024-06-01") in found(one, "out-of-force")
+    assert found(one, "uncited") == found(one, "dated") == []
+
+
+def test_a_parameter_whose_value_is_dated(path):
+    one = audited(path.with_stem("mainland"), "2022-01-01")
+    assert found(one, "dated") == [("pace", "25 km/h in force from 2022-01-01")]
+    assert found(one, "softened") == found(one, "soft-only") == []
+
+
+def test_a_rule_made_hard_again_is_not_softened(path):
+    again = path.with_stem("strict_village")
+    again.write_text("rulebook strict_village\nextends island\noverride hard rule softer { }\n")
+    assert found(audited(again, "2024-01-01"), "softened") == []
+
+
+def test_articles_in_the_order_of_their_numbers():
+    cites = ["Art. 11.6", "Art. 9", "Art. 11.10", "Art. 9", "", "9", "Annex"]
+    rules = [
+        Rule(str(number), "hard", (), Constant(True), cite) for number, cite in enumerate(cites)
+    ]
+    assert [(one.cite, one.rules) for one in articles_of(rules)] == [
+        ("Annex", ("6",)),
+        ("Art. 9", ("1", "3")),
+        ("Art. 11.6", ("0",)),
+        ("Art. 11.10", ("2",)),
+        ("9", ("5",)),
+    ]
+
+
+def made(name, *findings):
+    return Audit(name, "", "", "", "2024-01-01", Counts(), (), findings)
+
+
+A, B = Finding("uncited", "a"), Finding("uncited", "b")
+
+
+def test_what_has_changed():
+    found = changes(made("x", A, replace(B, kind="dated")), made("x", replace(A, note="n"), B))
+    assert found.appeared == (replace(B, kind="dated"),)
+    assert found.vanished == (B,)
+
+
+findings = st.lists(st.builds(Finding, st.sampled_from(list(KINDS)), st.sampled_from("abc")))
+
+
+@given(findings, findings)
+def test_changes_lead_from_the_old_to_the_new(old, new):
+    found = changes(made("x", *new), made("x", *old))
+    assert set(new) == set(old) - set(found.vanished) | set(found.appeared)
+    assert set(found.appeared).isdisjoint(old)
+    assert set(found.vanished).isdisjoint(new)
+
+
+def test_each_rulebook_is_compared_with_itself():
+    found = compared([made("x", A), made("y", A)], [made("y", B), made("x", A)])
+    assert (found["x"].appeared, found["x"].vanished) == ((), ())
+    assert (found["y"].appeared, found["y"].vanished) == ((A,), (B,))
+
+
+def test_one_rulebook_can_be_compared_with_any_other():
+    assert compared([made("x", A)], [made("y", A)])["x"].appeared == ()
+
+
+def test_to_a_rulebook_without_an_older_audit_everything_is_new():
+    found = compared([made("x", A), made("y", A)], [made("x", A)])
+    assert (found["x"].appeared, found["y"].appeared) == ((), (A,))

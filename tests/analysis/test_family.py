@@ -1,0 +1,40 @@
+"""Who extends whom."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.analysis.family import Branch, forest
+from rulec.analysis.inheritance import Member
+
+
+def book(name, extends=""):
+    return Member(name, extends=extends)
+
+
+def test_children_hang_below_their_base():
+    a, b, c, d = book("a"), book("b", "a"), book("c", "a"), book("d", "c")
+    assert forest([d, c, b, a, c]) == (Branch(a, (Branch(b), Branch(c, (Branch(d),)))),)
+
+
+def test_a_base_that_is_not_there():
+    lonely = book("lonely", "nowhere")
+    assert forest([lonely]) == (Branch(lonely),)
+
+
+def test_a_circle_is_cut():
+    a, b, c = book("a", "b"), book("b", "a"), book("c", "c")
+    assert forest([b, a, c]) == (Branch(a, (Branch(b),)), Branch(c))
+
+
+names = st.sampled_from("abcdef")
+
+
+def names_in(branches):
+    return [name for one in branches for name in (one.book.name, *names_in(one.children))]
+
+
+@given(st.dictionaries(names, names))
+def test_every_book_is_there_once(extends):
+    members = [book(name, base) for name, base in extends.items()]
+    found = names_in(forest(members))
+    assert sorted(found) == sorted(extends)

@@ -1,0 +1,160 @@
+"""What became of every rule and provision in a chain of rulebooks."""
+
+import island
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.analysis.inheritance import Setting, inheritance
+from rulec.rulebook.loader import read_rulebook
+from rulec.syntax import decode, parse
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return island.write(tmp_path_factory.mktemp("books"))
+
+
+@pytest.fixture(scope="module")
+def village(path):
+    loaded = read_rulebook(path, at="2024-01-01")
+    return inheritance(loaded.books, loaded.rulebook.at)
+
+
+def steps(found, name):
+    (history,) = [one for one in found.rules if one.name == name]
+    return [(one.book, one.deed, one.clauses, one.because) for one in history.steps]
+
+
+def settings(found, name):
+    (history,) = [one for one in found.provisions if one.name == name]
+    return list(history.settings)
+
+
+def test_the_chain(village):
+    assert [(one.name, one.file, one.extends) for one in village.books] == [
+        ("mainland", "mainland.rules", ""),
+        ("island", "island.rules", "mainland"),
+        ("village", "village.rules", "island"),
+    ]
+    assert village.books[1].title == "Rules of the island"
+    assert (village.books[1].law, village.books[1].as_of) == ("Island Act", "2024-01-01")
+    assert village.book == "village"
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("kept", [("mainland", "declared", (), "")]),
+        (
+            "changed",
+            [
+                ("mainland", "declared", (), ""),
+                # Its certainty is said again, but it is the same.
+                ("island", "overridden", ("cite", "require"), ""),
+                ("village", "overridden", ("says",), ""),
+            ],
+        ),
+        (
+            "softer",
+            [
+                ("mainland", "declared", (), ""),
+                ("island", "softened", ("hard or soft", "weight"), "only recommended"),
+            ],
+        ),
+        (
+            "taken_out",
+            [
+                ("mainland", "declared", (), ""),
+                ("island", "dropped", (), "there are no sirens"),
+            ],
+        ),
+        (
+            "left_open",
+            [("mainland", "declared", (), ""), ("island", "silent", (), "nobody knows")],
+        ),
+        ("parking", [("island", "silent", (), "left to the villages")]),
+        ("own", [("village", "declared", (), "")]),
+    ],
+)
+def test_every_rule(village, name, expected):
+    assert steps(village, name) == expected
+
+
+def test_the_rule_before_and_after(village):
+    (changed,) = [one for one in village.rules if one.name == "changed"]
+    assert changed.rule.says.value == "Be slow, please."
+    assert changed.rule.cite.value == "§ 11"
+    assert changed.before("village").says.value == "Be slow."
+    (gone,) = [one for one in village.rules if one.name == "taken_out"]
+    assert gone.rule is None
+    (own,) = [one for one in village.rules if one.name == "own"]
+    assert own.before("village") is None
+
+
+def test_options_and_definitions(village):
+    assert settings(village, "strict") == [
+        Setting("mainland", "off"),
+        Setting("village", "on", current=True),
+    ]
+    assert settings(village, "slow") == [
+        Setting("mainland", "speed <= pace"),
+        Setting("island", "speed < pace", current=True),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("book", "at", "current"),
+    [
+        ("mainland", "2021-12-31", "30 km/h"),
+        ("mainland", "2022-01-01", "25 km/h"),
+        # The nearest book's value counts on all days on which there is one.
+        ("village", "2021-12-31", "20 km/h"),
+    ],
+)
+def test_the_value_that_counts_on_a_day(path, book, at, current):
+    loaded = read_rulebook(path.with_stem(book), at=at)
+    found = settings(inheritance(loaded.books, at), "pace")
+    assert [one.text for one in found if one.current] == [current]
+
+
+def test_a_definition_with_parameters():
+    text = "rulebook r type t signal near(o: t) define d(v: t, side) = near(v) and side(v)"
+    file, _ = parse(decode("r.rules", text.encode()))
+    (one,) = inheritance([file], "2024-01-01").provisions
+    assert (one.kind, one.head) == ("definition", "d(v: t, side)")
+
+
+deeds = st.lists(st.sampled_from(["keep", "override", "soften", "drop", "silent"]), max_size=6)
+
+
+@given(deeds)
+def test_it_agrees_with_the_rulebook_as_meant(done):
+    """What the history says is left of a rule is what is in the rulebook that comes out."""
+    said = {
+        "override": 'override rule r { says "b%d" }',
+        "soften": "soften rule r weight %d",
+        "drop": 'drop rule r because "b%d"',
+        "silent": 'silent on r because "b%d"',
+    }
+    texts = ['rulebook b0 signal p hard rule r { says "b0" require p }']
+    gone = False
+    for number, deed in enumerate(done, 1):
+        word = said.get(deed, "") if not gone else ""
+        gone = gone or deed in ("drop", "silent")
+        item = word % number if word else ""
+        texts.append(f"rulebook b{number} extends b{number - 1} {item}")
+    files = [parse(decode("x", text.encode()))[0] for text in texts]
+    (history,) = inheritance(files, "2024-01-01").rules
+
+    from rulec.rulebook.resolve import resolve
+
+    rulebook, _ = resolve(files[-1], bases=files[:-1], at="2024-01-01")
+    if gone:
+        assert (history.rule, rulebook.rules) == (None, ())
+        assert rulebook.remarks[-1].because == history.last.because
+    else:
+        (rule,) = rulebook.rules
+        assert rule.says == history.rule.says.value
+        assert rule.strength == history.rule.strength
+        assert str(rule.weight) == (history.rule.weight.text if history.rule.weight else "1")

@@ -1,0 +1,159 @@
+"""``rulec audit`` as its user meets it."""
+
+import json
+
+import island
+import pytest
+
+from rulec.cli.main import main
+
+CLEAN = """\
+rulebook clean
+signal horn default false
+hard rule quiet {
+  cite "§ 1"
+  certainty verified
+  require never horn
+  accept { not horn }
+  reject { horn }
+}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    island.write(tmp_path)
+    (tmp_path / "clean.rules").write_text(CLEAN, encoding="utf-8")
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    status = main(["audit", *arguments])
+    return status, *capsys.readouterr()
+
+
+def test_nothing_to_find(folder, capsys):
+    status, out, err = run(capsys, "clean.rules", "--at", "2024-01-01", "--fail-on", "any")
+    assert (status, err) == (0, "")
+    assert (
+        out
+        == """\
+clean
+  law                              no law is named
+  judged by the law of             2024-01-01
+  rules                            1 (1 hard, 0 soft)
+  with a provision cited           1 of 1
+  with examples for both verdicts  1 of 1
+  verified in the law itself       1 of 1
+  examples                         2
+  provisions of the law            1
+  words of the vocabulary in use   1 of 1
+
+provisions of the law, and the rules that cite them
+  § 1  quiet
+"""
+    )
+
+
+def test_findings_by_kind(folder, capsys):
+    status, out, _ = run(capsys, "island.rules")
+    assert status == 0
+    assert "\nsoftened: an inherited hard rule that was made soft\n  softer  only recomm" in out
+    assert "\ndropped: an inherited rule that was taken out\n  taken_out  there are no s" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ([], 0),
+        (["--fail-on", "dropped"], 1),
+        (["--fail-on", "failing"], 0),
+        (["--fail-on", "failing", "--examples"], 1),
+        (["--fail-on", "uncited", "--fail-on", "silent"], 1),
+        (["--fail-on", "uncited"], 0),
+        (["--fail-on", "any"], 1),
+    ],
+)
+def test_fail_on(folder, arguments, expected, capsys):
+    # On the island a speed of 20 km/h is not slow any more.
+    assert run(capsys, "island.rules", *arguments)[0] == expected
+
+
+def test_an_example_that_fails(folder, capsys):
+    out = run(capsys, "island.rules", "--examples")[1]
+    assert "failing: an example comes out otherwise than it says\n  changed  example 1\n" in out
+
+
+def test_markdown_is_a_table(folder, capsys):
+    (folder / "odd.rules").write_text(
+        CLEAN.replace("§ 1", "a|b *c*").replace("verified", "secondary")
+    )
+    out = run(capsys, "odd.rules", "--output-format", "markdown", "--at", "2024-01-01")[1]
+    assert out.startswith("# Audit of `clean`\n")
+    assert "\n| secondary | quiet |  |\n" in out
+    assert "\n| a\\|b \\*c\\* | `quiet` |\n" in out
+
+
+def test_json(folder, capsys):
+    out = run(capsys, "clean.rules", "island.rules", "--output-format", "json")[1]
+    clean, other = json.loads(out)["audits"]
+    assert clean["findings"] == []
+    assert clean["changes"] is None
+    assert clean["articles"] == [{"cite": "§ 1", "rules": ["quiet"]}]
+    assert {"kind": "dropped", "name": "taken_out", "note": "there are no sirens"} in (
+        other["findings"]
+    )
+
+
+def test_compared_with_an_older_audit_only_what_is_new_counts(folder, capsys):
+    old = run(capsys, "clean.rules", "--output-format", "json")[1]
+    (folder / "old.json").write_text(old)
+    same = ("clean.rules", "--compare", "old.json", "--fail-on", "any")
+    status, out, _ = run(capsys, *same)
+    assert status == 0
+    assert out.endswith("changed: + is new, - is gone\n  nothing\n")
+    (folder / "clean.rules").write_text(CLEAN.replace('  cite "§ 1"\n', ""))
+    status, out, _ = run(capsys, *same)
+    assert status == 1
+    assert out.endswith("changed: + is new, - is gone\n  + uncited: quiet\n")
+
+
+def test_compared_with_another_rulebook(folder, capsys):
+    status, out, _ = run(capsys, "island.rules", "--compare", "mainland.rules")
+    assert status == 0
+    assert "\n  + dropped: taken_out\n" in out
+    # `taken_out` was uncited on the mainland.
+    assert "\n  - uncited: taken_out\n" in out
+    markdown = run(
+        capsys, "island.rules", "--compare", "mainland.rules", "--output-format", "markdown"
+    )[1]
+    assert "\n| new | dropped | taken\\_out |\n" in markdown
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[", "[" * 100_000, '{"audits": [1]}', "\udcff"])
+def test_what_is_no_audit(folder, text, capsys):
+    (folder / "old.json").write_bytes(text.encode("utf-8", "surrogateescape"))
+    status, out, err = run(capsys, "clean.rules", "--compare", "old.json")
+    assert (status, out) == (2, "")
+    assert "R0705" in err
+
+
+def test_an_older_audit_that_is_not_there(folder, capsys):
+    status, out, err = run(capsys, "clean.rules", "--compare", "none.json")
+    assert (status, out) == (2, "")
+    assert "R0701" in err
+
+
+def test_one_bad_rulebook_does_not_hide_the_others(folder, capsys):
+    (folder / "bad.rules").write_text("rulebook bad hard rule r { require q }")
+    status, out, err = run(capsys, "bad.rules", "clean.rules")
+    assert status == 2
+    assert out.startswith("clean\n")
+    assert "R0201" in err or "R0202" in err
+
+
+def test_a_compiled_rulebook_is_not_enough(folder, capsys):
+    status, out, err = run(capsys, "clean.json")
+    assert (status, out) == (2, "")
+    assert "`clean.json` is compiled and cannot be audited; give its source" in err

@@ -1,0 +1,160 @@
+"""``rulec tree`` as its user meets it."""
+
+import json
+import re
+
+import island
+import pytest
+
+from rulec.cli.main import main
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    island.write(tmp_path)
+    (tmp_path / "rulec.toml").write_text('search_path = ["."]\n')
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    status = main(["tree", *arguments])
+    return status, *capsys.readouterr()
+
+
+def test_the_whole_tree(folder, capsys):
+    status, out, err = run(capsys, "village", "--at", "2024-06-01")
+    assert (status, err) == (0, "")
+    assert (
+        out
+        == """\
+mainland  Rules of the mainland
+Mainland Act, as of 2020-01-01
+mainland.rules
+└── island  Rules of the island
+    Island Act, as of 2024-01-01
+    island.rules
+    └── village
+        village.rules
+
+rules
+├── kept  inherited from mainland
+├── changed  overrides island: says
+│   ├── declared by mainland
+│   └── overridden by island: cite, require
+├── softer  softened by island, because only recommended
+│   └── declared by mainland
+├── taken_out  dropped by island, because there are no sirens
+│   └── declared by mainland
+├── left_open  silent, as island is, because nobody knows
+│   └── declared by mainland
+├── parking  silent, as island is, because left to the villages
+├── own  own  in force from 2024-06-01
+└── expired  own  in force until 2000-01-01
+
+options
+└── strict = on  own
+    └── off  from mainland
+
+parameters
+└── pace = 20 km/h  from island
+    ├── 30 km/h in force until 2021-12-31  from mainland
+    └── 25 km/h in force from 2022-01-01  from mainland
+
+definitions
+└── slow = speed < pace  from island
+    └── speed <= pace  from mainland
+"""
+    )
+
+
+def test_rules_by_pattern(folder, capsys):
+    status, out, _ = run(capsys, "village", "--rule", "*ed")
+    assert status == 0
+    assert re.findall(r"^[├└]── (\w+)  ", out, re.MULTILINE)[1:] == ["changed", "expired"]
+    assert "parameters" not in out
+
+
+def test_no_rule_is_like_the_pattern(folder, capsys):
+    status, out, err = run(capsys, "village", "--rule", "x*")
+    assert (status, out) == (2, "")
+    assert "village has no rule like `x*`" in err
+
+
+def test_a_value_for_no_day(folder, capsys):
+    (folder / "late.rules").write_text(
+        "rulebook late\nparam a = 1 in force from 2030-01-01\n", encoding="utf-8"
+    )
+    assert (
+        "\n└── a  no value in force\n    └── 1 in force from 2030-01-01  own\n"
+        in (run(capsys, "late", "--at", "2024-01-01")[1])
+    )
+
+
+def test_all_that_there_are(folder, capsys):
+    status, out, _ = run(capsys)
+    assert status == 0
+    assert "\nmainland  Rules of the mainland\n" in f"\n{out}"
+    assert "\n    └── village\n" in out
+    assert out.startswith("esterle2019  Traffic rules of")
+
+
+def test_several(folder, capsys):
+    assert run(capsys, "village", "esterle2019")[1].count("\nmainland  ") == 1
+    (folder / "mainland.rules").unlink()
+    status, out, err = run(capsys, "village", "esterle2019")
+    assert (status, out) == (2, "")
+    assert "R0703" in err
+
+
+def test_a_base_that_is_missing(folder, capsys):
+    (folder / "mainland.rules").unlink()
+    assert "\nextends mainland, which is not here\n" in run(capsys)[1]
+
+
+def test_json(folder, capsys):
+    data = json.loads(run(capsys, "village", "--json")[1])
+    assert data["rulebook"] == "village"
+    assert [one["name"] for one in data["books"]] == ["mainland", "island", "village"]
+    rules = {one["name"]: one for one in data["rules"]}
+    assert rules["taken_out"] == {
+        "name": "taken_out",
+        "gone": True,
+        "steps": [
+            {"book": "mainland", "deed": "declared", "clauses": [], "because": ""},
+            {
+                "book": "island",
+                "deed": "dropped",
+                "clauses": [],
+                "because": "there are no sirens",
+            },
+        ],
+    }
+    assert data["provisions"][0]["settings"][1] == {
+        "book": "village",
+        "text": "on",
+        "since": "",
+        "until": "",
+        "current": True,
+    }
+    forest = json.loads(run(capsys, "village", "island", "--json")[1])
+    assert [(one["name"], one["extends"]) for one in forest["books"]] == [
+        ("mainland", ""),
+        ("island", "mainland"),
+        ("village", "island"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["village", "island", "--rule", "x"], "--rule chooses among the rules of one RULEBOOK"),
+        (["village.json"], "`village.json` is compiled and cannot be taken apart"),
+        (["vilage"], "did you mean `village`?"),
+        (["village", "--at", "2024-02-30"], "`2024-02-30` is no date"),
+    ],
+)
+def test_wrong_usage(folder, arguments, words, capsys):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err

@@ -1,0 +1,83 @@
+"""What each page shows is what happens: its commands and programs print what it says they print.
+
+They are run in order, in one folder, on the files that the page has written before. A block below a
+line that ends in "`NAME`:" is the file NAME; one with a program is followed by what it prints.
+"""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rulec.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = {
+    page.name: page.read_text(encoding="utf-8")
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+}
+
+BLOCK = re.compile(r"^```(\w+)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"`([\w./-]+)`:\n\n$")
+COMMAND = r"^\$ ((?:\./)?rulec .*)"
+
+
+def steps(page):
+    """(kind, what, text): a file to write, a command or a program to run with what it prints."""
+    program = None
+    for block in BLOCK.finditer(page):
+        language, text = block.groups()
+        if program and language == "text":
+            yield "program", program, text
+        elif language == "console":
+            for command, output in re.findall(
+                rf"{COMMAND}\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE
+            ):
+                yield "command", command, output
+        elif named := FILE.search(page, 0, block.start()):
+            yield "file", named[1], text
+        program = text if language == "python" else None
+
+
+SESSIONS = {name: tuple(steps(text)) for name, text in PAGES.items()}
+
+
+def printed(kind, what, capsys):
+    if kind == "command":
+        main(shlex.split(what)[1:])
+        captured = capsys.readouterr()
+        return captured.out + captured.err
+    program = [sys.executable, "-c", what]
+    return subprocess.run(program, capture_output=True, text=True, check=True).stdout
+
+
+def without_times(text):
+    return re.sub(r"computed in .* s|\"seconds\": [0-9.]+", "", text)
+
+
+@pytest.mark.parametrize("page", [name for name, parts in SESSIONS.items() if parts])
+def test_what_is_shown_is_what_happens(page, tmp_path, monkeypatch, capsys):
+    for folder in ("docs", "rulebooks"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
+    monkeypatch.chdir(tmp_path)
+    for kind, what, text in SESSIONS[page]:
+        if kind == "file":
+            file = (tmp_path / what).resolve()
+            assert file.is_relative_to(tmp_path.resolve())
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        else:
+            assert without_times(printed(kind, what, capsys)) == without_times(text), what
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_no_command_is_left_out(page):
+    run = [what for kind, what, _ in SESSIONS[page] if kind == "command"]
+    assert run == re.findall(COMMAND, PAGES[page], re.MULTILINE)
+
+
+def test_there_are_commands():
+    assert sum(kind == "command" for parts in SESSIONS.values() for kind, _, _ in parts) >= 8

@@ -1,0 +1,61 @@
+"""Every national rulebook is sound: no warnings, in form, examples both ways, automata, sources."""
+
+from pathlib import Path
+
+import pytest
+from national_books import FOLDER, NATIONAL, compiled, read
+
+from rulec.rulebook.formatting import formatted
+from rulec.rulebook.loader import read_rulebook
+from rulec.runtime.examples import run_all
+
+of_every_book = pytest.mark.parametrize("name", NATIONAL)
+
+
+@of_every_book
+def test_a_book_has_no_mistakes_and_no_warnings(name: str) -> None:
+    assert read(name).warnings == ()
+    assert read(name).rulebook.name == name
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.rules")), ids=lambda path: path.stem)
+def test_a_file_has_its_form(path: Path) -> None:
+    assert not formatted(path.name, path, path.read_bytes()).changed
+
+
+def test_the_shared_patterns_have_no_mistakes() -> None:
+    schemas = read_rulebook(FOLDER / "schemas" / "schemas.rules")
+    assert schemas.warnings == ()
+    assert schemas.rulebook.rules == ()
+
+
+@of_every_book
+def test_its_examples_come_out_as_they_say(name: str) -> None:
+    outcomes = run_all(read(name).rulebook, compiled(name)).outcomes
+    assert [one for one in outcomes if not one.passed] == []
+
+
+@of_every_book
+def test_each_rule_shows_what_it_allows_and_what_it_forbids(name: str) -> None:
+    for rule in read(name).rulebook.rules:
+        assert {example.accepts for example in rule.examples} == {True, False}, rule.name
+
+
+@of_every_book
+def test_each_rule_says_where_it_comes_from(name: str) -> None:
+    for rule in read(name).rulebook.rules:
+        assert all((rule.cite, rule.says, rule.source, rule.certainty, rule.level)), rule.name
+
+
+@of_every_book
+def test_a_book_says_whose_law_it_is_and_on_which_day(name: str) -> None:
+    rulebook = read(name).rulebook
+    assert all((rulebook.title, rulebook.law, rulebook.as_of, rulebook.traffic))
+
+
+@of_every_book
+def test_each_rule_has_an_automaton_that_can_be_kept_and_violated(name: str) -> None:
+    for rule in compiled(name).rules:
+        assert rule.hoa.startswith("HOA: v1")
+        accepting = {verdict for row in rule.machine.accepting for verdict in row}
+        assert accepting == {True, False}, rule.name

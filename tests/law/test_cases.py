@@ -1,0 +1,70 @@
+"""What each national rulebook says of concrete situations is what its law says."""
+
+from typing import Any
+
+import pytest
+from national_books import CASES, NATIONAL, compiled, read, rules_on
+
+from rulec.runtime.verify import verify
+from rulec.trace import Trace
+
+JUDGED = [
+    pytest.param(case, name, id=f"{case['id']}-{name}")
+    for case in CASES
+    for name in NATIONAL
+    if name in case["verdicts"]
+]
+
+
+def trace_of(case: dict[str, Any], traffic: str) -> Trace:
+    """The case as a trace; near and far are the sides that they are where traffic drives so."""
+    near, far = ("right_of", "left_of") if traffic == "right" else ("left_of", "right_of")
+    sides = {"near": near, "far": far, "same_lane": "same_lane"}
+    states = []
+    for said in case["states"]:
+        state = {**case["throughout"]}
+        for name, value in said.items():
+            both = isinstance(value, dict) and name in state
+            state[name] = {**state[name], **value} if both else value
+        if "lateral" in state:
+            state["lateral"] = {one: sides[side] for one, side in state["lateral"].items()}
+        states.append(state)
+    return Trace(case["id"], 1.0, case["objects"], tuple(states))
+
+
+def said_of(case: dict[str, Any], name: str) -> str:
+    """The verdict of a rulebook on the case's own topics."""
+    on_topic = {rule.name for rule in rules_on(name, case["topics"])}
+    if not on_topic:
+        return "silent"
+    violations = verify(trace_of(case, read(name).rulebook.traffic), compiled(name)).violations
+    strengths = {one.strength for one in violations if one.rule in on_topic}
+    if "hard" in strengths:
+        return "forbidden"
+    return "advised against" if strengths else "allowed"
+
+
+@pytest.mark.parametrize(("case", "name"), JUDGED)
+def test_a_book_says_of_a_case_what_its_law_says(case: dict[str, Any], name: str) -> None:
+    assert said_of(case, name) == case["verdicts"][name][0]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case["id"])
+def test_a_case_names_the_article_where_something_is_not_allowed(case: dict[str, Any]) -> None:
+    for verdict, *articles in case["verdicts"].values():
+        assert verdict in ("forbidden", "advised against", "allowed", "silent")
+        assert len(articles) == (1 if verdict in ("forbidden", "advised against") else 0)
+
+
+def test_all_cases_ask_the_same_books() -> None:
+    asked = {tuple(case["verdicts"]) for case in CASES}
+    assert asked == {("vienna", "de", "at", "fr", "nl", "se", "pl", "gb", "jp", "us-ca", "au-nsw")}
+
+
+def test_a_silence_on_a_topic_has_its_reason() -> None:
+    for case in CASES:
+        for name in set(NATIONAL) & set(case["verdicts"]):
+            if case["verdicts"][name] == ["silent"]:
+                remarks = read(name).rulebook.remarks
+                silences = {one.name for one in remarks if one.kind == "silent" and one.because}
+                assert silences >= set(case["topics"]), f"{name} on {case['id']}"

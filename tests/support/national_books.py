@@ -1,0 +1,42 @@
+"""The national rulebooks that ship, each read and compiled once, and what of them is on a topic."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import tomllib
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiler import compile_rulebook
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import Loaded, read_rulebook
+from rulec.rulebook.model import Rule
+
+NO_LAW = {"vocabulary", "schemas", "esterle2019"}
+
+FOLDER = rulebooks_folder()
+NATIONAL = sorted(
+    path.name for path in FOLDER.iterdir() if path.is_dir() and path.name not in NO_LAW
+)
+CASES: list[dict[str, Any]] = tomllib.loads(
+    (Path(__file__).parents[1] / "law" / "cases.toml").read_text(encoding="utf-8")
+)["case"]
+
+
+@cache
+def read(name: str) -> Loaded:
+    return read_rulebook(FOLDER / name / f"{name}.rules")
+
+
+@cache
+def compiled(name: str) -> CompiledRulebook:
+    return compile_rulebook(read(name).rulebook)
+
+
+def rules_on(name: str, topics: list[str]) -> list[Rule]:
+    """The rules of a book with a topic's name, or with one that goes on from it."""
+    return [
+        rule
+        for rule in read(name).rulebook.rules
+        if any(rule.name == topic or rule.name.startswith(f"{topic}_") for topic in topics)
+    ]
