@@ -76,7 +76,9 @@ def test_longer_than_a_word_of_the_machine(semantics, bits):
     for formula in (
         Binary(BinaryOperator.UNTIL, P, Q),
         Binary(BinaryOperator.UNTIL, P, Q, Bound(3, 100, "steps")),
-        Unary(UnaryOperator.EVENTUALLY, Binary(BinaryOperator.SINCE, P, Unary(UnaryOperator.NOT, Q))),
+        Unary(
+            UnaryOperator.EVENTUALLY, Binary(BinaryOperator.SINCE, P, Unary(UnaryOperator.NOT, Q))
+        ),
         LONG_AGO,
     ):
         assert along(formula, len(bits), columns.__getitem__, semantics) == holds(

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.trace.model import State
+
 Key = tuple[str, tuple[str, ...]]
 """A name of the vocabulary, and the objects that it is about."""
 
@@ -87,15 +89,17 @@ class TraceColumns:
 class TraceCells:
     """Traces as walks: each state is one of a few ``states``.
 
-    ``cells`` (unsigned integers, ``layout.n_states`` of them) are places in ``states``. The rest is
-    as in ``TraceColumns``.
+    ``cells`` (unsigned integers, ``layout.n_states`` of them) are places in ``states``. ``there``
+    has for each of these the objects that are there in it, with their types; it is empty if all
+    are there in all. The rest is as in ``TraceColumns``.
     """
 
     layout: Layout
     cells: Array
-    states: tuple[Mapping[str, Any], ...]
+    states: tuple[State, ...]
     objects: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     present: Mapping[str, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    there: tuple[Mapping[str, str], ...] = ()
     step_s: float = 1.0
 
 

@@ -116,7 +116,10 @@ def _walk(reading: Reading, tasks: Sequence[Task], spellings: Sequence[_Spelling
         numbers = np.zeros(stride, dtype=smallest_unsigned(len(codes)))
         numbers[codes] = np.arange(len(codes))
         cells = numbers.take(cells)
-    letters = [_letters(task, spelling, strides, codes) for task, spelling in zip(tasks, spellings, strict=True)]
+    letters = [
+        _letters(task, spelling, strides, codes)
+        for task, spelling in zip(tasks, spellings, strict=True)
+    ]
     return Walk(layout, cells, tasks, letters)
 
 
@@ -128,7 +131,7 @@ def _letters(
     machine = task.rule.machine
     for digit, read in zip(spelling, machine.reads, strict=True):
         if isinstance(digit.values, np.ndarray):
-            meant = np.take(digit.meanings, codes // strides[digit.key] % digit.size)
+            meant: Array | int = np.take(digit.meanings, codes // strides[digit.key] % digit.size)
         else:
             meant = digit.meanings[digit.values]
         numbers += stride * meant

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledRulebook
 from rulec.runtime.batch.codes import walks
 from rulec.runtime.batch.judged import Judged, Walk, judged
 from rulec.runtime.batch.reading import Reading
+from rulec.runtime.batch.spelling import Spelling
 from rulec.runtime.batch.tasks import Task, tasks_of
 from rulec.trace.columns import TraceCells, TraceColumns
 
@@ -26,6 +22,20 @@ def judge_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Jud
     tasks = _tasks(columns, rulebook)
     reading = Reading(columns, vocabulary)
     found = [one for walk in walks(reading, tasks, vocabulary) for one in judged(walk)]
+    return _in_order(found, tasks)
+
+
+def judge_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[Judged]:
+    """The same for traces that are given as walks; their states have passed ``check_state``."""
+    tasks = _tasks(traces, rulebook)
+    spelling = Spelling(traces, rulebook.vocabulary)
+    together: dict[tuple[int, int | None], list[Task]] = {}
+    for task in tasks:
+        together.setdefault(task.stretch, []).append(task)
+    found: list[Judged] = []
+    for group in together.values():
+        letters = [spelling.letters(task) for task in group]
+        found += judged(Walk(traces.layout, traces.cells, group, letters))
     return _in_order(found, tasks)
 
 

@@ -43,6 +43,8 @@ from rulec.vocabulary import Enumeration, Vocabulary
 _AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
 _IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
 
+_SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+
 
 class NotGivenError(Exception):
     """There is no column for a name about some objects, no default, and a rule needs it."""
@@ -100,9 +102,7 @@ class Reading:
             digits += numbers >= floor
         return digits
 
-    def _summands(
-        self, terms: tuple[tuple[Fraction, Term], ...], bound: Bound
-    ) -> list[Summand]:
+    def _summands(self, terms: tuple[tuple[Fraction, Term], ...], bound: Bound) -> list[Summand]:
         """What is summed up. Raises NotGivenError."""
         found: list[Summand] = []
         for coefficient, term in terms:
@@ -119,7 +119,7 @@ class Reading:
     def _counted(self, count: Count, bound: Bound) -> Array:
         """How many objects count in each state. Raises NotGivenError where that is not known."""
         n_states = self.columns.layout.n_states
-        total = np.zeros(n_states, dtype=np.int64)
+        total: Array = np.zeros(n_states, dtype=np.int64)
         for name, kind in self.columns.objects.items():
             if not self._vocabulary.is_subtype(kind, count.type):
                 continue
@@ -193,19 +193,7 @@ class Reading:
         above = Threshold(comparison.limit, inclusive=False)
         # 0 below the limit, 1 at it, 2 above it.
         side = self.digits(NumberRead(comparison.terms, (at, above)), bound)
-        match comparison.relation:
-            case "<":
-                return side == 0
-            case "<=":
-                return side <= 1
-            case "=":
-                return side == 1
-            case "!=":
-                return side != 1
-            case ">=":
-                return side >= 1
-            case ">":
-                return side == 2
+        return np.isin(side, _SIDES[comparison.relation])
 
     def atom(self, name: str, items: tuple[str, ...], wanted: str | None) -> Truth:
         """Where a signal is on, or an enumeration has a value."""

@@ -27,7 +27,9 @@ _TINY = 1e-300
 """Far more than what is lost where results are too small to be normal floats."""
 
 
-def digits_of_sum(read: NumberRead, summands: Sequence[Summand], n_states: int) -> NDArray[np.uint8]:
+def digits_of_sum(
+    read: NumberRead, summands: Sequence[Summand], n_states: int
+) -> NDArray[np.uint8]:
     """For each state how many of the read's thresholds the sum passes."""
     total = np.zeros(n_states)
     size = np.zeros(n_states)

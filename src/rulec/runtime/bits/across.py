@@ -118,13 +118,13 @@ class _AcrossTraces:
         return moved
 
     def until(self, left: Words, right: Words) -> Words:
-        found = self._existing(right).copy()
+        found: Words = self._existing(right).copy()
         for step in range(self.n_steps - 2, -1, -1):
             found[step] |= left[step] & found[step + 1]
         return found
 
     def since(self, left: Words, right: Words) -> Words:
-        found = right.copy()
+        found: Words = right.copy()
         for step in range(1, self.n_steps):
             found[step] |= left[step] & found[step - 1]
         return found
