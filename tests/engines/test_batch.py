@@ -1,16 +1,21 @@
 """Many traces together: every answer is the one that the trace gets alone."""
 
+from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
+from functools import cache
+from random import Random
 
 import numpy as np
 import pytest
-from books import compile_here, rule
+from books import always, both, compile_here, eventually, far, implies, near, no, rule
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from timed import SUMS, TIMED_VOCABULARY, timed_formulas
+from timed import TIMED_VOCABULARY, timed_formulas
 
 from rulec.automata.machine import NumberRead, Threshold
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.rulebook.model import Rulebook
 from rulec.runtime.batch.gathering import OddError, gathered
 from rulec.runtime.batch.grouping import grouped
@@ -18,11 +23,11 @@ from rulec.runtime.batch.judging import judge_cells, judge_columns
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.batch.sums import digits_of_sum
 from rulec.runtime.batch.verifying import judge_chunk, verify_many
+from rulec.runtime.letters import present_in
+from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
-
-HEADS = [(), ("x: thing",), ("x: car",)]
 
 
 @st.composite
@@ -105,17 +110,158 @@ def test_cells_and_columns_say_the_same(rulebook, traces):
     if not sound:
         return
     group = grouped(sound)
-    engines = [judge_cells(group.cells, compiled)]
-    try:
-        engines.append(judge_columns(gathered(group.cells, TIMED_VOCABULARY), compiled))
-    except (OddError, NotGivenError):
-        pass
-    ordered = [verify(sound[place], compiled) for place in group.order]
-    for judged in engines:
-        found = [[] for _ in sound]
-        for one in judged:
-            assert not len(one.unread)
-            for trace, step in zip(one.violated, one.lost_at(), strict=True):
-                step = None if step < 0 else step
-                found[trace].append((one.task.rule.name, one.task.objects, step))
-        assert found == [[(v.rule, v.binding, v.step) for v in one.violations] for one in ordered]
+    expected = violations(verify(sound[place], compiled) for place in group.order)
+    assert listed(judge_cells(group.cells, compiled), sound) == expected
+    with suppress(OddError, NotGivenError):
+        columns = gathered(group.cells, TIMED_VOCABULARY)
+        assert listed(judge_columns(columns, compiled), sound) == expected
+
+
+def listed(judged, traces):
+    found = [[] for _ in traces]
+    for one in judged:
+        assert not len(one.unread)
+        for trace, step in zip(one.violated, one.lost_at(), strict=True):
+            step = None if step < 0 else step
+            found[trace].append((one.task.rule.name, one.task.objects, step))
+    return found
+
+
+def violations(verdicts):
+    return [[(v.rule, v.binding, v.step) for v in one.violations] for one in verdicts]
+
+
+def times(factor, quantity, *variables):
+    return Fraction(factor), Quantity(quantity, variables)
+
+
+def number(relation, limit, *terms):
+    return Comparison(terms, relation, Fraction(limit), f"{terms} {relation} {limit}")
+
+
+def count(variable, kind, body):
+    return Fraction(1), Count(variable, kind, body)
+
+
+CLOSE = number("<", Fraction(3, 10), times(1, "gap", "x"), times(-1, "gap", "y"))
+OTHERS = both(near("x"), no(Same("x", "v")))
+NESTED = number(">=", 1, count("y", "thing", both(no(Same("x", "y")), CLOSE)))
+CROWDED = Rulebook(
+    "crowded",
+    TIMED_VOCABULARY,
+    (
+        rule("apart", always(implies(near("v"), no(far("w")))), "v: car", "w: car"),
+        rule("pass", eventually(both(far("v"), near("w"))), "v: car", "w: thing"),
+        rule("others", always(number("<", 2, count("x", "car", OTHERS))), "v: car"),
+        rule("nobody", eventually(number("=", 0, count("x", "thing", near("x"))))),
+        rule("nested", always(number("<", 3, count("x", "car", NESTED)))),
+        rule("slow", always(number("<=", Fraction(3, 10), times(1, "speed")))),
+    ),
+)
+
+
+@cache
+def crowded(semantics):
+    return compile_here(replace(CROWDED, semantics=semantics))
+
+
+def state_of(chance, names):
+    tenths = (0.1, 0.2, 0.3, 0.30000000000000004, 0.5, 0.6000000000000001, 2)
+    return {
+        "place": {name: chance.choice(["near", "far", "gone"]) for name in names},
+        "gap": {name: chance.choice(tenths) for name in names},
+        "q": chance.random() < 0.5,
+        "speed": chance.choice(tenths),
+    }
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(st.randoms(use_true_random=False), st.integers(0, 5))
+def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
+    """In a state, values are given of those that are there."""
+    objects = {f"o{n}": chance.choice(["car", "thing"]) for n in range(n_objects)}
+    present = {}
+    for name in chance.sample(list(objects), n_objects // 2):
+        first = chance.randint(0, 2)
+        present[name] = (first, chance.randint(first, 3))
+    shortest = max([1, *(last + 1 for _, last in present.values())])
+    pools = [
+        [state_of(chance, present_in(step, objects, present)) for _ in range(3)]
+        for step in range(shortest + 3)
+    ]
+    traces = []
+    for place in range(30):
+        pool = pools[: chance.randint(shortest, shortest + 3)]
+        states = tuple(chance.choice(choice) for choice in pool)
+        traces.append(Trace(str(place), 1.0, objects, states, present))
+    compiled = crowded(semantics)
+    alone = [verify(trace, compiled) for trace in traces]
+    assert judge_chunk(traces, compiled) == alone
+    group = grouped(traces)
+    expected = violations(alone[place] for place in group.order)
+    assert listed(judge_cells(group.cells, compiled), traces) == expected
+    columns = gathered(group.cells, TIMED_VOCABULARY)
+    assert listed(judge_columns(columns, compiled), traces) == expected
+
+
+def test_three_hundred_objects():
+    chance = Random(300)
+    objects = {f"o{n}": "car" for n in range(300)}
+    rules = tuple(one for one in CROWDED.rules if len(one.variables) < 2 and one.name != "nested")
+    compiled = compile_here(replace(CROWDED, rules=rules))
+    pool = [state_of(chance, objects) for _ in range(4)]
+    traces = [
+        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 4))))
+        for n in range(6)
+    ]
+    alone = [verify(trace, compiled) for trace in traces]
+    assert sum(len(one.violations) for one in alone) > 300
+    assert judge_chunk(traces, compiled) == alone
+    columns = gathered(grouped(traces).cells, TIMED_VOCABULARY)
+    expected = violations(alone[place] for place in grouped(traces).order)
+    assert listed(judge_columns(columns, compiled), traces) == expected
+
+
+def test_any_number_of_traces_and_what_is_none():
+    compiled = crowded("stutter")
+    broken = RulecError(Diagnostic("R0501", "this is not a trace"))
+    states = tuple(state_of(Random(1), ()) for _ in range(3))
+    traces = [Trace(str(n), 1.0, {}, states[: 1 + n % 3]) for n in range(20_000)]
+    answers = list(verify_many(iter([broken, *traces]), compiled))
+    assert answers[0] == NotJudged(None, broken)
+    assert answers[1:] == [verify(trace, compiled) for trace in traces]
+
+
+def test_what_can_be_no_trace_is_not_judged():
+    compiled = crowded("stutter")
+    bad = [
+        Trace("a", 1.0, {}, ()),
+        Trace("b", 0.0, {}, ({"speed": 1.0},)),
+        Trace("c", 1.0, {"o": "plane"}, ({"speed": 1.0},)),
+        Trace("d", 1.0, {}, ({"speed": 1.0},), {"o": (0, 0)}),
+        Trace("e", 1.0, {}, ("speed",)),
+    ]
+    for one in bad:
+        answers = judge_chunk([one] * 5, compiled)
+        assert [told(answer) for answer in answers] == [told(judge(one, compiled))] * 5
+        assert isinstance(answers[0], NotJudged)
+
+
+THRESHOLDS = (
+    Threshold(Fraction(3, 10), inclusive=True),
+    Threshold(Fraction(3, 10), inclusive=False),
+)
+SUM = NumberRead((times(1, "gap", "x"), times(Fraction(1, 3), "speed")), THRESHOLDS)
+floats = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from(
+    [0.1, 0.2, 0.3, 0.6, 0.9, 0.30000000000000004, 5e-324, -5e-324, 1.7e308, 0.0, -0.0]
+)
+
+
+@given(st.lists(st.tuples(floats, floats), min_size=1))
+@example([(0.1, 0.6), (0.2, 0.3), (0.3, 0.0), (0.3, 5e-324), (0.3, -5e-324), (1.7e308, 1.7e308)])
+@example([(-1.7e308, 1.7e308), (0.30000000000000004, 0.0), (0.29999999999999999, 0.0)])
+def test_sums_are_exact(pairs):
+    """0.1 and a third of 0.6 are 0.3, whatever floats make of it."""
+    ones, others = (np.array(column) for column in zip(*pairs, strict=True))
+    found = digits_of_sum(SUM, [(Fraction(1), ones), (Fraction(1, 3), others)], len(pairs))
+    assert found.tolist() == [SUM.digit(exact(one) + exact(other) / 3) for one, other in pairs]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from timed import is_true, letters_of, timed_formulas, timed_words
+from timed import CARS, GAP, SPEED, is_true, letters_of, timed_formulas, timed_states, timed_words
 from words import formulas, letters, words
 
 from rulec.logic.formula import (
@@ -22,6 +22,9 @@ from rulec.trace.columns import layout_of
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 P, Q = Atom("p"), Atom("q")
+NOT_P = Unary(UnaryOperator.NOT, P)
+STATE = {"place": "near", "light": "red", "p": True, "q": False, SPEED: 1, GAP: 0, CARS: 2}
+WITHOUT_P = {**STATE, "p": False}
 
 
 def columns_of(word, true_in):
@@ -51,7 +54,18 @@ def by_step(found):
     return ordered, layout_of([len(word) for word in ordered]), states
 
 
-@given(timed_formulas, st.lists(timed_words, min_size=1, max_size=8), both_semantics)
+@st.composite
+def many_words(draw):
+    """Some dozens of words over a few states: more chances than words drawn one by one."""
+    pool = draw(st.lists(timed_states, min_size=1, max_size=6))
+    chance = draw(st.randoms(use_true_random=False))
+    return [chance.choices(pool, k=chance.randint(1, 8)) for _ in range(40)]
+
+
+@given(timed_formulas, many_words(), both_semantics)
+@example(Unary(UnaryOperator.ALWAYS, P), [[STATE, STATE], [STATE]], "finite")
+@example(Unary(UnaryOperator.EVENTUALLY, NOT_P), [[STATE, STATE], [STATE]], "finite")
+@example(Unary(UnaryOperator.WEAK_NEXT, P), [[STATE, WITHOUT_P], [STATE]], "finite")
 def test_across_traces_of_any_lengths(formula, found, semantics):
     ordered, layout, states = by_step(found)
     verdicts = across(formula, layout, columns_of(states, is_true), semantics)

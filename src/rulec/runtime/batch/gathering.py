@@ -26,6 +26,8 @@ def gathered(traces: TraceCells, vocabulary: Vocabulary) -> TraceColumns:
         OddError: if ``check_state`` would refuse a state, or a value is given in some states only
             and has no default; sometimes, too, if a value is of an unusual type.
     """
+    if not set(map(type, traces.states)) <= {dict}:
+        raise OddError
     gathering = _Gathering(traces, vocabulary)
     for name in set().union(*traces.states):
         declaration = vocabulary.declarations.get(name)

@@ -7,9 +7,7 @@ an unknown name to a missing value, is left to ``verify``, which says it best.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import islice
-
-import numpy as np
+from itertools import chain, islice
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import RulecError
@@ -24,7 +22,6 @@ from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.runtime.verify import RulebookFor, check_step, judge, made_for
 from rulec.trace import Trace
 from rulec.trace.check import check_frame, check_presence
-from rulec.trace.columns import TraceCells
 
 MOST_TOGETHER = 1 << 14
 """So many traces are read before they are judged."""
@@ -89,24 +86,36 @@ def _judge_group(
         rules = _rules_for(sound[0][1], rulebook)
     except RulecError:
         return
-    group = grouped([trace for _, trace in sound])
+    judged, found, order = _judged(sound, rules)
+    unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
+    violations = _violations(judged)
+    for number, place in enumerate(order):
+        if number not in unread:
+            where, trace = found[place]
+            answers[where] = Verdict(trace.id, tuple(violations.get(number, ())))
+
+
+_Placed = tuple[int, Trace]
+
+
+def _judged(
+    traces: Sequence[_Placed], rules: CompiledRulebook
+) -> tuple[list[Judged], Sequence[_Placed], Sequence[int]]:
+    """What the engine says, of which of the traces, and in which order it does."""
+    group = grouped([trace for _, trace in traces])
     cells = group.cells
     if len(cells.states) * _SHARED > cells.layout.n_states:
         try:
-            judged = judge_columns(gathered(cells, rules.vocabulary), rules)
+            return judge_columns(gathered(cells, rules.vocabulary), rules), traces, group.order
         except (OddError, NotGivenError):
-            return
-        odd = np.zeros(cells.layout.n_traces, dtype=bool)
-    else:
-        odd = _odd_traces(cells, rules)
-        judged = judge_cells(cells, rules)
-    for one in judged:
-        odd[one.unread] = True
-    violations = _violations(judged)
-    for trace_place, number in enumerate(group.order):
-        if not odd[trace_place]:
-            place, trace = sound[number]
-            answers[place] = Verdict(trace.id, tuple(violations.get(trace_place, ())))
+            return [], (), ()
+    odd = {id(state) for state in cells.states if not _fits(state, cells.objects, rules)}
+    if odd:
+        traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
+        if not traces:
+            return [], (), ()
+        group = grouped([trace for _, trace in traces])
+    return judge_cells(group.cells, rules), traces, group.order
 
 
 def _is_framed(trace: Trace) -> bool:
@@ -126,19 +135,6 @@ def _rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
         check_step(rule, exact(trace.step_s))
     check_objects(trace.objects, rules.vocabulary)
     return rules
-
-
-def _odd_traces(
-    cells: TraceCells, rulebook: CompiledRulebook
-) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Which traces have a state that does not fit the vocabulary."""
-    odd = np.array([not _fits(state, cells.objects, rulebook) for state in cells.states])
-    found = np.zeros(cells.layout.n_traces, dtype=bool)
-    if odd.any():
-        for step in range(cells.layout.n_steps):
-            start, end = cells.layout.starts[step : step + 2]
-            found[: end - start] |= odd.take(cells.cells[start:end])
-    return found
 
 
 def _fits(state: object, objects: Mapping[str, str], rulebook: CompiledRulebook) -> bool:
