@@ -23,6 +23,7 @@ from rulec.runtime.batch.judging import judge_cells, judge_columns
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.batch.sums import digits_of_sum
 from rulec.runtime.batch.verifying import judge_chunk, verify_many
+from rulec.runtime.bits.judging import judge_on_bits
 from rulec.runtime.letters import present_in
 from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict
@@ -115,6 +116,7 @@ def test_cells_and_columns_say_the_same(rulebook, traces):
     with suppress(OddError, NotGivenError):
         columns = gathered(group.cells, TIMED_VOCABULARY)
         assert listed(judge_columns(columns, compiled), sound) == expected
+        assert kept(judge_on_bits(columns, compiled)) == kept_by(judge_columns(columns, compiled))
 
 
 def listed(judged, traces):
@@ -125,6 +127,14 @@ def listed(judged, traces):
             step = None if step < 0 else step
             found[trace].append((one.task.rule.name, one.task.objects, step))
     return found
+
+
+def kept(on_bits):
+    return [(task.rule.name, task.objects, accepted.tolist()) for task, accepted in on_bits]
+
+
+def kept_by(judged):
+    return [(one.task.rule.name, one.task.objects, one.accepted.tolist()) for one in judged]
 
 
 def violations(verdicts):
@@ -201,7 +211,9 @@ def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
     expected = violations(alone[place] for place in group.order)
     assert listed(judge_cells(group.cells, compiled), traces) == expected
     columns = gathered(group.cells, TIMED_VOCABULARY)
-    assert listed(judge_columns(columns, compiled), traces) == expected
+    judged = judge_columns(columns, compiled)
+    assert listed(judged, traces) == expected
+    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
 
 
 def test_three_hundred_objects():
@@ -219,7 +231,9 @@ def test_three_hundred_objects():
     assert judge_chunk(traces, compiled) == alone
     columns = gathered(grouped(traces).cells, TIMED_VOCABULARY)
     expected = violations(alone[place] for place in grouped(traces).order)
-    assert listed(judge_columns(columns, compiled), traces) == expected
+    judged = judge_columns(columns, compiled)
+    assert listed(judged, traces) == expected
+    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
 
 
 def test_any_number_of_traces_and_what_is_none():

@@ -53,22 +53,24 @@ class Algebra(Protocol[Plane]):
     def back(self, one: Plane, steps: int) -> Plane:
         """What was the case so many instants earlier."""
 
-    def until(self, left: Plane, right: Plane) -> Plane:
-        """``right`` now or later, and ``left`` at every instant from now to the one before."""
+    def until(self, left: Plane | None, right: Plane) -> Plane:
+        """``right`` now or later, and ``left`` at every instant from now to the one before.
 
-    def since(self, left: Plane, right: Plane) -> Plane:
-        """``right`` now or earlier, and ``left`` at every instant after that up to now."""
+        ``left`` is None if it is the case everywhere.
+        """
+
+    def since(self, left: Plane | None, right: Plane) -> Plane:
+        """``right`` now or earlier, and ``left`` at every instant after that up to now.
+
+        ``left`` is None if it is the case everywhere.
+        """
 
 
-def evaluated(
-    formula: Formula, propositions: Callable[[Proposition], Plane], algebra: Algebra[Plane]
-) -> Plane:
-    """The plane of a formula. Its bounds are in steps; ValueError if not."""
-    return _Evaluation(propositions, algebra).plane(formula)
+class Evaluation(Generic[Plane]):
+    """Formulas on planes; every part of them is evaluated once.
 
-
-class _Evaluation(Generic[Plane]):
-    """A walk over a formula in which every part is evaluated once."""
+    ``propositions`` gives the planes of atoms and comparisons.
+    """
 
     def __init__(
         self, propositions: Callable[[Proposition], Plane], algebra: Algebra[Plane]
@@ -78,6 +80,7 @@ class _Evaluation(Generic[Plane]):
         self._known: dict[Formula, Plane] = {}
 
     def plane(self, formula: Formula) -> Plane:
+        """The plane of a formula. Its bounds are in steps; ValueError if not."""
         if formula not in self._known:
             self._known[formula] = self._evaluated(formula)
         return self._known[formula]
@@ -89,28 +92,35 @@ class _Evaluation(Generic[Plane]):
             case Constant(value):
                 return self._do.constant(value)
             case Unary(operator, operand):
-                return self._unary(operator, self.plane(operand), range_of(formula))
+                return self._unary(operator, operand, range_of(formula))
             case Binary(operator, left, right):
                 span = range_of(formula)
                 return self._binary(operator, self.plane(left), self.plane(right), span)
             case Same():
                 raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
 
-    def _unary(self, operator: UnaryOperator, one: Plane, span: Range) -> Plane:
-        no, true = self._do.no, self._do.constant(True)
+    def negation(self, formula: Formula) -> Plane:
+        """The plane of a formula's negation."""
+        match formula:
+            case Unary(UnaryOperator.NOT, operand):
+                return self.plane(operand)
+        return self._do.no(self.plane(formula))
+
+    def _unary(self, operator: UnaryOperator, operand: Formula, span: Range) -> Plane:
+        no = self._do.no
         match operator:
             case UnaryOperator.NOT:
-                return no(one)
+                return no(self.plane(operand))
             case UnaryOperator.NEXT | UnaryOperator.EVENTUALLY:
-                return self._until(true, one, span)
+                return self._until(None, self.plane(operand), span)
             case UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS:
-                return no(self._until(true, no(one), span))
+                return no(self._until(None, self.negation(operand), span))
             case UnaryOperator.NEVER:
-                return no(self._until(true, one, span))
+                return no(self._until(None, self.plane(operand), span))
             case UnaryOperator.PREVIOUSLY | UnaryOperator.ONCE:
-                return self._since(true, one, span)
+                return self._since(None, self.plane(operand), span)
             case UnaryOperator.WEAK_PREVIOUSLY | UnaryOperator.HISTORICALLY:
-                return no(self._since(true, no(one), span))
+                return no(self._since(None, self.negation(operand), span))
 
     def _binary(self, operator: BinaryOperator, left: Plane, right: Plane, span: Range) -> Plane:
         do, no = self._do, self._do.no
@@ -139,21 +149,21 @@ class _Evaluation(Generic[Plane]):
     def _weak_until(self, left: Plane, right: Plane, span: Range) -> Plane:
         """As ``_until``, or ``left`` from here to the range's end."""
         do = self._do
-        breaks = self._until(do.constant(True), do.no(left), Range(0, span.high))
+        breaks = self._until(None, do.no(left), Range(0, span.high))
         return do.either(self._until(left, right, span), do.no(breaks))
 
-    def _until(self, left: Plane, right: Plane, span: Range) -> Plane:
+    def _until(self, left: Plane | None, right: Plane, span: Range) -> Plane:
         return self._reached(left, right, span, self._do.until, self._do.ahead)
 
-    def _since(self, left: Plane, right: Plane, span: Range) -> Plane:
+    def _since(self, left: Plane | None, right: Plane, span: Range) -> Plane:
         return self._reached(left, right, span, self._do.since, self._do.back)
 
     def _reached(
         self,
-        left: Plane,
+        left: Plane | None,
         right: Plane,
         span: Range,
-        unbounded: Callable[[Plane, Plane], Plane],
+        unbounded: Callable[[Plane | None, Plane], Plane],
         move: Callable[[Plane, int], Plane],
     ) -> Plane:
         """``right`` within the range, ``left`` on the way there; ``move`` goes in its direction.
@@ -168,12 +178,15 @@ class _Evaluation(Generic[Plane]):
             found, _ = self._within(left, right, span.high - span.low + 1, move)
         if span.low == 0:
             return found
+        reached = move(found, span.low)
+        if left is None:
+            return reached
         _, way = self._within(left, right, span.low, move)
-        return self._do.both(way, move(found, span.low))
+        return reached if way is None else self._do.both(way, reached)
 
     def _within(
-        self, left: Plane, right: Plane, n_instants: int, move: Callable[[Plane, int], Plane]
-    ) -> tuple[Plane, Plane]:
+        self, left: Plane | None, right: Plane, n_instants: int, move: Callable[[Plane, int], Plane]
+    ) -> tuple[Plane, Plane | None]:
         """``right`` within so many instants, ``left`` on the way; and ``left`` at all of them."""
         if n_instants == 1:
             return right, left
@@ -187,12 +200,14 @@ class _Evaluation(Generic[Plane]):
 
     def _joined(
         self,
-        near: tuple[Plane, Plane],
-        far: tuple[Plane, Plane],
+        near: tuple[Plane, Plane | None],
+        far: tuple[Plane, Plane | None],
         steps: int,
         move: Callable[[Plane, int], Plane],
-    ) -> tuple[Plane, Plane]:
+    ) -> tuple[Plane, Plane | None]:
         """The same for two ranges, the second ``steps`` behind the first."""
-        do = self._do
-        found = do.either(near[0], do.both(near[1], move(far[0], steps)))
-        return found, do.both(near[1], move(far[1], steps))
+        do, (found, way) = self._do, near
+        later, further = move(far[0], steps), far[1]
+        if way is None or further is None:
+            return do.either(found, later), None
+        return do.either(found, do.both(way, later)), do.both(way, move(further, steps))

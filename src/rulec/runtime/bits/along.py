@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics, steps_to_settle
-from rulec.runtime.bits.algebra import evaluated
+from rulec.runtime.bits.algebra import Evaluation
 
 _MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 
@@ -37,8 +37,8 @@ def along(
     more = 0 if semantics == "finite" else steps_to_settle(formula)
     n_bits = n_instants + more
     algebra = _AlongTime(n_bits, semantics == "finite", (1 << n_bits) - 1)
-    plane = evaluated(formula, lambda one: _packed(column(one), more), algebra)
-    return bool(plane >> (n_bits - 1))
+    evaluation = Evaluation(lambda one: _packed(column(one), more), algebra)
+    return bool(evaluation.plane(formula) >> (n_bits - 1))
 
 
 def _packed(values: NDArray[Any], more: int) -> int:
@@ -78,10 +78,16 @@ class _AlongTime:
     def back(self, one: int, steps: int) -> int:
         return one >> steps
 
-    def until(self, left: int, right: int) -> int:
+    def until(self, left: int | None, right: int) -> int:
+        if left is None:
+            # All bits from the lowest one on: it is before the last instant with ``right``.
+            return (-(right & -right)) & self.true
         return _flooded(left, right)
 
-    def since(self, left: int, right: int) -> int:
+    def since(self, left: int | None, right: int) -> int:
+        if left is None:
+            # All up to the first one, which is the highest bit, is after it.
+            return (1 << right.bit_length()) - 1
         return self._mirrored(_flooded(self._mirrored(left), self._mirrored(right)))
 
     def _mirrored(self, one: int) -> int:
