@@ -26,9 +26,11 @@ from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
+    from rulec.analysis.difference import Difference
     from rulec.analysis.inheritance import Inheritance
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.rulebook.loader import Loaded
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
@@ -126,15 +128,40 @@ def run_examples(
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 
-def read_inheritance(
+def compare_rulebooks(
+    first: str | Path,
+    second: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Difference:
+    """Compare the rules of two rulebooks, given by name or by their sources' paths.
+
+    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
+    as for ``rulec.analysis.difference.difference``. Raises RulecError.
+    """
+    from rulec.analysis.difference import difference, setting_pairs
+
+    (one, ours), (other, theirs) = (
+        read_with_inheritance(each, search_path, at) for each in (first, second)
+    )
+    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
+    return replace(found, settings=setting_pairs(ours, theirs))
+
+
+def read_with_inheritance(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> Inheritance:
-    """Where everything in a rulebook comes from. As for ``load_rulebook``."""
+) -> tuple[Loaded, Inheritance]:
+    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
     from rulec.analysis.inheritance import inheritance
     from rulec.rulebook.loader import read_rulebook
 
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
-    return inheritance(loaded.books, loaded.rulebook.at)
+    return loaded, inheritance(loaded.books, loaded.rulebook.at)
 
 
 def audit_rulebook(
@@ -151,14 +178,12 @@ def audit_rulebook(
     ``at``: as for ``load_rulebook``. Raises RulecError.
     """
     from rulec.analysis.audit import audit
-    from rulec.analysis.inheritance import inheritance
-    from rulec.rulebook.loader import read_rulebook
 
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    loaded, inherited = read_with_inheritance(reference, search_path, at)
     warn(loaded.warnings)
     outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
     failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
-    return audit(loaded.rulebook, inheritance(loaded.books, loaded.rulebook.at), failing)
+    return audit(loaded.rulebook, inherited, failing)
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:

@@ -35,6 +35,7 @@ FILES = ("file", "")
         (["test"], "est", [FILES, ("plain", "esterle2019")]),
         (["audit"], "est", [FILES, ("plain", "esterle2019")]),
         (["audit", "--fail-on"], "unc", [("plain", "uncited")]),
+        (["doc"], "est", [FILES, ("plain", "esterle2019")]),
         (["tree"], "est", [FILES, ("plain", "esterle2019")]),
         (["compile"], "est", [FILES, ("plain", "esterle2019")]),
         (["compile"], "./my", [FILES]),

@@ -198,6 +198,8 @@ def test_the_shortest_traces_can_be_pasted(capsys):
         "always (behind(v) implies next (p since q))",
         "never (behind(v) then beside(v) and left_of(v) then in_front_of(v))",
         "(p and crossing) until (left_of(v) or q)",
+        "never p",
+        "eventually (p implies q and next q)",
     ):
         bare = parse_rulebook(book.format(formula=formula, examples=""))
         from rulec.report.rule_page import page_of

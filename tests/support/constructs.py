@@ -437,4 +437,14 @@ CLAUSES = [
             'accept "slow" (v: vehicle) speed = 3 km/h }',
         ),
     ),
+    Construct(
+        ("reject { true; p; true }", "reject {\n  true\n  ;\n  p; true }"),
+        (
+            "reject { true and p }",
+            "reject { p and true }",
+            "reject { not true }",
+            "reject { false }",
+            "reject { true true }",
+        ),
+    ),
 ]

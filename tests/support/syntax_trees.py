@@ -109,7 +109,7 @@ values = numbers | numbers.map(tree.Minus)
 literals = st.builds(tree.StateLiteral, atoms, st.booleans()) | st.builds(
     tree.StateLiteral, atoms, st.just(False), values
 )
-states = st.builds(tree.ExampleState, _lists(literals, 1))
+states = st.builds(tree.ExampleState, _lists(literals, 0))
 examples = st.builds(
     tree.Example,
     st.booleans(),

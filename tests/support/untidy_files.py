@@ -119,7 +119,7 @@ literals = st.one_of(
 examples = st.builds(
     tree.Example,
     st.booleans(),
-    _lists(st.builds(tree.ExampleState, _lists(literals, 1)), 1),
+    _lists(st.builds(tree.ExampleState, _lists(literals, 0)), 1),
     texts.map(lambda text: text.value) | st.just(""),
     variables,
 )

@@ -11,8 +11,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import Literal
 
+from rulec.rulebook.descriptions import description
 from rulec.rulebook.overlay import merged
 from rulec.rulebook.provisions import in_force
+from rulec.rulebook.uses import names_used
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
 
@@ -65,6 +67,12 @@ class RuleHistory:
         """The rule as it is in the end; None if it is gone."""
         return self.last.rule
 
+    @property
+    def cited_by(self) -> str:
+        """The book whose law its ``cite`` speaks of: the last that has changed it."""
+        saying = [one for one in self.steps if one.deed == "declared" or "cite" in one.clauses]
+        return saying[-1].book if saying else ""
+
     def before(self, book: str) -> tree.RuleItem | None:
         """The rule that a book has inherited; None if it has inherited none."""
         found = [step for step in self.steps if step.book != book]
@@ -73,26 +81,32 @@ class RuleHistory:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts."""
+    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts.
+
+    ``note`` is the comment beside it.
+    """
 
     book: str
     text: str
     since: str = ""
     until: str = ""
     current: bool = False
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class ProvisionHistory:
     """An option, a parameter or a definition with all that it was given, in order.
 
-    ``head`` is how it is used: its name, with a definition's parameters.
+    ``head`` is how it is used: its name, with a definition's parameters. ``used``: some rule speaks
+    of it, or something does that a rule speaks of.
     """
 
     kind: ProvisionKind
     name: str
     head: str
     settings: tuple[Setting, ...]
+    used: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,11 +135,26 @@ def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
         book = member_of(file).name
         for item in file.items:
             told.take(item, book, level)
+    used = _used(told)
     return Inheritance(
         tuple(map(member_of, chain)),
         tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
-        tuple(_provision(name, one, at) for name, one in told.provisions.items()),
+        tuple(
+            replace(_provision(name, one, at), used=name in used)
+            for name, one in told.provisions.items()
+        ),
     )
+
+
+def _used(told: _Tale) -> set[str]:
+    """The provisions that the rules speak of, those included that provisions speak of in turn."""
+    found: set[str] = set()
+    open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
+    while open_:
+        names = set(names_used(open_.pop())) & told.provisions.keys()
+        open_ += [item for name in names - found for item, _, _ in told.provisions[name]]
+        found |= names
+    return found
 
 
 def member_of(file: tree.File) -> Member:
@@ -220,7 +249,7 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
     first = given[0][0]
     current = _current(given, at)
     settings = tuple(
-        Setting(book, _text(item), *_dates(item), current=index == current)
+        Setting(book, _text(item), *_dates(item), index == current, description(item.span))
         for index, (item, book, _) in enumerate(given)
     )
     match first:

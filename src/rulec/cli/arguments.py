@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -98,6 +100,24 @@ def _folders() -> tuple[Path, ...]:
 def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
     fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
     return [_FILES, *fitting]
+
+
+_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
+
+
+def seconds(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> Fraction | None:
+    """A step, as an option gives it."""
+    if value is None:
+        return None
+    try:
+        step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
+    except ZeroDivisionError:
+        step = Fraction(0)
+    if not step:
+        raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
+    return step
 
 
 def rulebook_option(function: Decorated) -> Decorated:

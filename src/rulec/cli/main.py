@@ -19,6 +19,8 @@ VERBS = {
     "check": "Check rulebooks and vocabularies.",
     "compile": "Compile a rulebook to automata files.",
     "completion": "Print the script that completes rulec's commands in a shell.",
+    "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
+    "doc": "Write a rulebook as a document for lawyers.",
     "explain": "Explain a code of a message.",
     "fmt": "Format rulebooks and vocabularies.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",

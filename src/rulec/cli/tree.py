@@ -58,9 +58,9 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
 
 def _inheritance(rulebook: str, at: str) -> Inheritance:
     from rulec.settings import search_path
-    from rulec.workflow import read_inheritance
+    from rulec.workflow import read_with_inheritance
 
-    return read_inheritance(rulebook, search_path(), at)
+    return read_with_inheritance(rulebook, search_path(), at)[1]
 
 
 def _members(rulebooks: tuple[str, ...], at: str) -> list[Member]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from rulec.report.excerpt import visible
 
@@ -56,3 +57,23 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table; its cells are Markdown already."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading; ``text`` is plain."""
+
+    level: int
+    text: str
+
+
+Block = Heading | str
+"""A heading, or anything else as Markdown."""
+
+
+def written(blocks: Iterable[Block]) -> str:
+    """The page, without a line end behind it."""
+    return "\n\n".join(
+        f"{'#' * one.level} {escaped(one.text)}" if isinstance(one, Heading) else one
+        for one in blocks
+    )

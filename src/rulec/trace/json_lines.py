@@ -81,12 +81,13 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
     encoder = msgspec.json.Encoder()
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
-        stream.write(encoder.encode(_as_record(trace)))
+        stream.write(encoder.encode(as_record(trace)))
         stream.write(b"\n")
     return count
 
 
-def _as_record(trace: Trace) -> dict[str, Any]:
+def as_record(trace: Trace) -> dict[str, Any]:
+    """A trace as the object of its line."""
     record: dict[str, Any] = {
         "id": trace.id,
         "step_s": trace.step_s,

@@ -68,9 +68,10 @@ def print_example_head(example: tree.Example) -> str:
 def print_state(state: tree.ExampleState, style: Style = "words") -> str:
     """A state of an example."""
     join, deny = (" & ", "!") if style == "symbols" else (" and ", "not ")
-    return join.join(
+    facts = join.join(
         (deny if one.negated else "")
         + print_atom(one.atom)
         + (f" = {print_formula(one.value)}" if one.value else "")
         for one in state.literals
     )
+    return facts or "true"

@@ -1,0 +1,55 @@
+"""``rulec doc``: a rulebook as a document for lawyers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+
+FORMATS = ("html", "markdown")
+
+SUFFIXES = {".md": "markdown", ".markdown": "markdown"}
+
+
+@click.command()
+@click.argument("rulebook", shell_complete=complete_rulebooks)
+@click.option(
+    "-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write to FILE."
+)
+@click.option(
+    "--format",
+    "output_format",
+    type=click.Choice(FORMATS),
+    help="One page for a browser and for paper, or Markdown.  [default: markdown for a FILE that "
+    "ends in .md, else html]",
+)
+@at_option
+def command(rulebook: str, output: str | None, output_format: str | None, at: str) -> None:
+    """Write a RULEBOOK (a name, or the path of a source) as a document for lawyers.
+
+    It has every rule with its provision, in plain English, as a formula and by its examples; what
+    was changed of inherited rules and what was left out; values, definitions, words and an index.
+    """
+    from rulec.files import written_whole
+    from rulec.report.book_page import CONTENTS, as_markdown, title_of
+    from rulec.report.console import print_diagnostics, print_result
+    from rulec.report.html_page import as_html
+    from rulec.settings import search_path
+    from rulec.workflow import read_with_inheritance
+
+    only_sources([rulebook], "be made a document of")
+    if output_format is None:
+        output_format = SUFFIXES.get(Path(output or "").suffix, "html")
+    loaded, inherited = read_with_inheritance(rulebook, search_path(), at)
+    print_diagnostics(loaded.warnings)
+    text = as_markdown(loaded, inherited)
+    if output_format == "html":
+        text = as_html(text, title_of(loaded.rulebook), CONTENTS)
+    if output is None:
+        print_result(text)
+        return
+    with written_whole(Path(output)) as stream:
+        stream.write(f"{text}\n".encode())
+    print_result(f"wrote {output}")

@@ -1,0 +1,21 @@
+"""The names under which headings of a Markdown page can be linked to, as most viewers make them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+
+def anchors(headings: Sequence[str]) -> list[str]:
+    """A name for each heading (plain text, in the order of the page), no two the same."""
+    taken: set[str] = set()
+    found = []
+    for heading in headings:
+        plain = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+        name, number = plain, 0
+        while name in taken:
+            number += 1
+            name = f"{plain}-{number}"
+        taken.add(name)
+        found.append(name)
+    return found

@@ -1,0 +1,221 @@
+"""``rulec doc`` as its user meets it."""
+
+import re
+from pathlib import Path
+
+import island
+import pytest
+
+from rulec.cli.main import main
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    island.write(tmp_path)
+    return tmp_path
+
+
+def written(capsys, *arguments):
+    status = main(["doc", *arguments])
+    captured = capsys.readouterr()
+    assert status == 0, captured.err
+    return captured.out
+
+
+def section(page, heading):
+    """What stands below a heading, up to the next one of its rank or above."""
+    rank = len(heading.split()[0])
+    (found,) = re.findall(
+        rf"^{re.escape(heading)}\n(.*?)(?=^#{{1,{rank}}} |\Z)", page, re.MULTILINE | re.DOTALL
+    )
+    return found
+
+
+@pytest.fixture
+def page(folder, capsys):
+    return written(capsys, "island.rules", "--format", "markdown", "--at", "2024-06-01")
+
+
+def test_the_beginning(page):
+    assert page.startswith("# Rules of the island\n\n**This is no legal advice.**")
+    for row in (
+        "| law | Island Act, as of 2024-01-01 |",
+        "| shown as of | 2024-06-01 |",
+        "| builds upon | `mainland` |",
+        "| rules | 2 hard, 1 soft |",
+    ):
+        assert f"\n{row}\n" in page
+
+
+def test_a_rule_that_overrides(page):
+    rule = section(page, "### changed (§ 10a)")
+    assert rule.startswith("\n> Be slow.\n\n")
+    for line in (
+        "- **Provision:** § 10a",
+        "- **Kind of rule:** hard, it must never be violated",
+        "- **Certainty:** ◐ taken from a secondary source",
+        "- **Read in:** a book",
+        "- **Origin:** overrides mainland: cite, require",
+        # 3 s in steps of 1 s.
+        "The states are 1 s apart.",
+        "Changed: cite and require.",
+        '-cite "§ 10"',
+        '+cite "§ 10a"',
+        "-require always slow",
+        "+require always[<= 3 s] slow",
+    ):
+        assert f"\n{line}\n" in rule
+    assert "```rulec\nrequire always[<= 3 s] slow\n```" in rule
+    assert "```rulec\nrequire always[<= 3 s] speed < 20 km/h\n```" in rule
+    assert "says" not in section(page, "### changed (§ 10a)").split("```diff")[1]
+
+
+def test_its_examples(page):
+    rule = section(page, "### changed (§ 10a)")
+    assert "**Example 1: allowed ✔**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 20 |" in rule
+    assert (
+        "**Example 2: forbidden ✘**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 40 |" in rule
+    )
+
+
+def test_inherited_and_softened(page):
+    kept = section(page, "### kept (§ 9)")
+    assert "\n- **Provision:** § 9 of: Mainland Act\n" in kept
+    assert "\n- **Origin:** inherited from mainland\n" in kept
+    assert "\n- **Certainty:** ✔ verified in the law itself\n" in kept
+    # As written and as meant it is the same.
+    assert kept.count("```rulec") == 1
+    softer = section(page, "### softer (§ 2)")
+    assert "\n- **Kind of rule:** soft, it may yield; weight 2\n" in softer
+    assert "\n- **Origin:** softened, because only recommended\n" in softer
+    assert "#### Examples\n\nNone.\n" in softer
+
+
+def test_exceptions_are_said_one_by_one(capsys):
+    page = written(capsys, "de", "--format", "markdown")
+    (passing,) = re.findall(r"^### near\\_side\\_passing.*?(?=^### )", page, re.M | re.S)
+    written_out = passing.split("With definitions, options and parameters put in:")[1]
+    assert "\nrequire never (behind(v) then beside(v) and right_of(v) then in_front_of(v))\n" in (
+        written_out
+    )
+    assert "\nunless turning_far(v) or ego_cycle and stopped(v) throughout\n" in written_out
+
+
+def test_what_stands_behind_the_rules(page):
+    values = section(page, "## Options and parameters")
+    assert "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |  |\n" in values
+    assert "\n| `pace` | parameter | `20 km/h` | ✔ | always | `island` |  |\n" in values
+    assert "| until 2021-12-31 | `mainland` | What signs said. |\n" in values
+    # No rule speaks of it.
+    assert "strict" not in values
+    definitions = section(page, "## Definitions")
+    assert "`slow` is defined by `island`. It was in `mainland` `speed <= pace`.\n" in definitions
+    assert "never_used" not in definitions
+    assert "```rulec\ndefine slow = speed < pace\n```" in definitions
+    out = section(page, "## What this rulebook leaves out")
+    assert "\n| `taken_out` | dropped by `island` | there are no sirens |\n" in out
+    assert "\n| `parking` | `island` is silent on it | left to the villages |\n" in out
+    words = section(page, "## Vocabulary")
+    assert "\n| `horn` | the world | yes or (no) |  |\n" in words
+    assert "\n| `speed` | the world | a number of `km/h` (0) |  |\n" in words
+    assert "unused_word" not in words
+
+
+def test_the_index_leads_to_the_rules(page):
+    index = section(page, "## Index of provisions")
+    places = [index.index(one) for one in ("Island Act:", "§ 10a", "Mainland Act:", "§ 2", "§ 9")]
+    assert places == sorted(places)
+    assert "| § 9 | [`kept`](#kept--9) |" in index
+    assert "\n  - [kept (§ 9)](#kept--9)\n" in section(page, "## Contents")
+
+
+def test_a_rule_that_is_not_in_force(folder, capsys):
+    page = written(capsys, "village.rules", "--format", "markdown", "--at", "2024-05-31")
+    out = section(page, "## What this rulebook leaves out")
+    assert "\n| `own` | not in force on 2024-05-31 | in force from 2024-06-01 |\n" in out
+    assert "### own" not in page
+
+
+def test_words_with_their_descriptions(capsys):
+    page = written(capsys, "esterle2019", "--format", "markdown")
+    words = section(page, "## Vocabulary")
+    described = re.findall(
+        r"^\| `CONGESTED` \| the world \| yes or \(no\) \| (.+) \|$", words, re.M
+    )
+    assert len(described) == 1
+    assert described[0].strip()
+
+
+@pytest.mark.parametrize("book", ["island.rules", "village.rules", "esterle2019", "vienna", "de"])
+def test_every_link_of_the_page_leads_somewhere(folder, book, capsys):
+    page = written(capsys, book)
+    assert page.startswith("<!DOCTYPE html>\n")
+    names = re.findall(r' id="([^"]*)"', page)
+    links = re.findall(r' href="#([^"]*)"', page)
+    assert len(set(names)) == len(names)
+    assert set(links) <= set(names)
+    assert len(links) >= 4
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "beginning"),
+    [
+        ("b.html", [], "<!DOCTYPE html>\n"),
+        ("b.md", [], "# Rules of the island\n"),
+        ("b.txt", [], "<!DOCTYPE html>\n"),
+        ("b.md", ["--format", "html"], "<!DOCTYPE html>\n"),
+        ("b.html", ["--format", "markdown"], "# Rules of the island\n"),
+    ],
+)
+def test_a_file(folder, name, options, beginning, capsys):
+    assert written(capsys, "island.rules", "-o", name, *options) == f"wrote {name}\n"
+    assert (folder / name).read_text(encoding="utf-8").startswith(beginning)
+
+
+def test_no_path_of_this_machine_is_in_it(folder, capsys):
+    whole = str(folder / "village.rules")
+    for output_format in ("html", "markdown"):
+        page = written(capsys, whole, "--format", output_format)
+        assert str(folder) not in page
+        assert str(Path(__file__).resolve().parents[2]) not in page
+
+
+def test_it_is_the_same_every_time(folder, capsys):
+    assert written(capsys, "island.rules") == written(capsys, "island.rules")
+
+
+def test_a_rulebook_without_rules(folder, capsys):
+    (folder / "single.rules").write_text("rulebook single signal p hard rule r { require p }\n")
+    (folder / "empty.rules").write_text('rulebook empty\nextends single\ndrop rule r because ""\n')
+    page = written(capsys, "empty.rules", "--format", "markdown")
+    assert page.startswith("# empty\n")
+    assert section(page, "## Rules") == "\nNone.\n\n"
+    assert section(page, "## Index of provisions").startswith("\nNo provision is cited.\n")
+
+
+def test_hostile_texts_stay_texts(folder, capsys):
+    text = island.BASE.replace("Do not sound the horn.", "<script>alert(1)</script> | *x* ]]>")
+    (folder / "odd.rules").write_text(text.replace("§ 9", "<b onclick=x>"), encoding="utf-8")
+    page = written(capsys, "odd.rules")
+    assert "<script" not in page
+    assert "<b " not in page
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; | *x* ]]&gt;" in page
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["none"], "there is no rulebook `none`"),
+        (["bad.rules"], "R0201"),
+        (["x.json"], "`x.json` is compiled and cannot be made a document of"),
+        (["island.rules", "-o", "no/b.html"], "R0702"),
+    ],
+)
+def test_what_cannot_be_done(folder, arguments, words, capsys):
+    (folder / "bad.rules").write_text("rulebook bad hard rule r (v: car) { require true }")
+    assert main(["doc", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert words in captured.err
+    assert not (folder / "no").exists()
