@@ -16,6 +16,7 @@ from timed import TIMED_VOCABULARY, timed_formulas
 from rulec.automata.machine import NumberRead, Threshold
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, Quantity, Same
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
 from rulec.runtime.batch.gathering import OddError, gathered
 from rulec.runtime.batch.grouping import grouped
@@ -279,3 +280,43 @@ def test_sums_are_exact(pairs):
     ones, others = (np.array(column) for column in zip(*pairs, strict=True))
     found = digits_of_sum(SUM, [(Fraction(1), ones), (Fraction(1, 3), others)], len(pairs))
     assert found.tolist() == [SUM.digit(exact(one) + exact(other) / 3) for one, other in pairs]
+
+
+QUEUE = """rulebook queue
+type car
+signal loud(v: car) default false
+signal horn
+quantity speed(v: car) in km/h default 0
+fact loud(v) implies horn
+fact speed(v) <= 120 km/h
+hard rule calm (v: car) { require always (loud(v) implies speed(v) <= 100 km/h) }
+soft rule fast (v: car) { require never (speed(v) > 50 km/h and next speed(v) > 60 km/h) }
+"""
+
+
+@cache
+def queue(more):
+    return compile_here(parse_rulebook(QUEUE + more, "queue.rules"))
+
+
+@pytest.mark.parametrize("more", ["", "fact count c: car (loud(c)) <= 1"])
+@pytest.mark.parametrize("n_states", [2, 40])
+@given(chance=st.randoms(use_true_random=False))
+def test_states_that_cannot_be(more, n_states, chance):
+    """Few states that are met again and again, or as many as there are."""
+    objects = {"a": "car", "b": "car"}
+
+    def state():
+        return {
+            "horn": chance.random() < 0.8,
+            "loud": {name: chance.random() < 0.4 for name in objects},
+            "speed": {name: chance.choice([40, 55.5, 61, 99, 120, 120.5]) for name in objects},
+        }
+
+    pool = [state() for _ in range(n_states)]
+    traces = [
+        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
+        for n in range(20)
+    ]
+    alone = [told(judge(trace, queue(more))) for trace in traces]
+    assert [told(one) for one in judge_chunk(traces, queue(more))] == alone

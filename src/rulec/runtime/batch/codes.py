@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from rulec.automata.machine import NumberRead
+from rulec.automata.machine import IMPOSSIBLE, NumberRead
 from rulec.runtime.batch.judged import Walk
 from rulec.runtime.batch.reading import NotGivenError, Reading
 from rulec.runtime.batch.tasks import Task
@@ -147,6 +147,7 @@ def _walk_of_classes(reading: Reading, task: Task, spelling: _Spelling) -> Walk:
     for digit, read in zip(spelling, machine.reads, strict=True):
         numbers += stride * np.take(digit.meanings, digit.values)
         stride *= read.size
-    n_classes = len(machine.following[0])
-    classes = np.array(machine.letters, dtype=smallest_unsigned(n_classes))
-    return Walk(layout, classes.take(numbers), [task], [range(n_classes)])
+    # One more than the class, so that what is impossible is a cell, too.
+    n_cells = len(machine.following[0]) + 1
+    cells = (np.array(machine.letters) - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
+    return Walk(layout, cells.take(numbers), [task], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)])

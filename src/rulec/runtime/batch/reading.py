@@ -23,6 +23,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
+from rulec.logic.one_state import Bound
 from rulec.runtime.batch.sums import Summand, digits_of_sum
 from rulec.runtime.batch.truth import (
     UNKNOWN,
@@ -34,7 +35,6 @@ from rulec.runtime.batch.truth import (
     known,
     negated,
 )
-from rulec.runtime.moment import Bound
 from rulec.runtime.numbers import scale
 from rulec.runtime.terms import names_in
 from rulec.trace.columns import Array, TraceColumns

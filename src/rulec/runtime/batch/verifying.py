@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice
 
 from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.facts import counts
 from rulec.diagnostics import RulecError
 from rulec.runtime.batch.gathering import OddError, gathered
 from rulec.runtime.batch.grouping import Shape, grouped, shape_of
@@ -17,6 +18,8 @@ from rulec.runtime.batch.judged import Judged
 from rulec.runtime.batch.judging import judge_cells, judge_columns
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.facts import check_counting_facts
+from rulec.runtime.moment import Moment
 from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
 from rulec.runtime.verify import RulebookFor, check_step, judge, made_for
@@ -105,11 +108,18 @@ def _judged(
     group = grouped([trace for _, trace in traces])
     cells = group.cells
     if len(cells.states) * _SHARED > cells.layout.n_states:
+        if any(counts(fact.formula) for fact in rules.facts):
+            return [], (), ()
         try:
             return judge_columns(gathered(cells, rules.vocabulary), rules), traces, group.order
         except (OddError, NotGivenError):
             return [], (), ()
-    odd = {id(state) for state in cells.states if not _fits(state, cells.objects, rules)}
+    scenes = cells.there or (cells.objects,) * len(cells.states)
+    odd = {
+        id(state)
+        for state, there in zip(cells.states, scenes, strict=True)
+        if not _fits(state, cells.objects, there, rules)
+    }
     if odd:
         traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
         if not traces:
@@ -137,11 +147,16 @@ def _rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
     return rules
 
 
-def _fits(state: object, objects: Mapping[str, str], rulebook: CompiledRulebook) -> bool:
+def _fits(
+    state: object, objects: Mapping[str, str], there: Mapping[str, str], rulebook: CompiledRulebook
+) -> bool:
     if not isinstance(state, Mapping):
         return False
+    vocabulary = rulebook.vocabulary
     try:
-        check_state(state, objects, rulebook.vocabulary, "")
+        check_state(state, objects, vocabulary, "")
+        moment = Moment(state, there, vocabulary)
+        check_counting_facts(rulebook, 1, lambda _: moment, str, None)
     except RulecError:
         return False
     return True

@@ -74,7 +74,8 @@ class Across:
         """The first row of a formula's plane, and no more of it than that takes."""
         match formula:
             case Atom() | Comparison() if formula not in self._packed:
-                return self._pack(self._column(formula), 1)[0]
+                packed: Words = self._pack(self._column(formula), 1)[0]
+                return packed
             case Unary(UnaryOperator.NOT, operand):
                 return ~self._first(operand, evaluation)
             case Unary(UnaryOperator.ALWAYS, operand, None):
