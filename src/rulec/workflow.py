@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
     from rulec.analysis.difference import Difference
     from rulec.analysis.inheritance import Inheritance
+    from rulec.analysis.matrix import Matrix
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.loader import Loaded
@@ -151,6 +152,18 @@ def compare_rulebooks(
     warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
     found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
     return replace(found, settings=setting_pairs(ours, theirs))
+
+
+def compare_all(
+    rulebooks: Sequence[Rulebook],
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Matrix:
+    """Compare every two of some rulebooks, as for ``rulec.analysis.matrix.matrix``."""
+    from rulec.analysis.matrix import matrix
+
+    return matrix(rulebooks, patterns, step_s, tell)
 
 
 def read_with_inheritance(

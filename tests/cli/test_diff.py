@@ -185,3 +185,65 @@ def test_words_that_mean_different_things(tmp_path, capsys):
 def test_it_takes_two(capsys):
     assert main(["diff", "./old.rules"]) == 2
     assert "name the two rulebooks" in capsys.readouterr().err
+
+
+def test_all(tmp_path, capsys):
+    """The treaty comes first, so that its rules are law A; small letters are soft rules."""
+    (tmp_path / "third.rules").write_text(
+        "rulebook third\nextends old\nset least = 1 m\n"
+        'soften rule no_passing because "seldom"\nsilent on no_crowd because "rare"\n'
+    )
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    rules = dict(line.split(maxsplit=1) for line in lines[3:8])
+    assert rules == {
+        "old": "new  third",
+        "leave_room": "A    B    C",
+        "no_passing": "A    B    a",
+        "no_horn": "a    /    a",
+        "no_crowd": "a    a    /",
+    }
+    pairs = [line.split() for line in lines[13:16]]
+    assert pairs == [
+        ["old", "1=", "1+", "1-", "2=", "1+"],
+        ["new", "1=", "1+", "1-", "1+", "1-"],
+        ["third", "2=", "1-", "1+", "1-"],
+    ]
+    assert (
+        lines[-1] == "3 rulebooks, 4 rules that two or more of them have, 2 of them the same in all"
+    )
+
+
+def test_all_as_data(capsys):
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "--output-format", "csv"]) == 1
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert [tuple(row.values()) for row in rows if row["rule"] == "leave_room"] == [
+        ("leave_room", "old", "new", "laxer"),
+        ("leave_room", "new", "old", "stricter"),
+    ]
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "--output-format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    (pair,) = [one for one in found["pairs"] if one["first"] == "old"]
+    assert pair == {
+        "first": "old",
+        "second": "new",
+        "equal": 1,
+        "stricter": 1,
+        "laxer": 1,
+        "incomparable": 0,
+        "undecided": 0,
+        "only": 1,
+        "silent": 1,
+    }
+
+
+def test_all_that_are_the_same(capsys):
+    command = ["diff", "--all", "./new.rules", "./old.rules", "--rule", "no_crowd"]
+    assert main(command) == 0
+
+
+def test_all_goes_on_without_what_cannot_be_read(capsys):
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "./none.rules"]) == 2
+    out, err = capsys.readouterr()
+    assert "2 rulebooks" in out
+    assert "none.rules" in err

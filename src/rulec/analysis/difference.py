@@ -152,7 +152,7 @@ def difference(
     Raises:
         RulecError: if a rule cannot be compiled.
     """
-    ours, theirs = (_chosen(book, patterns) for book in (first, second))
+    ours, theirs = (chosen(book, patterns) for book in (first, second))
     shared = [name for name in ours if name in theirs]
     pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
     sides = Distinct().sides(
@@ -180,7 +180,8 @@ def difference(
     )
 
 
-def _chosen(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
+def chosen(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
+    """The rules of a rulebook by name; with patterns, those that one of them matches."""
     return {
         rule.name: rule
         for rule in book.rules

@@ -14,11 +14,15 @@ from rulec.vocabulary import Quantity, Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What is the case in each column: ``title`` names it, ``unit`` is empty if it has none."""
+    """What is the case in each column: ``title`` names it, ``unit`` is empty if it has none.
+
+    ``usual``: it is the default in all of them.
+    """
 
     title: str
     unit: str
     values: tuple[Value | None, ...]
+    usual: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,5 +46,6 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
         if name in names and len(set(items)) == len(items):
             values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
-            rows.append(Row(str(Atom(name, items)), unit, values))
+            usual = all(value == declaration.default for value in values)
+            rows.append(Row(str(Atom(name, items)), unit, values, usual))
     return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))

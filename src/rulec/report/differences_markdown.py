@@ -47,6 +47,9 @@ def _pair(pair: RulePair, found: Difference) -> Iterator[str]:
             ["state", *trace_table.titles(states)],
             [[escaped(title), *map(escaped, cells)] for title, cells in trace_table.rows(states)],
         )
+        rest = trace_table.left_out(states)
+        if rest:
+            yield f"By default: {', '.join(map(code, rest))}."
 
 
 def _only(rules: Sequence[OneSided], lacks: str) -> str:

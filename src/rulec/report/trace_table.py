@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
+
 from rulec.analysis.trace_table import TraceTable
 from rulec.report.excerpt import visible
 from rulec.report.explanation import shown
+
+MOST_ROWS = 8
+"""A table with more has no rows for what is by default in all its states."""
+
+WIDTH = 96
 
 
 def titles(table: TraceTable) -> list[str]:
@@ -20,7 +27,14 @@ def rows(table: TraceTable) -> list[tuple[str, list[str]]]:
             ["" if value is None else shown(value) for value in row.values],
         )
         for row in table.rows
+        if not (row.usual and len(table.rows) > MOST_ROWS)
     ]
+
+
+def left_out(table: TraceTable) -> list[str]:
+    """What has no row, because all of it is by default."""
+    usual = [visible(row.title) for row in table.rows if row.usual]
+    return usual if len(table.rows) > MOST_ROWS else []
 
 
 def as_lines(table: TraceTable, indent: str) -> list[str]:
@@ -33,4 +47,6 @@ def as_lines(table: TraceTable, indent: str) -> list[str]:
         padded = "  ".join(cell.ljust(size) for cell, size in zip(cells, widths, strict=True))
         lines.append(f"{indent}{title:<{width}}   {padded}".rstrip())
     lines.insert(1, f"{indent}{'─' * (width + 1 + sum(widths) + 2 * len(widths))}")
-    return lines
+    rest = left_out(table)
+    words = f"by default: {', '.join(rest)}" if rest else ""
+    return lines + [f"{indent}{line}" for line in wrap(words, WIDTH - len(indent))]
