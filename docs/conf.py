@@ -1,15 +1,12 @@
 """How `sphinx-build -b html docs docs/_build` makes the site of the documentation."""
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "extensions"))
-if find_spec("rulec") is None:
-    sys.path.insert(0, str(HERE.parent / "src"))
+sys.path[:0] = [str(HERE / "extensions"), str(HERE.parent / "src")]
 
 from rulec.report.pygments_lexer import RulecLexer  # noqa: E402
 from rulec.version import __version__  # noqa: E402

@@ -26,7 +26,9 @@ from rulec.trace import Trace, json_lines
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
-    from rulec.analysis.inheritance import Inheritance
+    from rulec.analysis.difference import Difference
+    from rulec.analysis.history import Inheritance
+    from rulec.analysis.matrix import Matrix
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.loader import Loaded
@@ -125,6 +127,43 @@ def run_examples(
     loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def compare_rulebooks(
+    first: str | Path,
+    second: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Difference:
+    """Compare the rules of two rulebooks, given by name or by their sources' paths.
+
+    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
+    as for ``rulec.analysis.difference.difference``. Raises RulecError.
+    """
+    from rulec.analysis.difference import difference, setting_pairs
+
+    (one, ours), (other, theirs) = (
+        read_with_inheritance(each, search_path, at) for each in (first, second)
+    )
+    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
+    return replace(found, settings=setting_pairs(ours, theirs))
+
+
+def compare_all(
+    rulebooks: Sequence[Rulebook],
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Matrix:
+    """Compare every two of some rulebooks, as for ``rulec.analysis.matrix.matrix``."""
+    from rulec.analysis.matrix import matrix
+
+    return matrix(rulebooks, patterns, step_s, tell)
 
 
 def read_with_inheritance(

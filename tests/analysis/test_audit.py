@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.audit import (
-    KINDS,
     Article,
     Audit,
     Counts,
@@ -18,6 +17,8 @@ from rulec.analysis.audit import (
     changes,
     compared,
 )
+from rulec.analysis.audit_kinds import KINDS
+from rulec.analysis.history import Inheritance, Member, RuleHistory, Step
 from rulec.analysis.inheritance import inheritance
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
@@ -76,10 +77,11 @@ def test_what_is_there(path):
     assert (one.rulebook, one.law, one.at) == ("village", "", "2024-06-01")
     # kept, changed, softer, own; two examples each of kept and changed, and one of own.
     assert one.counts == Counts(4, 3, 1, 3, 2, 1, 5, 3, 4, 3)
+    # The nearest law first, in each the smallest number.
     assert one.articles == (
-        Article("§ 2", ("softer",)),
-        Article("§ 9", ("kept",)),
-        Article("§ 11", ("changed",)),
+        Article("island", "§ 10a", ("changed",)),
+        Article("mainland", "§ 2", ("softer",)),
+        Article("mainland", "§ 9", ("kept",)),
     )
 
 
@@ -103,15 +105,15 @@ def test_a_rule_made_hard_again_is_not_softened(path):
 
 def test_articles_in_the_order_of_their_numbers():
     cites = ["Art. 11.6", "Art. 9", "Art. 11.10", "Art. 9", "", "9", "Annex"]
-    rules = [
-        Rule(str(number), "hard", (), Constant(True), cite) for number, cite in enumerate(cites)
-    ]
-    assert [(one.cite, one.rules) for one in articles_of(rules)] == [
-        ("Annex", ("6",)),
-        ("Art. 9", ("1", "3")),
-        ("Art. 11.6", ("0",)),
-        ("Art. 11.10", ("2",)),
-        ("9", ("5",)),
+    rules = [Rule(f"r{at}", "hard", (), Constant(True), cite) for at, cite in enumerate(cites)]
+    steps = [RuleHistory(one.name, (Step("b", "declared", None),)) for one in rules]
+    found = articles_of(rules, Inheritance((Member("b"),), tuple(steps), ()))
+    assert [(one.cite, one.rules) for one in found] == [
+        ("Annex", ("r6",)),
+        ("Art. 9", ("r1", "r3")),
+        ("Art. 11.6", ("r0",)),
+        ("Art. 11.10", ("r2",)),
+        ("9", ("r5",)),
     ]
 
 

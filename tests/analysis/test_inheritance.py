@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.inheritance import Setting, inheritance
+from rulec.analysis.history import Setting
+from rulec.analysis.inheritance import inheritance
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
 
@@ -84,7 +85,9 @@ def test_every_rule(village, name, expected):
 def test_the_rule_before_and_after(village):
     (changed,) = [one for one in village.rules if one.name == "changed"]
     assert changed.rule.says.value == "Be slow, please."
-    assert changed.rule.cite.value == "§ 11"
+    assert changed.rule.cite.value == "§ 10a"
+    # The village has changed something else.
+    assert changed.cited_by == "island"
     assert changed.before("village").says.value == "Be slow."
     (gone,) = [one for one in village.rules if one.name == "taken_out"]
     assert gone.rule is None
@@ -123,6 +126,33 @@ def test_a_definition_with_parameters():
     file, _ = parse(decode("r.rules", text.encode()))
     (one,) = inheritance([file], "2024-01-01").provisions
     assert (one.kind, one.head) == ("definition", "d(v: t, side)")
+
+
+def test_what_rules_speak_of(village):
+    # `changed` speaks of `slow`, which speaks of `pace`.
+    assert {one.name: one.used for one in village.provisions} == {
+        "strict": False,
+        "pace": True,
+        "slow": True,
+        "never_used": False,
+        "fastest": False,
+    }
+
+
+def test_what_only_a_dropped_rule_speaks_of_is_not_used():
+    texts = (
+        "rulebook a\nsignal p\noption o = on\nhard rule r { require o implies p }",
+        'rulebook b\nextends a\ndrop rule r because "no"',
+    )
+    files = [parse(decode("x", text.encode()))[0] for text in texts]
+    assert [inheritance(files[:n], "2024-01-01").provisions[0].used for n in (1, 2)] == [
+        True,
+        False,
+    ]
+
+
+def test_the_comment_beside_a_value(village):
+    assert [one.note for one in settings(village, "pace")] == ["What signs said.", "", ""]
 
 
 deeds = st.lists(st.sampled_from(["keep", "override", "soften", "drop", "silent"]), max_size=6)

@@ -119,7 +119,7 @@ def test_a_row_of_a_table_stands_on_one_line():
 def test_the_documented_parts_are_there():
     data = json.loads(TEXT)
     assert data["format"] == "rulec compiled rulebook"
-    assert data["version"] == 2
+    assert data["version"] == 3
     assert data["spot"].startswith("2.")
     assert [rule["strength"] for rule in data["rules"]] == ["hard", "soft", "hard"]
     assert data["rules"][0]["cite"] == "Art. A"
@@ -160,8 +160,8 @@ def test_numbers_are_written_exactly():
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
         (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
-        (b'{"format": "rulec compiled rulebook", "version": 3}', "of version 3"),
-        (b'{"format": "rulec compiled rulebook", "version": 2}', "damaged"),
+        (b'{"format": "rulec compiled rulebook", "version": 4}', "of version 4"),
+        (b'{"format": "rulec compiled rulebook", "version": 3}', "damaged"),
     ],
 )
 def test_what_is_no_compiled_rulebook_is_refused(data, words):

@@ -50,7 +50,7 @@ clean
   provisions of the law            1
   words of the vocabulary in use   1 of 1
 
-provisions of the law, and the rules that cite them
+provisions cited in clean, and the rules they are in
   § 1  quiet
 """
     )
@@ -92,7 +92,7 @@ def test_markdown_is_a_table(folder, capsys):
     out = run(capsys, "odd.rules", "--output-format", "markdown", "--at", "2024-01-01")[1]
     assert out.startswith("# Audit of `clean`\n")
     assert "\n| secondary | quiet |  |\n" in out
-    assert "\n| a\\|b \\*c\\* | `quiet` |\n" in out
+    assert "\n| a\\|b \\*c\\* | `clean` | `quiet` |\n" in out
 
 
 def test_json(folder, capsys):
@@ -100,7 +100,7 @@ def test_json(folder, capsys):
     clean, other = json.loads(out)["audits"]
     assert clean["findings"] == []
     assert clean["changes"] is None
-    assert clean["articles"] == [{"cite": "§ 1", "rules": ["quiet"]}]
+    assert clean["articles"] == [{"book": "clean", "cite": "§ 1", "rules": ["quiet"]}]
     assert {"kind": "dropped", "name": "taken_out", "note": "there are no sirens"} in (
         other["findings"]
     )
@@ -151,6 +151,15 @@ def test_one_bad_rulebook_does_not_hide_the_others(folder, capsys):
     assert status == 2
     assert out.startswith("clean\n")
     assert "R0201" in err or "R0202" in err
+
+
+def test_the_treaty_and_a_country(capsys):
+    fatal = [word for kind in ("uncited", "untested", "failing") for word in ("--fail-on", kind)]
+    status, out, err = run(capsys, "vienna", "de", "--examples", *fatal)
+    assert (status, err) == (0, "")
+    assert "\nprovisions cited in de, and the rules they are in\n" in out
+    # The StVO says nothing of its own on it.
+    assert "\n  Art. 11(10) " in out.split("\nde: ")[1].split("\nprovisions cited in vienna")[1]
 
 
 def test_a_compiled_rulebook_is_not_enough(folder, capsys):

@@ -49,10 +49,10 @@ def test_the_beginning(page):
 
 
 def test_a_rule_that_overrides(page):
-    rule = section(page, "### changed (§ 11)")
+    rule = section(page, "### changed (§ 10a)")
     assert rule.startswith("\n> Be slow.\n\n")
     for line in (
-        "- **Provision:** § 11",
+        "- **Provision:** § 10a",
         "- **Kind of rule:** hard, it must never be violated",
         "- **Certainty:** ◐ taken from a secondary source",
         "- **Read in:** a book",
@@ -61,24 +61,27 @@ def test_a_rule_that_overrides(page):
         "The states are 1 s apart.",
         "Changed: cite and require.",
         '-cite "§ 10"',
-        '+cite "§ 11"',
+        '+cite "§ 10a"',
         "-require always slow",
         "+require always[<= 3 s] slow",
     ):
         assert f"\n{line}\n" in rule
     assert "```rulec\nrequire always[<= 3 s] slow\n```" in rule
-    assert "```rulec\nalways[<= 3 s] speed < 20 km/h\n```" in rule
-    assert "says" not in section(page, "### changed (§ 11)").split("```diff")[1]
+    assert "```rulec\nrequire always[<= 3 s] speed < 20 km/h\n```" in rule
+    assert "says" not in section(page, "### changed (§ 10a)").split("```diff")[1]
 
 
 def test_its_examples(page):
-    rule = section(page, "### changed (§ 11)")
-    assert "**Example 1: allowed.**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 20 |" in rule
-    assert "**Example 2: forbidden.**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 40 |" in rule
+    rule = section(page, "### changed (§ 10a)")
+    assert "**Example 1: allowed ✔**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 20 |" in rule
+    assert (
+        "**Example 2: forbidden ✘**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 40 |" in rule
+    )
 
 
 def test_inherited_and_softened(page):
     kept = section(page, "### kept (§ 9)")
+    assert "\n- **Provision:** § 9 of: Mainland Act\n" in kept
     assert "\n- **Origin:** inherited from mainland\n" in kept
     assert "\n- **Certainty:** ✔ verified in the law itself\n" in kept
     # As written and as meant it is the same.
@@ -89,12 +92,26 @@ def test_inherited_and_softened(page):
     assert "#### Examples\n\nNone.\n" in softer
 
 
+def test_exceptions_are_said_one_by_one(capsys):
+    page = written(capsys, "de", "--format", "markdown")
+    (passing,) = re.findall(r"^### near\\_side\\_passing.*?(?=^### )", page, re.M | re.S)
+    written_out = passing.split("With definitions, options and parameters put in:")[1]
+    assert "\nrequire never (behind(v) then beside(v) and right_of(v) then in_front_of(v))\n" in (
+        written_out
+    )
+    assert "\nunless turning_far(v) or ego_cycle and stopped(v) throughout\n" in written_out
+
+
 def test_what_stands_behind_the_rules(page):
     values = section(page, "## Options and parameters")
-    assert "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |\n" in values
-    assert "\n| `pace` | parameter | `20 km/h` | ✔ | always | `island` |\n" in values
+    assert "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |  |\n" in values
+    assert "\n| `pace` | parameter | `20 km/h` | ✔ | always | `island` |  |\n" in values
+    assert "| until 2021-12-31 | `mainland` | What signs said. |\n" in values
+    # No rule speaks of it.
+    assert "strict" not in values
     definitions = section(page, "## Definitions")
     assert "`slow` is defined by `island`. It was in `mainland` `speed <= pace`.\n" in definitions
+    assert "never_used" not in definitions
     assert "```rulec\ndefine slow = speed < pace\n```" in definitions
     out = section(page, "## What this rulebook leaves out")
     assert "\n| `taken_out` | dropped by `island` | there are no sirens |\n" in out
@@ -107,7 +124,8 @@ def test_what_stands_behind_the_rules(page):
 
 def test_the_index_leads_to_the_rules(page):
     index = section(page, "## Index of provisions")
-    assert index.index("§ 2") < index.index("§ 9") < index.index("§ 11")
+    places = [index.index(one) for one in ("Island Act:", "§ 10a", "Mainland Act:", "§ 2", "§ 9")]
+    assert places == sorted(places)
     assert "| § 9 | [`kept`](#kept--9) |" in index
     assert "\n  - [kept (§ 9)](#kept--9)\n" in section(page, "## Contents")
 
@@ -129,7 +147,7 @@ def test_words_with_their_descriptions(capsys):
     assert described[0].strip()
 
 
-@pytest.mark.parametrize("book", ["island.rules", "village.rules", "esterle2019"])
+@pytest.mark.parametrize("book", ["island.rules", "village.rules", "esterle2019", "vienna", "de"])
 def test_every_link_of_the_page_leads_somewhere(folder, book, capsys):
     page = written(capsys, book)
     assert page.startswith("<!DOCTYPE html>\n")
@@ -168,8 +186,8 @@ def test_it_is_the_same_every_time(folder, capsys):
 
 
 def test_a_rulebook_without_rules(folder, capsys):
-    (folder / "one.rules").write_text("rulebook one signal p hard rule r { require p }\n")
-    (folder / "empty.rules").write_text('rulebook empty extends one drop rule r because ""\n')
+    (folder / "single.rules").write_text("rulebook single signal p hard rule r { require p }\n")
+    (folder / "empty.rules").write_text('rulebook empty\nextends single\ndrop rule r because ""\n')
     page = written(capsys, "empty.rules", "--format", "markdown")
     assert page.startswith("# empty\n")
     assert section(page, "## Rules") == "\nNone.\n\n"

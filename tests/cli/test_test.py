@@ -209,3 +209,14 @@ def test_warnings_are_said_aside(odd, capsys, tmp_path):
     status, out, err = run(capsys, odd)
     assert (status, out) == (0, "0 examples: 0 passed, 0 failed\n")
     assert "warning[R0207]" in err
+
+
+def test_a_rule_that_its_examples_do_not_exercise_gets_a_warning(tmp_path, capsys):
+    source = "rulebook a\nsignal p\nhard rule r { require p accept { p } }\n"
+    path = tmp_path / "a.rules"
+    path.write_text(source)
+    status, out, err = run(capsys, str(path), "--output-format", "json")
+    assert (status, json.loads(out)["passed"]) == (0, 1)
+    assert err.startswith("warning[R0408]: no example breaks rule `r`\n")
+    path.write_text(source.replace("accept { p }", "accept { p } reject { not p }"))
+    assert run(capsys, str(path))[::2] == (0, "")

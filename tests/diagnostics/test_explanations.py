@@ -12,9 +12,10 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.codes import EXPLANATIONS, STAGES
 from rulec.partition import navigation_graph
 from rulec.rulebook.loader import diagnose, parse_rulebook
+from rulec.runtime.exercise import unexercised
 from rulec.runtime.verify import judge
 from rulec.scenario.read import read_scenario
-from rulec.workflow import compile_rulebook, find_maneuvers, read_traces
+from rulec.workflow import compile_rulebook, find_maneuvers, read_traces, run_examples
 
 CODE = re.compile(r"\[(R\d{4})\]")
 
@@ -29,6 +30,14 @@ def compiled(text, folder):
     warnings = []
     compile_rulebook(path, warn=warnings.extend)
     return warnings
+
+
+def run_on_examples(text, folder):
+    path = folder / "example.rules"
+    path.write_text(text, encoding="utf-8")
+    run = run_examples(path)
+    assert all(one.passed for one in run.outcomes)
+    return [*run.warnings, *unexercised(run)]
 
 
 def judged_on_a_graph(text, folder):
@@ -60,6 +69,7 @@ NOTHING = RulecError(())
 RUN = {
     "rules": checked,
     "compiled": compiled,
+    "examples": run_on_examples,
     "maneuvers": judged_on_a_graph,
     "trace": judged,
     "scenario": cut_into_cells,

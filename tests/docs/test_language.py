@@ -37,12 +37,6 @@ def test_the_two_spellings_mean_the_same():
     assert words.formula == symbols.formula
 
 
-@pytest.mark.parametrize("text", blocks("python"))
-def test_python(text, capsys):
-    exec(compile(text, "docs/language.md", "exec"), {})
-    assert capsys.readouterr().out == "['R1', 'R2', 'R3']\n"
-
-
 def test_the_words_that_cannot_be_names_are_all_listed():
     quoted = "".join(line[2:] for line in PAGE.splitlines(keepends=True) if line.startswith("> "))
     assert set(quoted.replace("`", " ").split()) == RESERVED

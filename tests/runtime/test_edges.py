@@ -9,7 +9,7 @@ from hypothesis import given
 from machines import READS, machines
 from words import formulas
 
-from rulec.automata.machine import Machine
+from rulec.automata.machine import IMPOSSIBLE, Machine
 from rulec.runtime.edges import edges, literals
 
 
@@ -25,6 +25,10 @@ def letters_of(cubes, sizes):
     return set(found)
 
 
+def possible(machine):
+    return {letter for letter, symbol in enumerate(machine.letters) if symbol != IMPOSSIBLE}
+
+
 def check(machine):
     sizes = [read.size for read in machine.reads]
     for state in range(len(machine.following)):
@@ -33,10 +37,11 @@ def check(machine):
         seen = {}
         for edge in edges(machine):
             if edge.source == state:
-                for letter in letters_of(edge.cubes, sizes):
+                for letter in letters_of(edge.cubes, sizes) & possible(machine):
                     assert letter not in seen
                     seen[letter] = edge
-        for letter, symbol in enumerate(machine.letters):
+        for letter in possible(machine):
+            symbol = machine.letters[letter]
             edge = seen[letter]
             assert edge.target == machine.following[state][symbol]
             assert edge.accepted == machine.accepting[state][symbol]
@@ -62,7 +67,18 @@ def test_no_cube_is_needless(machine):
         whole = letters_of(edge.cubes, sizes)
         for left_out in range(len(edge.cubes)):
             fewer = edge.cubes[:left_out] + edge.cubes[left_out + 1 :]
-            assert letters_of(fewer, sizes) < whole
+            met = possible(machine)
+            assert letters_of(fewer, sizes) & met < whole & met
+
+
+def test_letters_that_no_state_has_make_conditions_shorter():
+    """p and q exclude each other: where p holds, no need to say that q does not."""
+    reads = (READS[0], READS[3])
+    machine = Machine(
+        reads, (0, 1, 0, IMPOSSIBLE), ((0, 1), (1, 1)), ((True, False), (False, False)), 1, None
+    )
+    cubes = {edge.target: edge.cubes for edge in edges(machine)}
+    assert cubes[1] == ((frozenset({1}), frozenset({0, 1})),)
 
 
 def test_what_is_easily_said_is_said_in_one_cube():

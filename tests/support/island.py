@@ -8,9 +8,12 @@ signal horn, siren, unused_word default false
 quantity speed in km/h default 0
 
 option strict = off
+# What signs said.
 param pace : speed = 30 km/h in force until 2021-12-31
 param pace : speed = 25 km/h in force from 2022-01-01
 define slow = speed <= pace
+define never_used = speed > fastest
+param fastest = 100 km/h
 
 hard rule kept {
   cite "§ 9"
@@ -46,7 +49,7 @@ set pace = 20 km/h
 redefine slow = speed < pace
 
 override rule changed {
-  cite "§ 11"
+  cite "§ 10a"
   certainty secondary
   require always[<= 3 s] slow
 }

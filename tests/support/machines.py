@@ -5,7 +5,7 @@ from math import prod
 
 from hypothesis import strategies as st
 
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
 from rulec.logic.formula import Quantity
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
@@ -42,7 +42,8 @@ def machines(draw):
     total = prod(read.size for read in reads)
     n_classes = draw(st.integers(1, 4))
     n_states = draw(st.integers(1, 3))
-    letters = draw(st.lists(st.integers(0, n_classes - 1), min_size=total, max_size=total))
+    lowest = draw(st.sampled_from([0, 0, IMPOSSIBLE]))
+    letters = draw(st.lists(st.integers(lowest, n_classes - 1), min_size=total, max_size=total))
     row = st.lists(st.integers(0, n_states - 1), min_size=n_classes, max_size=n_classes)
     verdicts = st.lists(st.booleans(), min_size=n_classes, max_size=n_classes)
     return Machine(

@@ -4,22 +4,25 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import tomllib
-
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
+from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.model import Rule
+from rulec.toml import parsed_toml
 
 NO_LAW = {"vocabulary", "schemas", "esterle2019"}
 
 FOLDER = rulebooks_folder()
 NATIONAL = sorted(
-    path.name for path in FOLDER.iterdir() if path.is_dir() and path.name not in NO_LAW
+    path.stem
+    for path in FOLDER.glob("*/*.rules")
+    if path.stem == path.parent.name and path.stem not in NO_LAW
 )
-CASES: list[dict[str, Any]] = tomllib.loads(
-    (Path(__file__).parents[1] / "law" / "cases.toml").read_text(encoding="utf-8")
+_CASES = Path(__file__).parents[1] / "law" / "cases.toml"
+CASES: list[dict[str, Any]] = parsed_toml(
+    Source(_CASES.name, _CASES.read_text(encoding="utf-8")), "R0704", ""
 )["case"]
 
 

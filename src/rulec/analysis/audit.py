@@ -9,31 +9,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
 
-from rulec.analysis.inheritance import HARDNESS, Inheritance, ProvisionHistory
+from rulec.analysis.audit_kinds import KINDS
+from rulec.analysis.history import Inheritance, ProvisionHistory
+from rulec.analysis.inheritance import HARDNESS
 from rulec.analysis.words import words_used
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.provisions import in_force
 from rulec.syntax import tree
 from rulec.syntax.printer import print_in_force
-
-KINDS: Final = {
-    "uncited": "no provision of the law is cited",
-    "untested": "it lacks an example that it accepts, or one that it rejects",
-    "failing": "an example comes out otherwise than it says",
-    "unverified": "written from memory",
-    "secondary": "taken from a secondary source, not from the law itself",
-    "unstated": "nothing is said about its certainty",
-    "soft-only": "an article of which all rules are soft",
-    "softened": "an inherited hard rule that was made soft",
-    "dropped": "an inherited rule that was taken out",
-    "silent": "what the rulebook says nothing about",
-    "dated": "in force for a time only",
-    "out-of-force": "not in force on the day in question, and left out",
-    "unused": "a word that no rule speaks of",
-}
-"""Kind of finding -> what it means."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +31,12 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Article:
-    """A provision as rules cite it, and the rules that do."""
+    """A provision as rules cite it, and the rules that do.
 
+    ``book`` is the rulebook whose law it is in: that of the chain which cites it.
+    """
+
+    book: str
     cite: str
     rules: tuple[str, ...]
 
@@ -101,7 +89,7 @@ def audit(
         inherited: what became of everything in its chain, for the same day.
         failing: the examples that fail, if they were run: rule and label or number.
     """
-    articles = articles_of(rulebook.rules)
+    articles = articles_of(rulebook.rules, inherited)
     used = words_used(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
     findings = [
@@ -149,14 +137,19 @@ def compared(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, Chang
     }
 
 
-def articles_of(rules: Sequence[Rule]) -> tuple[Article, ...]:
-    """The provisions that rules cite, numbers in them in the order of numbers."""
-    found: dict[str, list[str]] = {}
+def articles_of(rules: Sequence[Rule], inherited: Inheritance) -> tuple[Article, ...]:
+    """The provisions that rules cite: the rulebook's own law first, then that of each base.
+
+    Numbers in them are in the order of numbers.
+    """
+    citing = {one.name: one.cited_by for one in inherited.rules}
+    nearest = [one.name for one in reversed(inherited.books)]
+    found: dict[tuple[str, str], list[str]] = {}
     for rule in rules:
         if rule.cite:
-            found.setdefault(rule.cite, []).append(rule.name)
-    ordered = sorted(found, key=lambda cite: (_natural(cite), cite))
-    return tuple(Article(cite, tuple(found[cite])) for cite in ordered)
+            found.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
+    ordered = sorted(found, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
+    return tuple(Article(*one, tuple(found[one])) for one in ordered)
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:

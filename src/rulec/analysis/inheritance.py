@@ -9,104 +9,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
-from typing import Literal
 
+from rulec.analysis.history import (
+    Inheritance,
+    Member,
+    ProvisionHistory,
+    RuleHistory,
+    Setting,
+    Step,
+)
+from rulec.rulebook.descriptions import description
 from rulec.rulebook.overlay import merged
 from rulec.rulebook.provisions import in_force
+from rulec.rulebook.uses import names_used
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
-
-Deed = Literal["declared", "overridden", "softened", "dropped", "silent"]
-
-ProvisionKind = Literal["option", "parameter", "definition"]
-
-
-@dataclass(frozen=True, slots=True)
-class Member:
-    """A rulebook of a family: what it is, the base name of its file, and what it builds upon."""
-
-    name: str
-    title: str = ""
-    law: str = ""
-    as_of: str = ""
-    file: str = ""
-    extends: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """What one book did with a rule.
-
-    ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
-    what the rule was from then on, None where it is gone.
-    """
-
-    book: str
-    deed: Deed
-    rule: tree.RuleItem | None
-    clauses: tuple[str, ...] = ()
-    because: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class RuleHistory:
-    """A rule, or a topic that a book is silent on, and what was done with it in order."""
-
-    name: str
-    steps: tuple[Step, ...]
-
-    @property
-    def last(self) -> Step:
-        """What was done with it last."""
-        return self.steps[-1]
-
-    @property
-    def rule(self) -> tree.RuleItem | None:
-        """The rule as it is in the end; None if it is gone."""
-        return self.last.rule
-
-    def before(self, book: str) -> tree.RuleItem | None:
-        """The rule that a book has inherited; None if it has inherited none."""
-        found = [step for step in self.steps if step.book != book]
-        return found[-1].rule if found else None
-
-
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts."""
-
-    book: str
-    text: str
-    since: str = ""
-    until: str = ""
-    current: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class ProvisionHistory:
-    """An option, a parameter or a definition with all that it was given, in order.
-
-    ``head`` is how it is used: its name, with a definition's parameters.
-    """
-
-    kind: ProvisionKind
-    name: str
-    head: str
-    settings: tuple[Setting, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Inheritance:
-    """A chain of rulebooks, the most general first, and what became of everything in it."""
-
-    books: tuple[Member, ...]
-    rules: tuple[RuleHistory, ...]
-    provisions: tuple[ProvisionHistory, ...]
-
-    @property
-    def book(self) -> str:
-        """The name of the rulebook at the end of the chain."""
-        return self.books[-1].name
 
 
 def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
@@ -121,11 +38,26 @@ def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
         book = member_of(file).name
         for item in file.items:
             told.take(item, book, level)
+    used = _used(told)
     return Inheritance(
         tuple(map(member_of, chain)),
         tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
-        tuple(_provision(name, one, at) for name, one in told.provisions.items()),
+        tuple(
+            replace(_provision(name, one, at), used=name in used)
+            for name, one in told.provisions.items()
+        ),
     )
+
+
+def _used(told: _Tale) -> set[str]:
+    """The provisions that the rules speak of, those included that provisions speak of in turn."""
+    found: set[str] = set()
+    open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
+    while open_:
+        names = set(names_used(open_.pop())) & told.provisions.keys()
+        open_ += [item for name in names - found for item, _, _ in told.provisions[name]]
+        found |= names
+    return found
 
 
 def member_of(file: tree.File) -> Member:
@@ -220,7 +152,7 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
     first = given[0][0]
     current = _current(given, at)
     settings = tuple(
-        Setting(book, _text(item), *_dates(item), current=index == current)
+        Setting(book, _text(item), *_dates(item), index == current, description(item.span))
         for index, (item, book, _) in enumerate(given)
     )
     match first:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from rulec.automata.machine import Machine
+from rulec.diagnostics import Place
 from rulec.logic.formula import Formula
 from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
 from rulec.vocabulary import Vocabulary
@@ -36,6 +37,15 @@ class CompiledRule:
 
 
 @dataclass(frozen=True, slots=True)
+class CompiledFact:
+    """What holds in every state, and where it is written."""
+
+    variables: tuple[Variable, ...]
+    formula: Formula
+    place: Place | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class CompiledRulebook:
     """The rules of a rulebook as machines, with the vocabulary that their traces are written in.
 
@@ -56,3 +66,4 @@ class CompiledRulebook:
     priorities: frozenset[tuple[str, str]] = frozenset()
     extends: tuple[str, ...] = ()
     at: str = ""
+    facts: tuple[CompiledFact, ...] = ()

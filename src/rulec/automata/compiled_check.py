@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
 from fractions import Fraction
 from itertools import chain
 
 from rulec.automata import compiled_schema as schema
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
 from rulec.automata.compiled_formula import problem_in
 from rulec.automata.letters import reads_of
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold, trap
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold, trap
+from rulec.diagnostics import Place
 from rulec.logic.data import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
 from rulec.logic.printing import in_words
-from rulec.logic.timing import in_steps, speaks_of_seconds
+from rulec.logic.timing import BOOLEAN, in_steps, operations_of, speaks_of_seconds
 from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
@@ -49,6 +50,7 @@ def checked(read: schema.File) -> CompiledRulebook:
         _priorities(read),
         tuple(read.extends),
         read.at,
+        tuple(_fact(fact, vocabulary) for fact in read.facts),
     )
 
 
@@ -96,14 +98,32 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
+def _fact(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledFact:
+    variables = _variables(fact.variables, vocabulary, "a fact")
+    formula = from_data(fact.tree)
+    problem = problem_in(formula, vocabulary, {one.name for one in variables})
+    _require(problem is None, f"a fact {problem}")
+    timeless = all(one.operator in BOOLEAN for one in operations_of(formula))
+    _require(timeless, "a fact speaks of more than one state")
+    _require(in_words(formula) == fact.formula, "a fact has two different formulas")
+    return CompiledFact(variables, formula, Place(fact.file, fact.line) if fact.file else None)
+
+
+def _variables(
+    read: Sequence[tuple[str, str]], vocabulary: Vocabulary, of: str
+) -> tuple[Variable, ...]:
+    variables = tuple(Variable(name, type_name) for name, type_name in read)
+    names = {variable.name for variable in variables}
+    _require(len(names) == len(variables), f"{of} names a variable twice")
+    for variable in variables:
+        _require(variable.type in vocabulary.types, f"{of} is about an unknown type")
+    return variables
+
+
 def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
-    variables = tuple(Variable(name, type_name) for name, type_name in rule.variables)
-    types = {variable.name: variable.type for variable in variables}
-    _require(len(types) == len(variables), f"rule `{rule.name}` names a variable twice")
-    for type_name in types.values():
-        _require(type_name in vocabulary.types, f"rule `{rule.name}` is about an unknown type")
+    variables = _variables(rule.variables, vocabulary, f"rule `{rule.name}`")
     formula = from_data(rule.tree)
-    problem = problem_in(formula, vocabulary, types.keys())
+    problem = problem_in(formula, vocabulary, {one.name for one in variables})
     _require(problem is None, f"rule `{rule.name}` {problem}")
     _require(in_words(formula) == rule.formula, f"rule `{rule.name}` has two different formulas")
     machine = _machine(rule.machine, rule.name)
@@ -154,7 +174,7 @@ def _machine(read: schema.Machine, rule: str) -> Machine:
     fits: list[bool] = [
         n_states > 0,
         len(read.letters) == n_letters,
-        all(0 <= letter < n_classes for letter in read.letters),
+        all(IMPOSSIBLE <= letter < n_classes for letter in read.letters),
         all(len(row) == n_classes for row in read.following),
         all(len(row) == n_classes for row in read.accepting),
         len(read.accepting) == n_states,

@@ -1,4 +1,4 @@
-"""The compiled rulebook as a file: JSON, version 2, described in docs/compiled.md."""
+"""The compiled rulebook as a file: JSON, version 3, described in docs/compiled.md."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
 from rulec.automata.compiled_check import checked
 from rulec.automata.compiled_schema import File, Header
 from rulec.automata.machine import NumberRead, Read
@@ -23,7 +23,7 @@ from rulec.logic.data import terms_to_data, to_data
 from rulec.logic.printing import in_words
 
 FORMAT = "rulec compiled rulebook"
-VERSION = 2
+VERSION = 3
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
@@ -52,6 +52,7 @@ def to_json(rulebook: CompiledRulebook) -> str:
                 for item in vocabulary.declarations.values()
             ],
         },
+        "facts": [_fact(fact) for fact in rulebook.facts],
         "rules": [_rule(rule) for rule in rulebook.rules],
     }
     text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
@@ -64,6 +65,18 @@ _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
 
 def _on_one_line(found: re.Match[str]) -> str:
     return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
+
+
+def _fact(fact: CompiledFact) -> dict[str, Any]:
+    place = fact.place
+    return {
+        "variables": [(variable.name, variable.type) for variable in fact.variables],
+        "formula": in_words(fact.formula),
+        "tree": to_data(fact.formula),
+        # Where it is written on this machine is no business of others.
+        "file": "" if place is None else Path(place.file).name,
+        "line": None if place is None else place.line,
+    }
 
 
 def _rule(rule: CompiledRule) -> dict[str, Any]:

@@ -1,8 +1,8 @@
-"""The fields of a compiled rulebook's file, version 2, as docs/compiled.md describes them."""
+"""The fields of a compiled rulebook's file, version 3, as docs/compiled.md describes them."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -102,6 +102,16 @@ class Rule(msgspec.Struct, forbid_unknown_fields=True):
     hoa: str
 
 
+class Fact(msgspec.Struct, forbid_unknown_fields=True):
+    """What holds in every state, and where it is written: file and line, from 1."""
+
+    variables: list[tuple[str, str]]
+    formula: str
+    tree: Any
+    file: str
+    line: Annotated[int, msgspec.Meta(ge=1)] | None
+
+
 class Header(msgspec.Struct):
     """What is looked at first: is it such a file, and of which version?"""
 
@@ -127,4 +137,5 @@ class File(msgspec.Struct, forbid_unknown_fields=True):
     extends: list[str]
     at: str
     vocabulary: Vocabulary
+    facts: list[Fact]
     rules: list[Rule]

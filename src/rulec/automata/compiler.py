@@ -13,13 +13,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.automata.letters import reads_of
+from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.compiler_messages import no_machine, no_multiple, no_spot
+from rulec.automata.facts import fact_groups, fact_instances
+from rulec.automata.letters import propositions_of, reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import time_in_words
-from rulec.logic.timing import NotAMultipleError, in_steps, operations_of, speaks_of_seconds
+from rulec.logic.timing import NotAMultipleError, in_steps, speaks_of_seconds
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.version import __version__
 
@@ -51,7 +53,7 @@ def compile_rulebook(
     Raises:
         RulecError: R0401 for each rule whose automaton is too large, R0402 for each whose
             automaton failed its check, R0403 if Spot is not installed, R0407 for each rule with a
-            bound that is not a multiple of the step.
+            bound that is not a multiple of the step, R0409 for facts that contradict each other.
     """
     compiled: list[CompiledRule] = []
     problems: list[Diagnostic] = []
@@ -61,7 +63,7 @@ def compile_rulebook(
         try:
             waiting.append((rule, step, _job(rulebook, rule, step, cpu_limit_s)))
         except NotAMultipleError as error:
-            problems.append(_no_multiple(rule, error))
+            problems.append(no_multiple(rule, error))
     spot = ""
     while waiting or not spot:
         # A worker lives until it is done or a rule has killed it; the next one takes the rest.
@@ -72,11 +74,12 @@ def compile_rulebook(
                 if isinstance(answer, Done):
                     compiled.append(_compiled(rule, step, answer))
                 else:
-                    problems.append(_problem(rule, answer, cpu_limit_s))
+                    problems.append(no_machine(rule, answer, cpu_limit_s))
                 if answer is None:
                     break
     if problems:
-        raise RulecError(problems)
+        # Facts that contradict each other do so in every rule.
+        raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         rulebook.name,
         rulebook.vocabulary,
@@ -88,6 +91,9 @@ def compile_rulebook(
         rulec=__version__,
         spot=spot,
         semantics=rulebook.semantics,
+        facts=tuple(
+            CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
+        ),
         levels=rulebook.levels,
         priorities=rulebook.priorities,
         extends=rulebook.extends,
@@ -113,7 +119,7 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
         except EOFError:
             ready = Ready(None, f"its process ended with status {process.wait()}")
         if ready.spot is None:
-            raise RulecError(_no_spot(ready.problem))
+            raise RulecError(no_spot(ready.problem))
         yield process, ready.spot
     finally:
         process.kill()
@@ -150,8 +156,11 @@ def _job(rulebook: Rulebook, rule: Rule, step: Fraction | None, cpu_limit_s: int
     ]
     if step is not None:
         remarks.append(f"one letter is {time_in_words(step, 's')}")
-    reads = reads_of(formula, rulebook.vocabulary)
-    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, cpu_limit_s)
+    vocabulary = rulebook.vocabulary
+    reads = reads_of(formula, vocabulary)
+    instances = fact_instances(rule.variables, rulebook.facts, vocabulary)
+    groups = fact_groups(propositions_of(formula), instances, vocabulary)
+    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, groups, cpu_limit_s)
 
 
 def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
@@ -170,59 +179,4 @@ def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
         source=rule.source,
         certainty=rule.certainty,
         book=rule.book,
-    )
-
-
-def _no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
-    below = error.offending // error.step_s * error.step_s
-    nearest = [time_in_words(each, "s") for each in (below, below + error.step_s) if each]
-    return Diagnostic(
-        "R0407",
-        f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
-        f"{time_in_words(error.step_s, 's')}",
-        at(rule.span),
-        help=f"the nearest multiples are {' and '.join(nearest)}"
-        if len(nearest) > 1
-        else f"the nearest multiple is {nearest[0]}",
-        notes=(f"rule `{rule.name}` would have to know what happens between two states",),
-    )
-
-
-def _problem(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    place = at(rule.span)
-    if failed is not None and failed.why == "bug":
-        raise RuntimeError(f"while compiling rule {rule.name}:\n{failed.traceback}")
-    if failed is not None and failed.why == "check":
-        return Diagnostic(
-            "R0402",
-            f"the automaton of rule `{rule.name}` is not equivalent to its formula",
-            place,
-            help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
-        )
-    why = (
-        "it reads too many signals, enumerations and numbers at once"
-        if failed is not None and failed.why == "letters"
-        else f"it takes more than {cpu_limit_s} s or 2 GiB to build"
-    )
-    return Diagnostic(
-        "R0401",
-        f"the automaton of rule `{rule.name}` would be too large: {why}",
-        place,
-        help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
-        "rules beside each other do not" + _bounds_help(rule),
-    )
-
-
-def _bounds_help(rule: Rule) -> str:
-    # Seconds or steps, it is the number of them that makes it large.
-    has_bounds = any(one.bound is not None for one in operations_of(rule.formula))
-    return "; each bound takes as many states as it has steps" if has_bounds else ""
-
-
-def _no_spot(problem: str) -> Diagnostic:
-    return Diagnostic(
-        "R0403",
-        f"Spot, which turns rules into automata, cannot be loaded: {problem}",
-        help="`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
-        "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot",
     )

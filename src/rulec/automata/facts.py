@@ -7,11 +7,32 @@ another matter in every state, so traces alone can tell (``rulec.runtime.facts``
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.letters import AND, joined, knowledge, propositions_of, reads_of
-from rulec.logic.formula import Comparison, Constant, Count, Formula, Proposition, atoms_of
+from rulec.automata.letters import (
+    AND,
+    OR,
+    count_letters,
+    joined,
+    knowledge,
+    letters_with,
+    propositions_of,
+    reads_of,
+)
+from rulec.automata.machine import NumberRead, Read
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Proposition,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
 from rulec.logic.renaming import renamed
 from rulec.rulebook.model import Fact, Variable
 from rulec.vocabulary import Vocabulary
@@ -65,27 +86,47 @@ def known_of(
     left out, even if it cannot hold.
     """
     own = {_subject(one) for one in propositions}
-    together = [one for group in linked(instances) if own & _subjects(group) for one in group]
-    return _known(propositions, [one.formula for one in together], vocabulary)
+    facts = [one.formula for group in linked(instances) if own & _subjects(group) for one in group]
+    return joined(AND, [_natural([*propositions, *facts], vocabulary), *facts])
 
 
-def known_together(
-    propositions: Iterable[Proposition], group: Sequence[FactInstance], vocabulary: Vocabulary
-) -> Formula:
-    """All that is known of what these facts speak of, in these propositions and in their own."""
-    about = _subjects(group)
-    touched = [one for one in propositions if _subject(one) in about]
-    return _known(touched, [one.formula for one in group], vocabulary)
+@dataclass(frozen=True, slots=True)
+class FactGroup:
+    """Instances of facts that have to do with each other.
+
+    ``natural`` is what is known, besides, of all that they speak of, in their propositions and
+    those of a rule.
+    """
+
+    natural: Formula
+    instances: tuple[FactInstance, ...]
+
+    @property
+    def known(self) -> Formula:
+        """All of it."""
+        return joined(AND, [self.natural, *(one.formula for one in self.instances)])
 
 
-def _known(
-    propositions: Sequence[Proposition], facts: Sequence[Formula], vocabulary: Vocabulary
-) -> Formula:
-    if not (propositions or facts):
+def fact_groups(
+    propositions: Iterable[Proposition], instances: Iterable[FactInstance], vocabulary: Vocabulary
+) -> tuple[FactGroup, ...]:
+    """The facts in groups that do not bear on each other, for a rule of these propositions."""
+    every = tuple(propositions)
+    groups = []
+    for group in linked(instances):
+        about = _subjects(group)
+        touched = [one for one in every if _subject(one) in about]
+        natural = _natural([*touched, *(one.formula for one in group)], vocabulary)
+        groups.append(FactGroup(natural, group))
+    return tuple(groups)
+
+
+def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
+    """What is known of all propositions of some formulas without any facts."""
+    if not formulas:
         return Constant(True)
-    spoken = joined(AND, [*propositions, *facts])
-    natural = knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
-    return joined(AND, [natural, *facts])
+    spoken = joined(AND, formulas)
+    return knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
 
 
 def linked(instances: Iterable[FactInstance]) -> Iterator[tuple[FactInstance, ...]]:
@@ -100,6 +141,37 @@ def linked(instances: Iterable[FactInstance]) -> Iterator[tuple[FactInstance, ..
         groups.append((about, members))
     for _, members in groups:
         yield tuple(members)
+
+
+def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[Formula]) -> int:
+    """The letters of these reads in which all that is known holds, as the bits of an integer.
+
+    ``known`` speaks of what is read and of one state, without temporal operators.
+    """
+    everything = (1 << count_letters(reads)) - 1
+    sets = letters_with(reads, {atom for one in known for atom in atoms_of(one)})
+    letters = everything
+    for one in known:
+        letters &= _letters_where(one, sets, everything)
+    return letters
+
+
+def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything: int) -> int:
+    match formula:
+        case Atom() | Comparison():
+            return sets[formula]
+        case Constant(value):
+            return everything if value else 0
+        case Unary(UnaryOperator.NOT, operand):
+            return everything & ~_letters_where(operand, sets, everything)
+        case Binary(operator, left, right):
+            first = _letters_where(left, sets, everything)
+            second = _letters_where(right, sets, everything)
+            if operator is AND:
+                return first & second
+            if operator is OR:
+                return first | second
+    raise TypeError("what is known is said by `not`, `and` and `or`")
 
 
 def _subjects(instances: Iterable[FactInstance]) -> set[object]:

@@ -8,6 +8,9 @@ from fractions import Fraction
 
 from rulec.logic.formula import Term
 
+IMPOSSIBLE = -1
+"""The class of letters that no state can have, because facts of the vocabulary exclude it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Read:
@@ -78,10 +81,10 @@ class Machine:
 
     A letter is a number in mixed radix: the digit of ``reads[0]`` counts ones, that of ``reads[1]``
     counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class do
-    the same everywhere. ``following[state][class]`` is the next state; ``accepting[state][class]``
-    is the verdict on a word that ends with such a letter read in that state. Runs start in state 0.
-    From state ``dead`` no word is accepted, from state ``safe`` every word is; None where there is
-    no such state. The machine is minimal.
+    the same everywhere; ``IMPOSSIBLE`` are those that facts exclude. ``following[state][class]`` is
+    the next state; ``accepting[state][class]`` is the verdict on a word that ends with such a
+    letter read in that state. Runs start in state 0. From state ``dead`` no word is accepted, from
+    state ``safe`` every word is; None where there is no such state. The machine is minimal.
     """
 
     reads: tuple[Read | NumberRead, ...]

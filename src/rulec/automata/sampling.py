@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
-from rulec.automata.letters import count_letters, letters_with, propositions_of
-from rulec.automata.machine import Machine
+from rulec.automata.letters import letters_with, propositions_of
+from rulec.automata.machine import IMPOSSIBLE, Machine
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics, holds
 from rulec.logic.timing import operations_of, range_of
@@ -17,19 +17,19 @@ _EFFORT = 200_000
 
 
 def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
-    """Does the machine judge random words, always the same ones, as it should?
+    """Does the machine judge random words of possible letters, always the same, as it should?
 
     Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
     """
     chance = random.Random(0)
-    n_letters = count_letters(machine.reads)
+    possible = [n for n, symbol in enumerate(machine.letters) if symbol != IMPOSSIBLE]
     sets = letters_with(machine.reads, propositions_of(formula))
     bounds = _bounds(formula)
     size = 1 + sum(1 for _ in operations_of(formula))
     affordable = _EFFORT // (size * (8 + max(bounds, default=0)))
     n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
     for _ in range(n_words):
-        numbers = list(_word(chance, n_letters, bounds))
+        numbers = list(_word(chance, possible, bounds))
         word: list[frozenset[Proposition]] = [
             frozenset(one for one, letters in sets.items() if letters >> number & 1)
             for number in numbers
@@ -46,9 +46,9 @@ def _bounds(formula: Formula) -> list[int]:
     return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})
 
 
-def _word(chance: random.Random, n_letters: int, bounds: list[int]) -> Iterator[int]:
+def _word(chance: random.Random, letters: list[int], bounds: list[int]) -> Iterator[int]:
     # Between a few letters more happens twice than between all of them.
-    some = [chance.randrange(n_letters) for _ in range(chance.randint(1, 4))]
+    some = [letters[chance.randrange(len(letters))] for _ in range(chance.randint(1, 4))]
     for _ in range(chance.randint(1, 8)):
         number = chance.choice(some)
         times = chance.choice(bounds) if bounds and chance.random() < 0.5 else 1

@@ -10,14 +10,15 @@ import resource
 import sys
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.automata.letters import count_letters
+from rulec.automata.facts import FactGroup, FactInstance, possible_letters
+from rulec.automata.letters import count_letters, propositions_of
 from rulec.automata.machine import Machine, NumberRead, Read
 from rulec.automata.sampling import agrees
 from rulec.automata.tables import build_machine
-from rulec.logic.formula import Formula
+from rulec.logic.formula import Constant, Formula
 from rulec.logic.semantics import Semantics
 
 MEMORY_LIMIT_BYTES = 2 << 30
@@ -28,7 +29,8 @@ MOST_LETTERS = 1 << 16
 class Job:
     """One rule to translate, its bounds in steps.
 
-    ``cpu_s``: the processor time it may use, in whole seconds.
+    ``groups`` are the facts that hold of its variables. ``cpu_s``: the processor time it may use,
+    in whole seconds.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Job:
     reads: tuple[Read | NumberRead, ...]
     remarks: tuple[str, ...]
     semantics: Semantics
+    groups: tuple[FactGroup, ...]
     cpu_s: int
 
 
@@ -59,11 +62,13 @@ class Done:
 class Failed:
     """No machine: too many ``letters``, too much ``memory``, the automaton failed its ``check``.
 
-    ``bug`` is anything that nobody thought of, with the traceback.
+    ``facts``: those of ``contradiction`` cannot hold together. ``bug`` is anything that nobody
+    thought of, with the traceback.
     """
 
-    why: Literal["letters", "memory", "check", "bug"]
+    why: Literal["letters", "memory", "check", "facts", "bug"]
     traceback: str = ""
+    contradiction: tuple[FactInstance, ...] = ()
 
 
 def main() -> None:
@@ -100,17 +105,38 @@ def _answer(job: Job) -> Done | Failed:
     n_letters = count_letters(job.reads)
     if n_letters > MOST_LETTERS:
         return Failed("letters")
+    facts = []
+    for group in job.groups:
+        said = spot_bridge.projected(group.known, propositions_of(job.formula))
+        if said == Constant(False):
+            return Failed("facts", contradiction=_contradiction(group))
+        facts += [said] if said != Constant(True) else []
     try:
-        found = spot_bridge.translate(job.formula, job.reads, job.semantics)
+        found = spot_bridge.translate(job.formula, job.reads, job.semantics, facts)
     except spot_bridge.CheckError:
         return Failed("check")
-    machine = build_machine(spot_bridge.explore(found, job.reads), job.reads, n_letters)
+    possible = possible_letters(job.reads, facts) if facts else None
+    automaton = spot_bridge.explore(found, job.reads)
+    machine = build_machine(automaton, job.reads, n_letters, possible)
     if not found.is_checked and not agrees(machine, job.formula, job.semantics):
         return Failed("check")
     remarks = list(job.remarks)
     if found.alive is not None:
         remarks.append(f'finite words: "{found.alive}" is true as long as the word lasts')
     return Done(machine, spot_bridge.in_hoa(found.automaton, job.name, remarks))
+
+
+def _contradiction(group: FactGroup) -> tuple[FactInstance, ...]:
+    """Facts of the group that cannot hold together, each of them needed for that."""
+    from rulec.automata import spot_bridge
+
+    needed = group
+    for one in group.instances:
+        without = tuple(other for other in needed.instances if other is not one)
+        fewer = replace(needed, instances=without)
+        if spot_bridge.projected(fewer.known, ()) == Constant(False):
+            needed = fewer
+    return needed.instances
 
 
 def _limit(kind: int, amount: int) -> None:

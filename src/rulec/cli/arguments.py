@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -14,10 +16,6 @@ from rulec.diagnostics import RulecError
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
-
-
-_FILES = CompletionItem("", type="file")
-"""Has the shell offer files, as well as the names that follow."""
 
 
 def complete_rulebooks(
@@ -97,7 +95,26 @@ def _folders() -> tuple[Path, ...]:
 
 def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
     fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
-    return [_FILES, *fitting]
+    # The first has the shell offer files as well, whose paths begin so.
+    return [CompletionItem(incomplete, type="file"), *fitting]
+
+
+_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
+
+
+def seconds(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> Fraction | None:
+    """A step, as an option gives it."""
+    if value is None:
+        return None
+    try:
+        step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
+    except ZeroDivisionError:
+        step = Fraction(0)
+    if not step:
+        raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
+    return step
 
 
 def rulebook_option(function: Decorated) -> Decorated:

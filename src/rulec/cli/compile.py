@@ -2,30 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks
+from rulec.cli.arguments import at_option, complete_rulebooks, seconds
 from rulec.report.console import print_diagnostics, print_result
-
-_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
-
-
-def _seconds(
-    context: click.Context, parameter: click.Parameter, value: str | None
-) -> Fraction | None:
-    if value is None:
-        return None
-    try:
-        step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
-    except ZeroDivisionError:
-        step = Fraction(0)
-    if not step:
-        raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
-    return step
 
 
 @click.command()
@@ -33,7 +16,7 @@ def _seconds(
 @click.option(
     "--step",
     "step_s",
-    callback=_seconds,
+    callback=seconds,
     metavar="S",
     help="The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
     "matters to rules with bounds in seconds.  [default: that of their examples]",

@@ -19,6 +19,7 @@ VERBS = {
     "check": "Check rulebooks and vocabularies.",
     "compile": "Compile a rulebook to automata files.",
     "completion": "Print the script that completes rulec's commands in a shell.",
+    "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
     "doc": "Write a rulebook as a document for lawyers.",
     "explain": "Explain a code of a message.",
     "fmt": "Format rulebooks and vocabularies.",
@@ -43,6 +44,7 @@ class _Verbs(click.Group):
         if cmd_name not in VERBS:
             return None
         command: click.Command = import_module(f"rulec.cli.{cmd_name}").command
+        command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
         command.name = cmd_name  # in the files all of them are called `command`
         return command
 

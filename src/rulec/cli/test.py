@@ -96,6 +96,7 @@ def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
     from rulec.diagnostics import RulecError
     from rulec.report.console import print_diagnostics
+    from rulec.runtime.exercise import unexercised
     from rulec.settings import search_path
     from rulec.workflow import run_examples
 
@@ -104,5 +105,5 @@ def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     except RulecError as error:
         print_diagnostics(error.diagnostics)
         return None
-    print_diagnostics(run.warnings)
+    print_diagnostics([*run.warnings, *unexercised(run)])
     return run

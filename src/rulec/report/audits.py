@@ -6,21 +6,21 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import groupby
+from textwrap import wrap
 
 import click
 
-from rulec.analysis.audit import KINDS, Audit, Changes, Finding
+from rulec.analysis.audit import Audit, Changes, Finding
+from rulec.analysis.audit_kinds import KINDS
 from rulec.report.excerpt import visible
 from rulec.report.markdown import code, escaped, table
-
-FORMATS = ("text", "markdown", "json")
 
 Compared = Mapping[str, Changes]
 """Rulebook -> what has changed since an older audit of it."""
 
 
 def render(audits: Sequence[Audit], compared: Compared, output_format: str) -> str:
-    """All audits in one of ``FORMATS``."""
+    """All audits as ``text``, ``markdown`` or ``json``."""
     match output_format:
         case "json":
             return _as_json(audits, compared)
@@ -59,22 +59,23 @@ def _as_text(audit: Audit, compared: Changes | None) -> str:
     ]
     for kind, found in groupby(audit.findings, key=lambda one: one.kind):
         blocks.append(f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(found))}")
-    if audit.articles:
-        width = max(len(visible(one.cite)) for one in audit.articles)
-        lines = "\n".join(
-            f"  {visible(one.cite):<{width}}  {', '.join(one.rules)}" for one in audit.articles
-        )
-        title = f"{click.style('provisions', bold=True)} of the law, and the rules that cite them"
-        blocks.append(f"{title}\n{lines}")
+    width = max((len(visible(one.cite)) for one in audit.articles), default=0)
+    for book, articles in groupby(audit.articles, key=lambda one: one.book):
+        lines = [f"  {visible(one.cite):<{width}}  {', '.join(one.rules)}" for one in articles]
+        title = f"{click.style('provisions', bold=True)} cited in {book}, and the rules they are in"
+        blocks.append("\n".join([title, *lines]))
     if compared is not None:
         blocks.append(_changes_as_text(compared))
     return "\n\n".join(blocks)
 
 
-def _lines(found: Sequence[Finding], signs: str = " ") -> str:
+def _lines(found: Sequence[Finding]) -> str:
+    if not any(one.note for one in found):
+        names = ", ".join(visible(one.name) for one in found)
+        return "\n".join(wrap(names, 98, initial_indent="  ", subsequent_indent="  "))
     width = max(len(visible(one.name)) for one in found)
     return "\n".join(
-        f"{signs} {visible(one.name):<{width}}  {visible(one.note)}".rstrip() for one in found
+        f"  {visible(one.name):<{width}}  {visible(one.note)}".rstrip() for one in found
     )
 
 
@@ -109,8 +110,11 @@ def _as_markdown(audit: Audit, compared: Changes | None) -> str:
         kinds = dict.fromkeys(one.kind for one in audit.findings)
         blocks.append("\n".join(f"- *{kind}*: {KINDS[kind]}" for kind in kinds))
     if audit.articles:
-        rows = [[escaped(one.cite), ", ".join(map(code, one.rules))] for one in audit.articles]
-        blocks += ["## Provisions of the law", table(["provision", "rules"], rows)]
+        rows = [
+            [escaped(one.cite), code(one.book), ", ".join(map(code, one.rules))]
+            for one in audit.articles
+        ]
+        blocks += ["## Provisions of the law", table(["provision", "cited in", "rules"], rows)]
     if compared is not None:
         blocks += ["## Changes", _changes_as_markdown(compared)]
     return "\n\n".join(blocks)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 
 from rulec.analysis.audit import articles_of
-from rulec.analysis.inheritance import Inheritance
+from rulec.analysis.history import Inheritance
 from rulec.report.anchors import anchors
 from rulec.report.book_rule import rule_heading, rule_section
 from rulec.report.book_sections import (
@@ -48,7 +49,9 @@ def as_markdown(loaded: Loaded, inherited: Inheritance) -> str:
     places = {id(one): name for one, name in zip(headings, names, strict=True)}
     contents = _contents([one for one in headings if one.level in (2, 3)], places)
     rules = {one.text: places[id(one)] for one in headings if one.level == 3}
-    return written([*top, contents, *body, *_index(rulebook, index, rules), *_made_from(rulebook)])
+    return written(
+        [*top, contents, *body, *_index(rulebook, inherited, index, rules), *_made_from(rulebook)]
+    )
 
 
 def _top(rulebook: Rulebook) -> Iterator[Block]:
@@ -69,7 +72,6 @@ def _top(rulebook: Rulebook) -> Iterator[Block]:
 
 def _body(loaded: Loaded, inherited: Inheritance) -> Iterator[Block]:
     rulebook = loaded.rulebook
-    histories = {one.name: one for one in inherited.rules}
     yield Heading(2, "Rules")
     yield (
         "A hard rule must never be violated, a soft rule may yield to others. In the examples a "
@@ -78,7 +80,7 @@ def _body(loaded: Loaded, inherited: Inheritance) -> Iterator[Block]:
         else "None."
     )
     for rule in rulebook.rules:
-        yield from rule_section(rule, histories[rule.name], rulebook.name, rulebook.vocabulary)
+        yield from rule_section(rule, inherited, rulebook.vocabulary)
     yield from values_section(inherited, rulebook.at)
     yield from definitions_section(inherited)
     yield from left_out_section(inherited, rulebook.at)
@@ -93,25 +95,24 @@ def _contents(headings: Sequence[Heading], places: Mapping[int, str]) -> str:
     )
 
 
-def _index(rulebook: Rulebook, heading: Heading, places: Mapping[str, str]) -> Iterator[Block]:
+def _index(
+    rulebook: Rulebook, inherited: Inheritance, heading: Heading, places: Mapping[str, str]
+) -> Iterator[Block]:
     yield heading
     by_name = {one.name: one for one in rulebook.rules}
-    articles = articles_of(rulebook.rules)
+    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    articles = articles_of(rulebook.rules, inherited)
     if not articles:
         yield "No provision is cited."
-        return
-    yield table(
-        ["provision", "rules"],
-        (
-            [
-                escaped(one.cite),
-                ", ".join(
-                    f"[{code(name)}](#{places[rule_heading(by_name[name])]})" for name in one.rules
-                ),
-            ]
-            for one in articles
-        ),
-    )
+    for book, cited in groupby(articles, key=lambda one: one.book):
+        yield f"{escaped(laws[book])}:"
+        rows = []
+        for one in cited:
+            links = (
+                f"[{code(name)}](#{places[rule_heading(by_name[name])]})" for name in one.rules
+            )
+            rows.append([escaped(one.cite), ", ".join(links)])
+        yield table(["provision", "rules"], rows)
 
 
 def _made_from(rulebook: Rulebook) -> Iterator[Block]:

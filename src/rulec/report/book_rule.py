@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 from textwrap import wrap
 
-from rulec.analysis.inheritance import RuleHistory
+from rulec.analysis.history import Inheritance, RuleHistory
 from rulec.logic.english import amount, listed, number_text, spoken
 from rulec.logic.printing import in_words
 from rulec.logic.sentence import Phrase
@@ -40,14 +40,18 @@ def rule_heading(rule: Rule) -> str:
     return f"{rule.name} ({rule.cite})" if rule.cite else rule.name
 
 
-def rule_section(
-    rule: Rule, history: RuleHistory, book: str, vocabulary: Vocabulary
-) -> Iterator[Block]:
-    """All about a rule of the rulebook ``book``."""
+def rule_section(rule: Rule, inherited: Inheritance, vocabulary: Vocabulary) -> Iterator[Block]:
+    """All about a rule of the rulebook at the end of a chain."""
+    book = inherited.book
+    (history,) = [one for one in inherited.rules if one.name == rule.name]
+    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
     yield Heading(3, rule_heading(rule))
     if rule.says:
         yield f"> {escaped(rule.says)}"
-    yield "\n".join(f"- **{name}:** {text}" for name, text in _facts(rule, history, book))
+    yield "\n".join(
+        f"- **{name}:** {text}" for name, text in _facts(rule, history, book, elsewhere)
+    )
     yield Heading(4, "In plain English")
     for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
         yield _sentence(phrase)
@@ -66,8 +70,10 @@ def rule_section(
         yield from _difference(base, history)
 
 
-def _facts(rule: Rule, history: RuleHistory, book: str) -> Iterator[tuple[str, str]]:
-    yield "Provision", escaped(rule.cite) if rule.cite else "none is cited"
+def _facts(
+    rule: Rule, history: RuleHistory, book: str, elsewhere: str
+) -> Iterator[tuple[str, str]]:
+    yield "Provision", escaped(f"{rule.cite}{elsewhere}") if rule.cite else "none is cited"
     hard = rule.strength == "hard"
     weight = f"; weight {number_text(rule.weight)}" if not hard or rule.weight != 1 else ""
     kind = "hard, it must never be violated" if hard else "soft, it may yield"
@@ -93,15 +99,15 @@ def _sentence(phrase: Phrase) -> str:
 
 def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
     """As it is written, and as it is meant where that is something else."""
-    meant = in_words(rule.formula)
     clauses = [] if written is None else clauses_of(written)
     said = [(word, text) for word, text in clauses if word in _FORMULAS]
-    if said:
-        yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
-    if said == [("require", meant)]:
-        return
-    yield "Written out, with exceptions, definitions, options and parameters put in:"
-    yield fenced("\n".join(formula_lines(meant, WIDTH)), "rulec")
+    meant = [] if rule.condition is None else [("when", in_words(rule.condition))]
+    meant.append(("require", in_words(rule.required or rule.formula)))
+    meant += [("unless", f"{in_words(one.formula)} {one.scope}") for one in rule.exemptions]
+    yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
+    if said != meant:
+        yield "With definitions, options and parameters put in:"
+        yield fenced("\n".join(line for one in meant for line in _clause(*one)), "rulec")
 
 
 def _clause(word: str, text: str) -> list[str]:
@@ -113,11 +119,11 @@ def _clause(word: str, text: str) -> list[str]:
 
 
 def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[str]:
-    word = "Allowed" if example.accepts else "Forbidden"
+    word = "allowed ✔" if example.accepts else "forbidden ✘"
     name = f" ({escaped(example.label)})" if example.label else ""
     also = listed([f"{code(one.name)}, a {spoken(one.type)}" for one in example.objects] or [""])
     there = f" Also there: {also}." if also else ""
-    yield f"**Example {number}{name}: {word.lower()}.**{there}"
+    yield f"**Example {number}{name}: {word}**{there}"
     shown = state_table(example, vocabulary)
     rows = [[escaped(about), *map(escaped, cells)] for about, cells in shown.rows]
     if rows:

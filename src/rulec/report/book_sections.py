@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rulec.analysis.inheritance import Inheritance, ProvisionHistory
+from rulec.analysis.history import Inheritance, ProvisionHistory
 from rulec.analysis.words import words_used
 from rulec.logic.english import listed, spoken
 from rulec.logic.printing import in_words
+from rulec.report.book_rule import WIDTH
 from rulec.report.formula_lines import formula_lines
 from rulec.report.markdown import Block, Heading, code, escaped, fenced, table
 from rulec.rulebook.descriptions import description
@@ -20,13 +21,13 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 
 def values_section(inherited: Inheritance, at: str) -> Iterator[Block]:
-    """Options and parameters with all their values."""
-    found = [one for one in inherited.provisions if one.kind != "definition"]
+    """Options and parameters that rules speak of, with all their values."""
+    found = [one for one in inherited.provisions if one.kind != "definition" and one.used]
     if not found:
         return
     yield Heading(2, "Options and parameters")
     yield f"The value that counts on {at} is the one with a mark."
-    head = ["name", "kind", "value", "counts", "in force", "given by"]
+    head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
     yield table(head, (row for one in found for row in _values(one)))
 
 
@@ -40,12 +41,13 @@ def _values(one: ProvisionHistory) -> Iterator[list[str]]:
             "✔" if setting.current else "",
             dates.removeprefix("in force").strip() or "always",
             code(setting.book),
+            escaped(setting.note),
         ]
 
 
 def definitions_section(inherited: Inheritance) -> Iterator[Block]:
-    """Definitions as they are in the end, and what they were before."""
-    found = [one for one in inherited.provisions if one.kind == "definition"]
+    """Definitions that rules speak of, as they are in the end, and what they were before."""
+    found = [one for one in inherited.provisions if one.kind == "definition" and one.used]
     if not found:
         return
     yield Heading(2, "Definitions")
@@ -53,8 +55,17 @@ def definitions_section(inherited: Inheritance) -> Iterator[Block]:
         last = one.settings[-1]
         before = [f"in {code(each.book)} {code(each.text)}" for each in one.settings[:-1]]
         was = f" It was {listed(before)}." if before else ""
-        yield f"{code(one.name)} is defined by {code(last.book)}.{was}"
-        yield fenced("\n".join(formula_lines(f"define {one.head} = {last.text}", 84)), "rulec")
+        note = f" {escaped(last.note)}" if last.note else ""
+        yield f"{code(one.name)} is defined by {code(last.book)}.{was}{note}"
+        yield fenced("\n".join(_definition(one.head, last.text)), "rulec")
+
+
+def _definition(head: str, text: str) -> list[str]:
+    """On one line, or its meaning below."""
+    whole = f"define {head} = {text}"
+    if len(whole) <= WIDTH:
+        return [whole]
+    return [f"define {head} =", *(f"  {line}" for line in formula_lines(text, WIDTH - 2))]
 
 
 def left_out_section(inherited: Inheritance, at: str) -> Iterator[Block]:

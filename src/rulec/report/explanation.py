@@ -63,7 +63,7 @@ def as_text(explanation: Explanation) -> str:
         (_title(fact), _marked(_cells(fact), decisive, fact.changed)) for fact in explanation.facts
     ]
     rows += [
-        (f"{'  ' * part.depth}{_cut(part.text)}", [_shown(value) for value in part.values])
+        (f"{'  ' * part.depth}{_cut(part.text)}", [shown(value) for value in part.values])
         for part in explanation.parts
     ]
     title_width = max(len(title) for title, _ in rows)
@@ -85,7 +85,7 @@ def _title(fact: Fact) -> str:
 
 
 def _cells(fact: Fact) -> list[str]:
-    cells = [_shown(value) for value in fact.values]
+    cells = [shown(value) for value in fact.values]
     if fact.objects is None:
         return cells
     return [_with_names(cell, names) for cell, names in zip(cells, fact.objects, strict=True)]
@@ -103,7 +103,8 @@ def _marked(cells: list[str], decisive: int, changed: bool) -> list[str]:
     return [f"{cell}*" if n == decisive and changed else cell for n, cell in enumerate(cells)]
 
 
-def _shown(value: Value) -> str:
+def shown(value: Value) -> str:
+    """A value as a cell of a table."""
     if isinstance(value, bool):
         return "T" if value else "F"
     if isinstance(value, str):

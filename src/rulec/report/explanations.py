@@ -12,6 +12,7 @@ from rulec.diagnostics.explanations.explanation import Explanation, Kind
 _KINDS: dict[Kind, str] = {
     "rules": "to check",
     "compiled": "to compile",
+    "examples": "to test",
     "maneuvers": "to judge the maneuvers of `s1` by",
     "trace": "a trace, to judge by `esterle2019`",
     "scenario": "a scenario, to build the graph of",
@@ -23,6 +24,7 @@ _KINDS: dict[Kind, str] = {
 _FENCES: dict[Kind, str] = {
     "rules": "rulec",
     "compiled": "rulec",
+    "examples": "rulec",
     "maneuvers": "rulec",
     "trace": "json",
     "scenario": "toml",

@@ -66,7 +66,8 @@ def _unknown(use: tree.AtomUse, scope: Scope) -> Diagnostic:
         way_out = (
             ("" if use.arguments else _short_form(name, declared, variables))
             or did_you_mean(name, known)
-            or f"declare it, such as `signal {name}`, or `use` a vocabulary that has it"
+            or f"declare it, such as `signal {_as_used(use, scope)}`, "
+            "or `use` a vocabulary that has it"
         )
     return Diagnostic(
         "R0202",
@@ -75,6 +76,19 @@ def _unknown(use: tree.AtomUse, scope: Scope) -> Diagnostic:
         expected=_ATOM,
         help=way_out,
     )
+
+
+def _as_used(use: tree.AtomUse, scope: Scope) -> str:
+    """How a signal would be declared that fits its use: `braking(v: vehicle)` for `braking(v)`."""
+    variables = [scope.variables.get(one.text) for one in use.arguments]
+    if not variables or not all(one is not None and one.type for one in variables):
+        return use.name.text
+    parameters = (
+        f"{argument.text}: {variable.type}"
+        for argument, variable in zip(use.arguments, variables, strict=True)
+        if variable is not None
+    )
+    return f"{use.name.text}({', '.join(parameters)})"
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:

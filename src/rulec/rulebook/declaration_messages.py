@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
 from rulec.syntax import tree
 from rulec.vocabulary.units import known_unit_names, unit_refusal
+
+_OTHER_DIMENSIONS: Final = {
+    "velocity": "speed",
+    "weight": "mass",
+    "period": "time",
+    "height": "length",
+    "width": "length",
+    "gap": "length",
+}
 
 
 def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
@@ -68,13 +78,13 @@ def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
         return Diagnostic(
             "R0209",
             message,
-            item.span.place,
+            item.unit_span.place,
             help=refusal.instead,
         )
     return Diagnostic(
         "R0209",
         f"there is no unit `{item.unit}`",
-        item.span.place,
+        item.unit_span.place,
         expected="expected a unit of measure",
         help=unit_help(item.unit),
     )
@@ -86,3 +96,16 @@ def unit_help(unit: str) -> str:
         return "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
     near = did_you_mean(unit, known_unit_names())
     return near or "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`"
+
+
+def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
+    """A kind of number that nobody knows."""
+    other = _OTHER_DIMENSIONS.get(name.text.casefold())
+    way_out = f"write `{other}`" if other else did_you_mean(name.text, known)
+    return Diagnostic(
+        "R0210",
+        f"there is no kind of number `{name.text}`",
+        name.span.place,
+        expected="expected a kind of number",
+        help=way_out or f"known are {named(known)}",
+    )

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from rulec.diagnostics import Span
+from rulec.logic.asked import asked
 from rulec.logic.formula import (
     Atom,
-    Comparison,
     Formula,
     Quantity,
-    Term,
-    atoms_of,
 )
-from rulec.logic.renaming import renamed
 from rulec.rulebook import example_messages as say
 from rulec.rulebook.declaration_messages import twice, unknown_type
-from rulec.rulebook.declared import Declared
 from rulec.rulebook.model import Example, ExampleState, Variable
 from rulec.rulebook.numerals import literal
 from rulec.rulebook.scope import BoundVariable, Scope
@@ -43,8 +39,9 @@ def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> 
     kinds = {name: one.type for name, one in variables.items() if one.type is not None}
     needed: dict[Key, Atom | Quantity] = {}
     if formula is not None:
-        for what in _needed(formula, kinds, scope.declared):
-            needed.setdefault((what.name, what.arguments), what)
+        for what in asked(formula, kinds, scope.declared.fits):
+            if scope.declared.items[what.name].default is None:
+                needed.setdefault((what.name, what.arguments), what)
     return Example(
         example.accepts,
         tuple(_state(state, needed, inside) for state in example.states),
@@ -53,33 +50,6 @@ def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> 
         example.span,
         tuple(state.span for state in example.states),
     )
-
-
-def _needed(
-    formula: Formula, kinds: Mapping[str, str], declared: Declared
-) -> Iterator[Atom | Quantity]:
-    """What a state has to say for the formula to be judged, being without a default."""
-    for one in atoms_of(formula):
-        found = (one,) if isinstance(one, Atom) else _in_terms(one, kinds, declared)
-        yield from (what for what in found if declared.items[what.name].default is None)
-
-
-def _in_terms(
-    comparison: Comparison, kinds: Mapping[str, str], declared: Declared
-) -> Iterator[Atom | Quantity]:
-    for _, term in comparison.terms:
-        yield from _in_term(term, kinds, declared)
-
-
-def _in_term(term: Term, kinds: Mapping[str, str], declared: Declared) -> Iterator[Atom | Quantity]:
-    if isinstance(term, Quantity):
-        yield term
-        return
-    for name, kind in kinds.items():
-        if declared.fits(kind, term.type):
-            # What is asked of the object that stands in the count's place.
-            about = renamed(term.body, {term.variable: name})
-            yield from _needed(about, {**kinds}, declared)
 
 
 def _state(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.logic.formula import Formula
 from rulec.rulebook.declaration_messages import unit_help
 from rulec.rulebook.numbers import Number
@@ -208,17 +208,6 @@ def too_long(node: tree.Number) -> Diagnostic:
         "this number has too many digits",
         node.span.place,
         help="write at most 400 digits, and no exponent beyond 400",
-    )
-
-
-def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
-    """A kind of number that nobody knows."""
-    return Diagnostic(
-        "R0210",
-        f"there is no kind of number `{name.text}`",
-        name.span.place,
-        expected="expected a kind of number",
-        help=did_you_mean(name.text, known) or f"known are {named(known)}",
     )
 
 
@@ -459,7 +448,7 @@ def no_time(side: tree.Amount, found: Number) -> Diagnostic:
         f"`{_short(side)}` {why}; a bound is a fixed time",
         side.span.place,
         expected="expected a time",
-        help="write it as such as `3 s` or `2 steps`",
+        help="write a time, such as `3 s`, or a number of steps, such as `2 steps`",
     )
 
 

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook import rule_messages
-from rulec.rulebook.declaration_messages import twice
+from rulec.rulebook.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.declared import Declared
 from rulec.rulebook.extent import TooDeepError, TooLargeError
 from rulec.rulebook.meaning import meaning, number
-from rulec.rulebook.meaning_messages import unknown_dimension
 from rulec.rulebook.parameters import parameter
 from rulec.rulebook.provisions import Provisions, in_force
 from rulec.rulebook.scope import Anything, Call, Scope

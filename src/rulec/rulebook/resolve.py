@@ -8,6 +8,7 @@ from typing import Literal
 from rulec.diagnostics import Diagnostic, Place
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import declare
+from rulec.rulebook.fact_checks import contradicted
 from rulec.rulebook.facts import fact_of
 from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
 from rulec.rulebook.overlay import Overlay, overlay
@@ -47,9 +48,11 @@ def resolve(
     books = [*bases, file]
     declared = declare([*vocabularies, *books], opaque=opaque)
     spans = {**declared.type_spans, **declared.spans}
-    laid = overlay(books, spans, unsure=opaque or not all(one.complete for one in books))
+    unsure = opaque or not all(one.complete for one in books)
+    laid = overlay(books, spans, unsure=unsure)
     provisions = Provisions(laid, at, _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
+    known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
     mistakes += check_provisions(declared, provisions)
     facts: list[Fact] = []
@@ -60,12 +63,15 @@ def resolve(
             facts += [known] if known is not None else []
     rules: list[Rule | None] = []
     for entry in laid.rules.values():
-        rule, found = translate_rule(entry, declared, provisions, levels)
+        rule, found = translate_rule(entry, declared, provisions, known_levels)
         mistakes += found
         if in_force(entry.item.in_force, at):
             rules.append(rule)
-    mistakes = _once(mistakes)
     good = [rule for rule in rules if rule is not None]
+    if not declared.mistakes:
+        words = declared.vocabulary(file.name.text if file.name else "")
+        mistakes += [one for rule in good for one in contradicted(rule, facts, words)]
+    mistakes = _once(mistakes)
     wrong = any(one.severity == "error" for one in mistakes)
     whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
     # A rulebook without rules is there to be extended.
@@ -105,6 +111,12 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
     if file.name is None or mistakes:
         return None, tuple(mistakes)
     return declared.vocabulary(file.name.text), ()
+
+
+def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
+    """The names in `priority` lines that could not be read: they may be meant as levels."""
+    broken = (item for one in books for item in one.items if isinstance(item, tree.BrokenItem))
+    return sorted({name for item in broken if item.word == "priority" for name in item.names})
 
 
 def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -40,7 +40,8 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
     if known:
         way_out = did_you_mean(level.text, known) or f"known are {named(known)}"
     else:
-        way_out = f"name it in the header, such as `priority {level.text} > courtesy`"
+        lower = level.text if level.text != "safety" else "courtesy"
+        way_out = f"name it in the header, such as `priority safety > {lower}`"
     return Diagnostic(
         "R0215",
         f"there is no level of priority `{level.text}`",
@@ -68,7 +69,7 @@ def no_step(line: tree.StepLine) -> Diagnostic:
         "the step is no time above 0",
         line.amount.span.place,
         expected="expected a time",
-        help="write it as such as `step 0.5 s`",
+        help="write a time, such as `step 0.5 s`",
     )
 
 

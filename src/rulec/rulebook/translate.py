@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -32,11 +32,11 @@ from rulec.vocabulary.units import DIMENSIONS
 
 
 def translate_rule(
-    entry: RuleEntry, declared: Declared, provisions: Provisions, levels: tuple[str, ...]
+    entry: RuleEntry, declared: Declared, provisions: Provisions, levels: Sequence[str] | None
 ) -> tuple[Rule | None, list[Diagnostic]]:
     """The rule as meant (None if it has a mistake), its mistakes and warnings.
 
-    ``levels`` are those of the rulebook's priorities.
+    ``levels`` are those of the rulebook's priorities; None if they are not known for sure.
     """
     item = entry.item
     mistakes: list[Diagnostic] = []
@@ -47,7 +47,7 @@ def translate_rule(
     formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
         mistakes += _unused(item, scope)
-    if item.level is not None and item.level.text not in levels:
+    if item.level is not None and levels is not None and item.level.text not in levels:
         scope.report(rule_messages.no_level(item.level, levels))
     weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
     if item.weight is not None and weight == 0:

@@ -16,6 +16,8 @@ def names_used(item: tree.Item) -> Iterator[str]:
                     yield from names_in(formula)
         case tree.DefineItem(body=body):
             yield from names_in(body)
+        case tree.FactItem(formula=formula):
+            yield from names_in(formula)
         case tree.ParamItem(value=value) | tree.SetItem(value=value):
             if not isinstance(value, bool):
                 yield from names_in(value)

@@ -6,13 +6,16 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.automata.machine import Machine
-from rulec.logic.formula import Comparison, Proposition, atoms_of
+from rulec.automata.facts import fact_instances
+from rulec.automata.letters import letters_with
+from rulec.automata.machine import IMPOSSIBLE, Machine
+from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
+from rulec.logic.one_state import holds
 from rulec.rulebook.model import Rule
 from rulec.runtime.examples import ExampleRun, Outcome, example_trace, own_names
-from rulec.runtime.moment import Moment, holds
+from rulec.runtime.moment import Moment
 from rulec.runtime.verify import columns_of
-from rulec.runtime.wanted import Wanted, digits_of, is_possible, truths, wanted
+from rulec.runtime.wanted import Wanted, possible_letters, truths, wanted
 from rulec.vocabulary import Enumeration, Vocabulary
 
 
@@ -72,20 +75,26 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [one for one in run.outcomes if one.rule is rule]
         if outcomes or run.pattern is None:
-            found.append(_coverage(rule, compiled, outcomes, run.compiled))
+            known = fact_instances(rule.variables, run.rulebook.facts, run.rulebook.vocabulary)
+            facts = [one.formula for one in known]
+            found.append(_coverage(rule, compiled, outcomes, run.compiled, facts))
     return tuple(found)
 
 
 def _coverage(
-    rule: Rule, compiled: CompiledRule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+    rule: Rule,
+    compiled: CompiledRule,
+    outcomes: Sequence[Outcome],
+    rulebook: CompiledRulebook,
+    facts: Sequence[Formula],
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
-    letters = _letters(machine)
+    letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
-        symbol: wanted(letter, machine, rule.formula, vocabulary)
+        symbol: wanted(letter, machine, rule.formula, vocabulary, facts)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
@@ -121,15 +130,6 @@ def _moments(
         yield from (columns.moment(number) for number in range(len(trace.states)))
 
 
-def _letters(machine: Machine) -> Mapping[int, int]:
-    """For every class that some state of the world is in, the first of its letters."""
-    first: dict[int, int] = {}
-    for letter, symbol in enumerate(machine.letters):
-        if symbol not in first and all(map(is_possible, machine.reads, digits_of(letter, machine))):
-            first[symbol] = letter
-    return first
-
-
 def _edges(
     machine: Machine, reachable: Container[int], symbols: Iterable[int]
 ) -> Iterator[tuple[int, int]]:
@@ -162,8 +162,19 @@ def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tu
 def _possible(
     proposition: Proposition, machine: Machine, vocabulary: Vocabulary
 ) -> tuple[bool, ...]:
+    """The values that a proposition can have, true first."""
     if isinstance(proposition, Comparison):
-        return tuple(sorted(truths(proposition, machine), reverse=True))
-    declaration = vocabulary.declarations[proposition.name]
-    only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
-    return (True,) if only else (True, False)
+        values = tuple(sorted(truths(proposition, machine), reverse=True))
+    else:
+        declaration = vocabulary.declarations[proposition.name]
+        only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
+        values = (True,) if only else (True, False)
+    if IMPOSSIBLE not in machine.letters:
+        return values
+    true = letters_with(machine.reads, [proposition])[proposition]
+    met = {
+        bool(true >> letter & 1)
+        for letter, symbol in enumerate(machine.letters)
+        if symbol != IMPOSSIBLE
+    }
+    return tuple(value for value in values if value in met)

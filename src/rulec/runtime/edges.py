@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.machine import Machine
+from rulec.automata.machine import IMPOSSIBLE, Machine
 
 Cube = tuple[frozenset[int], ...]
 """For each of a machine's reads the digits that are allowed."""
@@ -21,8 +21,9 @@ Cube = tuple[frozenset[int], ...]
 class Edge:
     """The steps from ``source`` to ``target`` after which an ending trace gets one verdict.
 
-    They are the letters of ``cubes`` together. Of the edges that leave a state one may be
-    ``otherwise``: the one that is described best as what the others are not.
+    They are the letters of ``cubes`` together, but for those that no state can have. Of the edges
+    that leave a state one may be ``otherwise``: the one that is described best as what the others
+    are not.
     """
 
     source: int
@@ -81,26 +82,29 @@ class _Covers:
             stride *= size
         n_classes = len(machine.following[0])
         members: list[list[int]] = [[] for _ in range(n_classes)]
+        impossible: list[int] = []
         for letter, symbol in enumerate(machine.letters):
-            members[symbol].append(letter)
+            (impossible if symbol == IMPOSSIBLE else members[symbol]).append(letter)
         self.of_class = [_bits(letters, total) for letters in members]
+        self._free = _bits(impossible, total)
+        """No matter whether these are covered."""
         self._known: dict[int, tuple[Cube, ...]] = {}
         places = list(range(len(self.sizes)))
         turns = [places[n:] + places[:n] for n in places] or [places]
         self._orders = [*turns, *(turn[::-1] for turn in turns)]
 
     def cubes(self, onset: int) -> tuple[Cube, ...]:
-        """Cubes whose union is ``onset``, none of them needless."""
+        """Cubes whose union is ``onset`` and impossible letters at most, none of them needless."""
         if onset not in self._known:
             chosen: dict[Cube, int] = {}
             remaining = onset
             while remaining:
                 letter = (remaining & -remaining).bit_length() - 1
-                primes = {self._prime(letter, onset, order) for order in self._orders}
+                primes = {self._prime(letter, onset | self._free, order) for order in self._orders}
                 best = max(primes, key=lambda cube: self._worth(cube, remaining))
                 chosen[best] = self._letters(best)
                 remaining &= ~chosen[best]
-            self._known[onset] = tuple(_needed(chosen))
+            self._known[onset] = tuple(_needed(chosen, onset))
         return self._known[onset]
 
     def _worth(self, cube: Cube, remaining: int) -> tuple[int, int, list[list[int]]]:
@@ -147,7 +151,7 @@ def _bits(letters: Sequence[int], total: int) -> int:
     return int.from_bytes(row, "little")
 
 
-def _needed(chosen: dict[Cube, int]) -> Iterator[Cube]:
+def _needed(chosen: dict[Cube, int], onset: int) -> Iterator[Cube]:
     """The cubes without those that the others cover, the last chosen tried first."""
     kept = dict(chosen)
     for cube in reversed(chosen):
@@ -155,6 +159,6 @@ def _needed(chosen: dict[Cube, int]) -> Iterator[Cube]:
         for other, letters in kept.items():
             if other != cube:
                 others |= letters
-        if not chosen[cube] & ~others:
+        if not chosen[cube] & onset & ~others:
             del kept[cube]
     yield from kept

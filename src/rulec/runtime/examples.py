@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Example, Rule, Rulebook
+from rulec.runtime.facts import ImpossibleStateError, check_counting_facts
 from rulec.runtime.verify import columns_of, run
 from rulec.trace import Trace
 
@@ -67,6 +68,9 @@ def run_all(
 
     An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
     warnings are passed on.
+
+    Raises:
+        RulecError: R0306 if a state of an example cannot be, because of facts.
     """
     outcomes = tuple(
         _outcome(rule, machine, compiled, example, number)
@@ -86,10 +90,24 @@ def _outcome(
 ) -> Outcome:
     """The verdict for the binding that gives every variable its own name."""
     trace = example_trace(rule, example)
-    columns = columns_of(trace, compiled)
-    word = columns.word(machine, own_names(rule), 0, len(trace.states) - 1)
+    where = "this state".format
+    columns = columns_of(trace, compiled, where)
+    last = len(trace.states) - 1
+    try:
+        check_counting_facts(compiled, last + 1, columns.moment, where, trace.place)
+        word = columns.word(machine, own_names(rule), 0, last)
+    except ImpossibleStateError as error:
+        raise _no_state(rule, example, error) from None
     ends = compiled.semantics == "finite"
     return Outcome(rule, example, number, word, *run(machine.machine, word), ends)
+
+
+def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:
+    (found,) = error.diagnostics
+    spans = example.state_spans
+    place = spans[error.number].place if spans else at(example.span)
+    note = f"in an example of rule `{rule.name}`"
+    return RulecError(replace(found, code="R0306", place=place, notes=(*found.notes[:1], note)))
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:

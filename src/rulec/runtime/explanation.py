@@ -18,11 +18,12 @@ from rulec.logic.formula import (
     Unary,
     atoms_of,
 )
+from rulec.logic.one_state import Unknown, counted, holds
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
 from rulec.logic.timing import in_steps
 from rulec.runtime.binding import Binding, bindings
-from rulec.runtime.moment import Moment, Unknown, counted, holds
+from rulec.runtime.moment import Moment
 from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import columns_of

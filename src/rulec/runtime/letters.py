@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
-from rulec.automata.compiled import CompiledRule
-from rulec.automata.machine import Read
+from rulec.automata.compiled import CompiledFact, CompiledRule
+from rulec.automata.machine import IMPOSSIBLE, Read
 from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.runtime.moment import Moment, Unknown, total, value_in
+from rulec.logic.one_state import Unknown, total
+from rulec.runtime.facts import impossible
+from rulec.runtime.moment import Moment, value_in
 from rulec.runtime.numbers import Scale, scale
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
@@ -22,7 +24,7 @@ class Columns:
 
     What some objects contribute to letters is looked up once, whatever rules and bindings ask.
     ``where`` names a state in messages, ``place`` is where they were read. ``objects`` and
-    ``present`` are a trace's.
+    ``present`` are a trace's, ``facts`` what the rulebook knows of every state.
     """
 
     def __init__(
@@ -33,6 +35,7 @@ class Columns:
         place: Place | None = None,
         objects: Mapping[str, str] = NOBODY,
         present: Mapping[str, tuple[int, int]] = ALWAYS_THERE,
+        facts: Sequence[CompiledFact] = (),
     ) -> None:
         self._states = states
         self._vocabulary = vocabulary
@@ -40,6 +43,7 @@ class Columns:
         self._place = place
         self._objects = objects
         self._present = present
+        self._facts = facts
         self._known: dict[tuple[object, ...], list[int]] = {}
         self._moments: dict[int, Moment] = {}
 
@@ -56,7 +60,7 @@ class Columns:
         """The letter classes of states ``first`` to ``last`` (inclusive).
 
         Raises:
-            RulecError: R0504 if a value is missing that has no default.
+            RulecError: R0504 if a value is missing that has no default, R0508 if a state cannot be.
         """
         machine = rule.machine
         numbers, stride = [0] * (last - first + 1), 1
@@ -68,7 +72,13 @@ class Columns:
                 digits = self._counted_off(scale(read), objects, first, last, rule.name)
             numbers = [n + stride * digit for n, digit in zip(numbers, digits, strict=True)]
             stride *= read.size
-        return tuple([machine.letters[number] for number in numbers])
+        word = tuple([machine.letters[number] for number in numbers])
+        if IMPOSSIBLE in word:
+            number = first + word.index(IMPOSSIBLE)
+            where = self._where(number)
+            there = self.moment(number)
+            raise impossible(rule, objects, self._facts, there, number, where, self._place)
+        return word
 
     def _digits(
         self, read: Read, items: tuple[str, ...], first: int, last: int, rule: str

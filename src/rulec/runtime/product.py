@@ -14,6 +14,7 @@ from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.machine import Machine
 from rulec.runtime.binding import bindings
 from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns, present_in
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
@@ -85,7 +86,7 @@ def instances(
 
     Raises:
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
-            rule was compiled for another step.
+            rule was compiled for another step, R0508 if a state contradicts a fact.
     """
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength == "hard"]
@@ -101,9 +102,13 @@ def instances(
             vocabulary,
             f"a cell of layer {layer}".format,
             objects=present_in(layer, graph.objects, graph.present),
+            facts=rulebook.facts,
         )
         for layer, states in enumerate(graph.states)
     ]
+    for layer, read in enumerate(columns):
+        where = f"a cell of layer {layer}".format
+        check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
     return [
         Instance(
             rule.machine,

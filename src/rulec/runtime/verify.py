@@ -12,6 +12,7 @@ from rulec.diagnostics import Diagnostic, Label, Place, RulecError
 from rulec.logic.printing import number_in_words
 from rulec.runtime.binding import bindings
 from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns
 from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict, Violation
@@ -27,7 +28,8 @@ def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
 
     Raises:
         RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
-            R0507 if a rule was compiled for traces of another step, with the trace's own place.
+            R0507 if a rule was compiled for traces of another step, R0508 if a state contradicts
+            a fact that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
     rulebook = made_for(trace, rulebook)
@@ -38,6 +40,9 @@ def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
     columns = columns_of(trace, rulebook)
+    check_counting_facts(
+        rulebook, len(trace.states), columns.moment, "state {}".format, trace.place
+    )
     violations = []
     for rule in rulebook.rules:
         # Objects that did the same are judged once.
@@ -55,11 +60,20 @@ def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
     return Verdict(trace.id, tuple(violations))
 
 
-def columns_of(trace: Trace, rulebook: CompiledRulebook) -> Columns:
-    """The columns of a trace that has been checked."""
-    where = "state {}".format
+def columns_of(
+    trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
+) -> Columns:
+    """The columns of a trace that has been checked; ``where`` names a state in messages."""
     vocabulary = rulebook.vocabulary
-    return Columns(trace.states, vocabulary, where, trace.place, trace.objects, trace.present)
+    return Columns(
+        trace.states,
+        vocabulary,
+        where,
+        trace.place,
+        trace.objects,
+        trace.present,
+        rulebook.facts,
+    )
 
 
 def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> CompiledRulebook:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf
 
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
 from rulec.logic.comparing import stands
-from rulec.logic.formula import Comparison, Formula, Quantity, atoms_of
+from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atoms_of
+from rulec.logic.one_state import holds
+from rulec.logic.printing import in_words
+from rulec.rulebook.fact_checks import Told
 from rulec.rulebook.model import ExampleState
 from rulec.runtime.numbers import exact, scale
+from rulec.runtime.terms import variables_of
 from rulec.vocabulary import Enumeration, Vocabulary
 
 _MOST_PLACES = 17
@@ -37,6 +41,17 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
     return bounds[digit] < bounds[digit + 1]
 
 
+def possible_letters(machine: Machine) -> Mapping[int, int]:
+    """For every class of letters that some state of the world is in, the first of its letters."""
+    first: dict[int, int] = {}
+    for letter, symbol in enumerate(machine.letters):
+        if symbol == IMPOSSIBLE or symbol in first:
+            continue
+        if all(map(is_possible, machine.reads, digits_of(letter, machine))):
+            first[symbol] = letter
+    return first
+
+
 def truths(comparison: Comparison, machine: Machine) -> set[bool]:
     """The truth values that a comparison of the machine's rule can have."""
     return {
@@ -48,8 +63,18 @@ def truths(comparison: Comparison, machine: Machine) -> set[bool]:
     }
 
 
-def wanted(letter: int, machine: Machine, formula: Formula, vocabulary: Vocabulary) -> Wanted:
-    """A state in which the machine of a rule with this formula reads the letter."""
+def wanted(
+    letter: int,
+    machine: Machine,
+    formula: Formula,
+    vocabulary: Vocabulary,
+    facts: Sequence[Formula] = (),
+) -> Wanted:
+    """A state in which the machine of a rule with this formula reads the letter.
+
+    ``facts`` hold in every state. Where numbers that are chosen by themselves would contradict one,
+    they are left to the reader.
+    """
     digits = dict(zip(machine.reads, digits_of(letter, machine), strict=True))
     says: dict[tuple[str, tuple[str, ...]], bool | str | float] = {
         (read.name, read.variables): _value(read, digit, vocabulary)
@@ -62,7 +87,28 @@ def wanted(letter: int, machine: Machine, formula: Formula, vocabulary: Vocabula
     for read in sorted(numbers, key=lambda one: len(one.terms)):
         if not _choose(read, digits[read], says, vocabulary):
             besides += _in_words(read, digits[read], formula)
-    return Wanted(says, tuple(besides))
+    for fact in facts:
+        if holds(fact, _itself(fact), Told(says, frozenset(), {}, vocabulary)) is False:
+            about = {term for one in atoms_of(fact) for term in _quantities(one)}
+            for read in numbers:
+                terms = {term for _, term in read.terms}
+                if any((one.name, one.arguments) in says for one in about if one in terms):
+                    besides += _in_words(read, digits[read], formula)
+            for one in about:
+                says.pop((one.name, one.arguments), None)
+            besides.append(in_words(fact))
+    return Wanted(says, tuple(dict.fromkeys(besides)))
+
+
+def _itself(formula: Formula) -> dict[str, str]:
+    """Every variable stands for the object of its own name."""
+    return {name: name for name in variables_of(formula)}
+
+
+def _quantities(one: Proposition) -> Iterator[Quantity]:
+    for _, term in one.terms if isinstance(one, Comparison) else ():
+        if isinstance(term, Quantity):
+            yield term
 
 
 def digits_of(letter: int, machine: Machine) -> Iterator[int]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRule
-from rulec.automata.machine import NumberRead, Read
+from rulec.automata.machine import IMPOSSIBLE, NumberRead, Read
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -49,7 +49,8 @@ class Witnesses:
         self._digits = [self._split(letter) for letter in range(len(rule.machine.letters))]
         self._members: list[list[int]] = [[] for _ in rule.machine.following[0]]
         for letter, symbol in enumerate(rule.machine.letters):
-            self._members[symbol].append(letter)
+            if symbol != IMPOSSIBLE:
+                self._members[symbol].append(letter)
         self._plain = tuple(self._usual(read) for read in rule.machine.reads)
 
     def plainest(self, symbol: int) -> int | None:

@@ -90,6 +90,8 @@ class RuleSplitter:
         """
         if self.tokens[index].first and self.marks.is_word(index, "in"):
             return True
+        if self.tokens[index].first and self.marks.is_word(index, "if"):
+            return self.marks.is_word(clause, "cite", "says", "source", "certainty")
         if not (self.tokens[index].first and self.marks.is_name(index)):
             return False
         if self.marks.goes_on(index) and self.marks.is_word(clause, "unless", "in"):

@@ -53,12 +53,16 @@ class Translation:
 
 
 def translate(
-    formula: Formula, reads: Sequence[Read | NumberRead], semantics: Semantics = "stutter"
+    formula: Formula,
+    reads: Sequence[Read | NumberRead],
+    semantics: Semantics = "stutter",
+    facts: Sequence[Formula] = (),
 ) -> Translation:
     """The automaton of ``formula``, whose bounds are in steps, over the letters that there are.
 
-    Its language is that of the formula and of ``knowledge(reads)`` holding at every instant, its
-    propositions are the formula's. Raises CheckError where Spot, or rulec, got it wrong.
+    Its language is that of the formula, with ``knowledge(reads)`` and ``facts`` holding at every
+    instant, its propositions are the formula's; the facts speak of no others. Raises CheckError
+    where Spot, or rulec, got it wrong.
     """
     propositions = propositions_of(formula)
     past = remembered(formula)
@@ -66,10 +70,12 @@ def translate(
     names = names_of([*propositions, *fresh])
     alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
     wording = Wording(names, alive)
-    facts = knowledge(reads, propositions)
+    known = knowledge(reads, propositions)
+    for fact in facts:
+        known = fact if known == Constant(True) else Binary(_AND, known, fact)
     meant = past.present
-    if facts != Constant(True):
-        meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, facts))
+    if known != Constant(True):
+        meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, known))
     steps = reach(meant)
     if past.memories:
         automaton = _guessed(meant, past.memories, wording)

@@ -81,4 +81,28 @@ COMPILING = {
         "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
         "compiled",
     ),
+    "R0408": Explanation(
+        "a rule is not exercised by its examples",
+        "Examples show that a formula says what is meant only if it can be wrong in both ways: a "
+        "trace that the rule must allow, and one that it must forbid. A rule all of whose examples "
+        "it accepts would pass them also if it required nothing at all. `rulec test` says so, and "
+        "with `--coverage` what else the examples do not show.",
+        "rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+        "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
+        "rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+        "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
+        "  reject { not wet; wet and not slow }\n}\n",
+        "examples",
+    ),
+    "R0409": Explanation(
+        "facts contradict each other",
+        "A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
+        "all, there is no state that a rule could speak of. The message names facts that "
+        "contradict each other, none of them needlessly.",
+        "rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
+        "fact not fog\nhard rule r { require always not (wet and fog) }\n",
+        "rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
+        "hard rule r { require always not wet }\n",
+        "compiled",
+    ),
 }

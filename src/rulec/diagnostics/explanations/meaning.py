@@ -42,9 +42,10 @@ MEANING = {
         "rulebook example\nlight is one of red, green default green\nhard rule r { require red }\n",
     ),
     "R0306": Explanation(
-        "a state contradicts itself",
-        "In one state a signal is true or false, and an enumeration has one value. Two states, "
-        "one after the other, are separated by `;`.",
+        "a state of an example contradicts itself or a fact",
+        "In one state a signal is true or false, an enumeration has one value, and what the "
+        "vocabulary calls a `fact` holds. What a state does not say has its default, if the rule "
+        "reads it. Two states, one after the other, are separated by `;`.",
         "rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
         "  require always not r(v)\n  accept { b(v) and l(v) }\n}\n",
         "rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"

@@ -13,6 +13,16 @@ hard rule soon { require eventually[<= 1 s] p }
 echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
 """
 
+_STANDING = """\
+cat > signal.rules <<.
+rulebook signal_first
+signal standing, turning, indicator default false
+fact not (standing and turning)
+hard rule indicate { require always (standing or turning implies indicator) }
+.
+echo '{"states": [{"standing": %s, "turning": true, "indicator": true}]}' > trace.jsonl
+rulec verify trace.jsonl -r signal.rules"""
+
 TRACES = {
     "R0501": Explanation(
         "a line is not a trace in JSON",
@@ -73,6 +83,16 @@ TRACES = {
         "rulec verify trace.jsonl -r build/soon.json",
         _TWO_STEPS + "rulec compile soon.rules --step 0.5 -o build > log\n"
         "rulec verify trace.jsonl -r build/soon.json",
+        "command",
+    ),
+    "R0508": Explanation(
+        "a state contradicts a fact",
+        "A vocabulary may say, by `fact`, what holds in every state. Rules are compiled for states "
+        "in which it does, and say nothing of others. So a state that cannot be gets no verdict. "
+        "Either the state is wrong, as when a sensor or a converter is, or the fact does not "
+        "always hold. The message names the fact and the values that it speaks of.",
+        _STANDING % "true",
+        _STANDING % "false",
         "command",
     ),
 }

@@ -131,8 +131,10 @@ def declaration(values: Values, node: Branch) -> tree.Declaration:
             number = values.number(numbers[0]) if numbers else None
             if number is not None and leaves(node, "MINUS"):
                 number = -number
-            unit = leaf_of(node, "UNIT").text
-            return tree.QuantityItem(names[0], parameters(values, node), unit, number, span)
+            unit = leaf_of(node, "UNIT")
+            return tree.QuantityItem(
+                names[0], parameters(values, node), unit.text, number, span, values.span(unit)
+            )
         case "fact_item":
             return tree.FactItem(value_of(values, node), span)
         case _:

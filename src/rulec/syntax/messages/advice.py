@@ -86,6 +86,12 @@ def _punctuation(scene: Scene) -> str:
     return ""
 
 
+def _ending(scene: Scene) -> str:
+    """The sign with which other languages end a line."""
+    last = scene.at == len(scene.tokens) - 1 and scene.text in (";", ".", ",")
+    return f"delete the `{scene.text}`" if last and "$END" in scene.accepted else ""
+
+
 def _parentheses(scene: Scene) -> str:
     if scene.text != ")" or scene.operand or scene.quantity or scene.accepted == {"NAME"}:
         return ""
@@ -102,6 +108,7 @@ def _form(scene: Scene) -> str:
 _IN_ORDER: tuple[Callable[[Scene], str], ...] = (
     _quotes,
     _comment,
+    _ending,
     advise_on_bound,
     advise_on_aggregate,
     _misspelt,

@@ -13,6 +13,7 @@ from rulec.syntax.keywords import (
     UNARY_OPERATORS,
 )
 from rulec.syntax.messages.expectations import COMPARISONS
+from rulec.syntax.messages.in_chains import RELATIONS, advise_on_chain
 from rulec.syntax.messages.scene import Scene
 
 _OTHER_SPELLINGS: Final = {
@@ -47,7 +48,6 @@ _SIGNS: Final = {
     "−": "-",
     "–": "-",
 }
-_RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 _QUANTIFIERS: Final = {
     **dict.fromkeys(("exists", "any", "∃", "there"), "some"),
     **dict.fromkeys(("forall", "all", "each", "∀", "for"), "every"),
@@ -105,7 +105,12 @@ def _arguments(scene: Scene) -> str:
 
 def _conditionals(scene: Scene) -> str:
     text, before = scene.text, scene.text_before
-    otherwise = any(token.text == "else" for token in scene.tokens[scene.at :])
+    behind = [token.text for token in scene.tokens[scene.at :]]
+    otherwise = "else" in behind
+    then = behind.index("then") if "then" in behind else None
+    truths = then is not None and not scene.is_number(scene.at + then + 1)
+    if text == "if" and scene.operand and otherwise and truths:
+        return "write `(p implies q) and (not p implies r)` for `if p then q else r`"
     if text == "?" or (otherwise and text == "if"):
         if scene.operator and text == "if":
             return "a conditional stands in parentheses: `(1.5 m if built_up else 2 m)`"
@@ -158,62 +163,13 @@ def _comparisons(scene: Scene) -> str:
         return "write `!=`"
     if text == "**" or (before == "^" and scene.is_number(scene.at)):
         return "powers cannot be written; arithmetic is linear"
-    if scene.operator and text in _RELATIONS and not scene.accepted & COMPARISONS:
-        return _chain(scene)
+    if scene.operator and text in RELATIONS and not scene.accepted & COMPARISONS:
+        return advise_on_chain(scene)
     if scene.operator and text in ("between", "in"):
         return "write `a <= x and x <= b`"
     if text == "+" and scene.quantity:
         return "delete the `+`"
     return ""
-
-
-def _chain(scene: Scene) -> str:
-    """``a < b < c``: the middle one has to be said twice."""
-    last = next((at for at in range(scene.at - 1, -1, -1) if scene.text_at(at) in _RELATIONS), None)
-    if last is None:
-        return ""
-
-    def part(first: int, behind: int) -> str:
-        return scene.source.text[scene.tokens[first].start : scene.tokens[behind - 1].end]
-
-    left, right = _back(scene, last), _forward(scene, scene.at + 1)
-    if left == last or last + 1 >= scene.at or right == scene.at + 1:
-        return "compare two at a time: `a < b and b < c`"
-    middle = part(last + 1, scene.at)
-    first, second = part(left, scene.at), part(scene.at, right)
-    whole = f"{first} and {middle} {second}"
-    return "compare two at a time: " + (
-        f"write `{whole}`" if len(whole) <= 60 and "\n" not in whole else "`a < b and b < c`"
-    )
-
-
-def _belongs(scene: Scene, at: int) -> bool:
-    token = scene.token(at)
-    if token is None:
-        return False
-    if token.kind == "word":
-        return token.text not in RESERVED
-    return token.kind == "number" or token.text in ("+", "-", "*", "/", ".", ",", "(", ")", "^")
-
-
-def _back(scene: Scene, at: int) -> int:
-    depth = 0
-    while _belongs(scene, at - 1):
-        depth += (scene.text_at(at - 1) == ")") - (scene.text_at(at - 1) == "(")
-        if depth < 0:
-            break
-        at -= 1
-    return at
-
-
-def _forward(scene: Scene, at: int) -> int:
-    depth = 0
-    while _belongs(scene, at):
-        depth += (scene.text_at(at) == "(") - (scene.text_at(at) == ")")
-        if depth < 0:
-            break
-        at += 1
-    return at
 
 
 def _operators(scene: Scene) -> str:
@@ -224,6 +180,8 @@ def _operators(scene: Scene) -> str:
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if text == "then" and before == "and":
         return "`then` stands alone between two phases: write `p then q`"
+    if scene.operator and before in ("must", "shall", "should"):
+        return f"leave out `{before}`; what a formula says must hold"
     word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
     fits = scene.operand if word in UNARY_OPERATORS else "AND" in scene.accepted
     if word is not None and text != word and fits:
@@ -235,7 +193,7 @@ def _operators(scene: Scene) -> str:
         return "`strong` stands before `release`"
     if scene.operand and text == "{":
         return "a formula stands in parentheses, or alone, but not in braces"
-    if scene.operand and text in _RELATIONS and text != "=":
+    if scene.operand and text in RELATIONS and text != "=":
         return "say what is compared, such as `speed <= 50 km/h`"
     return ""
 

@@ -30,7 +30,9 @@ IN_FORCE: Final = "dates are written `in force from 2020-04-28 until 2024-12-31`
 _DATED: Final = ("param", "set", "in")
 _EQUALS: Final = ("==", ":=", ":", "is", "to", "->", "=>", "be", "as")
 _OTHER_WORDS: Final = {
-    **dict.fromkeys(("enum", "enumeration"), "x is one of a, b"),
+    **dict.fromkeys(("enum", "enumeration", "state"), "x is one of a, b"),
+    **dict.fromkeys(("class", "object", "entity", "struct"), "type NAME"),
+    **dict.fromkeys(("number", "float", "real", "int", "integer"), "quantity NAME in UNIT"),
     **dict.fromkeys(("function", "macro", "predicate", "relation"), "define NAME = formula"),
     **dict.fromkeys(("const", "constant", "let", "var"), "param NAME = 1.5 m"),
     **dict.fromkeys(("bool", "boolean", "flag"), "signal NAME"),

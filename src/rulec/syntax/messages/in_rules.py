@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
@@ -13,18 +14,36 @@ _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL w
 _SCOPE: Final = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
 _REMOVING: Final = ("remove", "delete", "repeal", "abolish", "cancel", "skip", "disable")
 _RELATIONS: Final = ("<", "<=", "==", "!=", ">=", ">", ":", ":=")
+_EXAMPLE: Final = "an example is written `accept { … }` or `reject { … }`"
 _OTHER_CLAUSES: Final = {
     **dict.fromkeys(("weight", "in", "level", "priority"), _HEAD),
     **dict.fromkeys(("from", "force", "since", "valid"), IN_FORCE),
     **dict.fromkeys(("except", "exception", "exempt"), "an exception is written `unless formula`"),
     **dict.fromkeys(("if", "given", "where"), "a condition is written `when formula`"),
+    **dict.fromkeys(
+        ("must", "shall", "should", "ensure", "assert", "demand", "obliges"),
+        "what must hold is written `require formula`",
+    ),
+    **dict.fromkeys(
+        ("forbid", "forbids", "prohibit", "prohibits", "disallow"),
+        "what is forbidden is written `require never (formula)`",
+    ),
+    **dict.fromkeys(("example", "examples", "test", "tests", "trace", "case"), _EXAMPLE),
+    **dict.fromkeys(("description", "text", "comment", "note"), 'write `says "…"`'),
+    **dict.fromkeys(("article", "paragraph", "section", "reference"), 'write `cite "…"`'),
     "at": _SCOPE,
+    ";": "delete the `;`",
 }
 _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "where", "weight")
 
 
-def other_clause(word: str) -> str:
-    """What to write for a clause's word of other languages; empty if it is unknown."""
+def other_clause(word: str, others: Container[str] = ()) -> str:
+    """What to write for a clause's word of other languages; empty if it is unknown.
+
+    ``others`` are the words and signs behind it.
+    """
+    if word == "if" and "then" in others:
+        return "write `require always (p implies q)` for `if p then q`"
     return _OTHER_CLAUSES.get(word, "")
 
 
@@ -94,6 +113,9 @@ def advise_on_state(scene: Scene) -> str:
         return "a state holds atoms and `not` before a signal; no other operator"
     if text == "=" and "not" in (scene.text_at(scene.at - 2), scene.text_at(0)):
         return "a quantity has one value in a state; write `=` without `not`"
+    signal = scene.text_at(scene.at - 2)
+    if scene.text_before == "=" and text in ("true", "false") and signal.isidentifier():
+        return f"write `{signal}` for true and `not {signal}` for false, without `=`"
     number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
     sums = text in ("+", "-", "*", "/")
     if number or sums or text in _RELATIONS or scene.is_number(scene.at):

@@ -99,14 +99,16 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
     """A piece that begins with nothing that the language has, inside a rule."""
     found = tokens[piece.first]
-    symbols = any(token.kind == "symbol" for token in tokens[piece.first : piece.last])
+    others = tokens[piece.first + 1 : piece.last]
+    symbols = any(token.kind == "symbol" for token in (found, *others))
     formula = "a formula stands behind `require`" if symbols else ""
+    words = frozenset(token.text for token in others)
     return Diagnostic(
         "R0104",
         f"no clause begins with `{_short(found.text)}`",
         _span(source, found).place,
         expected="expected a clause such as `require` or `accept`",
-        help=did_you_mean(found.text, _CLAUSE_BEGINS) or other_clause(found.text) or formula,
+        help=other_clause(found.text, words) or did_you_mean(found.text, _CLAUSE_BEGINS) or formula,
     )
 
 
@@ -114,7 +116,7 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     found, *others = inside
     way_out = ""
     if found.kind == "word":
-        way_out = did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS) or other_word(found.text)
+        way_out = other_word(found.text) or did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS)
         named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
         if others and others[0].text in ("=", ":="):
             way_out = way_out or f"write `param {found.text} = …` or `define {found.text} = …`"

@@ -56,6 +56,7 @@ class QuantityItem:
     unit: str
     default: float | None = None
     span: Span = field(default=NOWHERE, compare=False, repr=False)
+    unit_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

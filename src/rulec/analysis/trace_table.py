@@ -1,0 +1,51 @@
+"""A trace as a table: a row for everything that rules read, a column for every state."""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from dataclasses import dataclass
+
+from rulec.analysis.situation import keys_of
+from rulec.logic.formula import Atom
+from rulec.runtime.moment import value_in
+from rulec.trace import Trace, Value
+from rulec.vocabulary import Quantity, Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What is the case in each column: ``title`` names it, ``unit`` is empty if it has none.
+
+    ``usual``: it is the default in all of them.
+    """
+
+    title: str
+    unit: str
+    values: tuple[Value | None, ...]
+    usual: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TraceTable:
+    """States that are the same one after the other share a column, from the first to the last."""
+
+    columns: tuple[tuple[int, int], ...]
+    rows: tuple[Row, ...]
+
+
+def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
+    """The table of what a trace says of these declarations, for all of its objects."""
+    starts = [
+        number
+        for number, state in enumerate(trace.states)
+        if number == 0 or state != trace.states[number - 1]
+    ]
+    ends = [*(start - 1 for start in starts[1:]), len(trace.states) - 1]
+    rows = []
+    for (name, items), declaration in keys_of(vocabulary, trace.objects):
+        if name in names and len(set(items)) == len(items):
+            values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
+            unit = declaration.unit if isinstance(declaration, Quantity) else ""
+            usual = all(value == declaration.default for value in values)
+            rows.append(Row(str(Atom(name, items)), unit, values, usual))
+    return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))

@@ -1,0 +1,36 @@
+"""What has to be known of a state for a formula to have a value in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Term, atoms_of
+from rulec.logic.renaming import renamed
+
+
+def asked(
+    formula: Formula, objects: Mapping[str, str], fits: Callable[[str, str], bool]
+) -> Iterator[Atom | Quantity]:
+    """Every atom and quantity, with repetitions, those of every object that may count included.
+
+    ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
+    types is the second or one below it.
+    """
+    for one in atoms_of(formula):
+        if isinstance(one, Comparison):
+            for _, term in one.terms:
+                yield from _of_term(term, objects, fits)
+        else:
+            yield one
+
+
+def _of_term(
+    term: Term, objects: Mapping[str, str], fits: Callable[[str, str], bool]
+) -> Iterator[Atom | Quantity]:
+    if isinstance(term, Quantity):
+        yield term
+        return
+    for name, kind in objects.items():
+        if fits(kind, term.type):
+            # What is asked of the object that stands in the count's place.
+            yield from asked(renamed(term.body, {term.variable: name}), objects, fits)

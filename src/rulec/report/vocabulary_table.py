@@ -1,0 +1,132 @@
+"""The page docs/vocabulary.md: the words of the vocabulary ``road``, from its file's comments.
+
+``python -m rulec.report.vocabulary_table docs/vocabulary.md`` writes it anew. Above each item of
+the file stands a comment, `SUPPLIER: what it means`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rulec.diagnostics import RulecError, Source
+from rulec.files import written_whole
+from rulec.resources import rulebooks_folder
+from rulec.syntax import decode, parse, tree
+
+ROAD = rulebooks_folder() / "vocabulary" / "road.rules"
+
+_HEAD = """\
+# The vocabulary `road`
+
+The words for rulebooks of countries, as [`road.rules`](../rulebooks/vocabulary/road.rules)
+declares them, and who supplies them: the scene (ego's own motion, and what is measured of others),
+the map (the road, its marks and signs), or an interpretation (what others are about to do, and what
+traffic is like). Near is the kerb's side, far the other one. What a state does not mention has its
+default; `–` means that there is none, so that it has to be mentioned where a rule reads it.
+`python -m rulec.report.vocabulary_table docs/vocabulary.md` writes this page.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """What a vocabulary declares: ``holds`` says of which values, ``default`` is None for none."""
+
+    name: str
+    about: str
+    holds: str
+    default: str | None
+    meaning: str
+    supplier: str
+
+
+def vocabulary_page(source: Source) -> str:
+    """The page for a vocabulary's file. Raises RulecError if it has mistakes."""
+    file, mistakes = parse(source)
+    if mistakes:
+        raise RulecError(mistakes)
+    types = [_type_row(item) for item in file.items if isinstance(item, tree.TypeItem)]
+    words = [word for item in file.items for word in _words(item)]
+    return "\n".join(
+        [
+            _HEAD,
+            "## Types of objects\n",
+            *_table(("type", "is a", "meaning"), types),
+            "\n## About an object\n",
+            *_word_table([word for word in words if word.about]),
+            "\n## About ego and the world\n",
+            *_word_table([word for word in words if not word.about]),
+            "",
+        ]
+    )
+
+
+def comment_above(item: tree.Item) -> str:
+    """The comment on the lines directly above an item, as one line of text."""
+    source = item.span.source
+    number = source.position(item.span.start)[0] - 1
+    lines: list[str] = []
+    while number and source.line(number).lstrip().startswith("#"):
+        lines.insert(0, source.line(number).strip().lstrip("#").strip())
+        number -= 1
+    return " ".join(lines)
+
+
+def _words(item: tree.Item) -> Iterator[Word]:
+    supplier, _, meaning = comment_above(item).partition(": ")
+    match item:
+        case tree.EnumerationItem(name, parameters, values, default):
+            holds = ", ".join(f"`{value.text}`" for value in values)
+            said = None if default is None else f"`{default.text}`"
+            yield Word(name.text, _about(parameters), holds, said, meaning, supplier)
+        case tree.SignalItem(signals, default):
+            said = None if default is None else f"`{str(default).lower()}`"
+            for one in signals:
+                yield Word(one.name.text, _about(one.parameters), "signal", said, meaning, supplier)
+        case tree.QuantityItem(name, parameters, unit, default):
+            said = None if default is None else f"{default:g}"
+            yield Word(name.text, _about(parameters), f"in {unit}", said, meaning, supplier)
+
+
+def _about(parameters: Sequence[tree.Parameter]) -> str:
+    return ", ".join(
+        one.name.text if one.type is None else f"{one.name.text}: {one.type.text}"
+        for one in parameters
+    )
+
+
+def _type_row(item: tree.TypeItem) -> tuple[str, ...]:
+    parent = "" if item.parent is None else f"`{item.parent.text}`"
+    return f"`{item.name.text}`", parent, comment_above(item).partition(": ")[2]
+
+
+def _word_table(words: Sequence[Word]) -> Iterator[str]:
+    head = ("word", "values", "default", "meaning", "supplied by")
+    rows = [
+        (
+            f"`{word.name}({word.about})`" if word.about else f"`{word.name}`",
+            word.holds,
+            word.default or "–",
+            word.meaning,
+            word.supplier.lower(),
+        )
+        for word in words
+    ]
+    return _table(head, rows)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    yield _row(head)
+    yield "|" + "---|" * len(head)
+    yield from map(_row, rows)
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+if __name__ == "__main__":
+    with written_whole(Path(sys.argv[1])) as stream:
+        stream.write(vocabulary_page(decode(ROAD.name, ROAD.read_bytes())).encode())

@@ -1,0 +1,96 @@
+"""Two rules side by side, against direct evaluation on short words and on the witnesses."""
+
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, formulas, sides, states
+
+from rulec.analysis.comparison import compare
+from rulec.trace import Trace
+
+SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
+
+
+def check(one, other, traces):
+    """The witnesses are real and shortest, and where there is none no short trace tells."""
+    found = compare(one, other)
+    assert not found.undecided
+    witnesses = {True: found.first_forbids, False: found.second_forbids}
+    for witness, forbids, permits in (
+        (found.first_forbids, one, other),
+        (found.second_forbids, other, one),
+    ):
+        if witness is not None:
+            assert not allows(forbids, witness)
+            assert allows(permits, witness)
+    expected = {
+        (True, True): "equal",
+        (False, True): "stricter",
+        (True, False): "laxer",
+        (False, False): "incomparable",
+    }
+    assert found.relation == expected[found.first_forbids is None, found.second_forbids is None]
+    for trace in traces:
+        verdicts = allows(one, trace), allows(other, trace)
+        if verdicts[0] != verdicts[1]:
+            witness = witnesses[verdicts[1]]
+            assert witness is not None, trace
+            assert len(witness.states) <= len(trace.states)
+
+
+def words(objects, names, longest):
+    every = list(states(objects, names))
+    for length in range(1, longest + 1):
+        for word in product(every, repeat=length):
+            yield Trace("t", 1.0, objects, word)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(ALONE)] * 2), SEMANTICS)
+def test_rules_about_one_object(pair, semantics):
+    one, other = sides(pair, [X], semantics)
+    check(one, other, words({"x": "thing"}, ["p", "place", "speed", "gap"], 1))
+
+
+SMALL = list(words({"x": "thing"}, ["p", "place"], 3))
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(ALONE[:3])] * 2), SEMANTICS)
+def test_rules_about_one_object_on_longer_words(pair, semantics):
+    check(*sides(pair, [X], semantics), SMALL)
+
+
+PAIRS = [
+    Trace("t", 1.0, {"x": "thing", "y": "thing"}, word)
+    for length in (1, 2)
+    for word in product(states({"x": "thing", "y": "thing"}, ["p", "follows"]), repeat=length)
+]
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(PAIRED[:3])] * 2), SEMANTICS)
+def test_rules_about_two_objects(pair, semantics):
+    check(*sides(pair, [X, Y], semantics), PAIRS)
+
+
+GROUPS = [
+    trace
+    for objects in ({}, {"a": "thing"}, {"a": "thing", "b": "car"}, {"a": "car", "b": "car"})
+    for trace in words(objects, ["p", "place"], 1 if len(objects) == 2 else 2)
+]
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(COUNTED)] * 2), SEMANTICS)
+def test_rules_that_count(pair, semantics):
+    check(*sides(pair, [], semantics), GROUPS)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_variables_in_another_order_make_no_difference(swapped):
+    follows, back = PAIRED[1], PAIRED[2]
+    one, other = sides([follows, back if swapped else follows], [X, Y])
+    assert compare(one, other).relation == "equal"

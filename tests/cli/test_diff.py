@@ -1,0 +1,249 @@
+"""``rulec diff``."""
+
+import csv
+import json
+from html.parser import HTMLParser
+
+import pytest
+
+from rulec.cli.main import main
+
+OLD = """\
+rulebook old
+use road
+law "Act" as of 2020-01-01
+quantity side_gap(c: cyclist) in m default 10
+signal horn default false
+param least : length = 1.5 m
+hard rule leave_room (c: cyclist) {
+  cite "§ 5"
+  require always (beside(c) implies side_gap(c) >= least)
+}
+hard rule no_passing (v: vehicle) {
+  require never (behind(v) then beside(v) and right_of(v) then in_front_of(v))
+}
+soft rule no_horn { require never horn }
+soft rule no_crowd (v: vehicle) { require never (count x: bus (beside(x)) >= 2 and beside(v)) }
+"""
+
+NEW = """\
+rulebook new
+extends old
+law "Act" as of 2020-01-01
+set least = 2 m
+override rule no_passing (v: vehicle) { unless congested throughout }
+silent on no_horn because "in the act on noise"
+"""
+
+
+@pytest.fixture(autouse=True)
+def books(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "old.rules").write_text(OLD)
+    (tmp_path / "new.rules").write_text(NEW)
+
+
+def test_the_answer(capsys):
+    assert main(["diff", "./new.rules", "./old.rules"]) == 1
+    assert (
+        capsys.readouterr().out
+        == """\
+new compared to old; the law of 2020-01-01
+
+leave_room: new is stricter: it forbids all that old forbids, and more
+  new forbids, old allows
+    state              0
+    ─────────────────────────
+    station(c)         beside
+    side_gap(c) in m   1.5
+
+no_passing: new is laxer: it allows all that old allows, and more
+  old forbids, new allows
+    state        0        1         2
+    ───────────────────────────────────────────
+    station(v)   behind   beside    in_front_of
+    lateral(v)   left_of  right_of  left_of
+    congested    F        T         F
+
+only in old
+  soft rule no_horn; new is silent on it: "in the act on noise"
+
+set otherwise
+  parameter least: 2 m in new, 1.5 m in old
+
+the same in both: no_crowd
+
+3 shared rules: 1 equal, 1 stricter, 1 laxer, 1 only in old
+"""
+    )
+
+
+def test_a_rulebook_does_not_differ_from_itself(capsys):
+    assert main(["diff", "./old.rules", "./old.rules"]) == 0
+    assert capsys.readouterr().out.endswith("4 shared rules: 4 equal\n")
+
+
+def test_the_witnesses_do_as_promised(capsys):
+    assert main(["diff", "./new.rules", "./old.rules", "--witness", "found.jsonl"]) == 1
+    assert capsys.readouterr().err == "wrote 2 traces to found.jsonl\n"
+    verdicts = {}
+    for book in ("old", "new"):
+        assert main(["verify", "found.jsonl", "-r", f"./{book}.rules", "--json"]) == 1
+        lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        verdicts[book] = {
+            line["trace"]: [one["rule"] for one in line["violations"]] for line in lines
+        }
+    assert verdicts == {
+        "new": {
+            "leave_room: new forbids, old allows": ["leave_room"],
+            "no_passing: old forbids, new allows": [],
+        },
+        "old": {
+            "leave_room: new forbids, old allows": [],
+            "no_passing: old forbids, new allows": ["no_passing"],
+        },
+    }
+
+
+def test_json(capsys):
+    assert main(["diff", "./new.rules", "./old.rules", "--output-format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    relations = {one["rule"]: one["relation"] for one in found["rules"]}
+    assert relations == {"leave_room": "stricter", "no_passing": "laxer", "no_crowd": "equal"}
+    room = found["rules"][0]
+    assert room["second_forbids"] is None
+    assert room["first_forbids"]["objects"] == {"c": "cyclist"}
+    assert room["first_forbids"]["states"][0]["side_gap"] == {"c": 1.5}
+    assert [one["because"] for one in found["only_second"]] == ["in the act on noise"]
+    assert found["settings"] == [
+        {"kind": "parameter", "name": "least", "first": "2 m", "second": "1.5 m"}
+    ]
+
+
+def test_csv(capsys):
+    assert main(["diff", "./new.rules", "./old.rules", "--output-format", "csv"]) == 1
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert [(row["rule"], row["relation"]) for row in rows] == [
+        ("leave_room", "stricter"),
+        ("no_passing", "laxer"),
+        ("no_crowd", "equal"),
+        ("no_horn", "only in old"),
+    ]
+
+
+def test_a_page(capsys):
+    command = ["diff", "./new.rules", "./old.rules", "--output-format", "html", "-o", "page.html"]
+    assert main(command) == 1
+    assert capsys.readouterr().err == "wrote page.html\n"
+    seen = []
+
+    class Headings(HTMLParser):
+        def handle_data(self, data):
+            if self.get_starttag_text() == "<code>":
+                seen.append(data)
+
+    with open("page.html", encoding="utf-8") as stream:  # noqa: PTH123
+        Headings().feed(stream.read())
+    assert {"leave_room", "no_passing", "no_horn", "no_crowd"} <= set(seen)
+
+
+def test_some_rules_only(capsys):
+    assert main(["diff", "./new.rules", "./old.rules", "--rule", "no_c*"]) == 0
+    assert capsys.readouterr().out.endswith("1 shared rule: 1 equal\n")
+
+
+def test_strength_is_a_difference(tmp_path, capsys):
+    text = 'rulebook mild\nextends old\nsoften rule no_passing because "why not"\n'
+    (tmp_path / "mild.rules").write_text(text)
+    assert main(["diff", "./mild.rules", "./old.rules", "--rule", "no_passing"]) == 1
+    out = capsys.readouterr().out
+    assert "no_passing: the same traces are forbidden\n  strength: soft in mild, hard in old" in out
+
+
+def test_other_types_of_variables(tmp_path, capsys):
+    head = "use road hard rule r"
+    (tmp_path / "a.rules").write_text(f"rulebook a {head} (v: car) {{ require never beside(v) }}")
+    (tmp_path / "b.rules").write_text(f"rulebook b {head} (w: vehicle) {{ require G !beside_w }}")
+    assert main(["diff", "./a.rules", "./b.rules"]) == 1
+    assert (
+        "r: a is laxer: it allows all that b allows, and more\n"
+        "  a speaks of (v: car), b speaks of (w: vehicle); "
+        "of (car), which both speak of: equal\n"
+    ) in capsys.readouterr().out
+
+
+def test_words_that_mean_different_things(tmp_path, capsys):
+    for name, unit in (("a", "m"), ("b", "ft")):
+        (tmp_path / f"{name}.rules").write_text(
+            f"rulebook {name} quantity gap in {unit} hard rule r {{ require always gap > 1 m }}"
+        )
+    assert main(["diff", "./a.rules", "./b.rules"]) == 2
+    out = capsys.readouterr().out
+    assert "r: not decided: `gap` is not declared alike in both" in out
+
+
+def test_it_takes_two(capsys):
+    assert main(["diff", "./old.rules"]) == 2
+    assert "name the two rulebooks" in capsys.readouterr().err
+
+
+def test_all(tmp_path, capsys):
+    """The treaty comes first, so that its rules are law A; small letters are soft rules."""
+    (tmp_path / "third.rules").write_text(
+        "rulebook third\nextends old\nset least = 1 m\n"
+        'soften rule no_passing because "seldom"\nsilent on no_crowd because "rare"\n'
+    )
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    rules = dict(line.split(maxsplit=1) for line in lines[3:8])
+    assert rules == {
+        "old": "new  third",
+        "leave_room": "A    B    C",
+        "no_passing": "A    B    a",
+        "no_horn": "a    /    a",
+        "no_crowd": "a    a    /",
+    }
+    pairs = [line.split() for line in lines[13:16]]
+    assert pairs == [
+        ["old", "1=", "1+", "1-", "2=", "1+"],
+        ["new", "1=", "1+", "1-", "1+", "1-"],
+        ["third", "2=", "1-", "1+", "1-"],
+    ]
+    assert (
+        lines[-1] == "3 rulebooks, 4 rules that two or more of them have, 2 of them the same in all"
+    )
+
+
+def test_all_as_data(capsys):
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "--output-format", "csv"]) == 1
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert [tuple(row.values()) for row in rows if row["rule"] == "leave_room"] == [
+        ("leave_room", "old", "new", "laxer"),
+        ("leave_room", "new", "old", "stricter"),
+    ]
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "--output-format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    (pair,) = [one for one in found["pairs"] if one["first"] == "old"]
+    assert pair == {
+        "first": "old",
+        "second": "new",
+        "equal": 1,
+        "stricter": 1,
+        "laxer": 1,
+        "incomparable": 0,
+        "undecided": 0,
+        "only": 1,
+        "silent": 1,
+    }
+
+
+def test_all_that_are_the_same(capsys):
+    command = ["diff", "--all", "./new.rules", "./old.rules", "--rule", "no_crowd"]
+    assert main(command) == 0
+
+
+def test_all_goes_on_without_what_cannot_be_read(capsys):
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "./none.rules"]) == 2
+    out, err = capsys.readouterr()
+    assert "2 rulebooks" in out
+    assert "none.rules" in err

@@ -1,0 +1,49 @@
+"""docs/vocabulary.md: what the vocabulary `road` declares, and what its comments say of it."""
+
+from pathlib import Path
+
+import pytest
+
+from rulec.diagnostics import RulecError, Source
+from rulec.report.vocabulary_table import ROAD, comment_above, vocabulary_page
+from rulec.syntax import decode, parse
+
+PAGE = Path(__file__).parents[2] / "docs" / "vocabulary.md"
+ITEMS = parse(decode(ROAD.name, ROAD.read_bytes()))[0].items
+
+
+def test_the_page_is_up_to_date():
+    page = vocabulary_page(decode(ROAD.name, ROAD.read_bytes()))
+    assert PAGE.read_text(encoding="utf-8") == page, "see rulec.report.vocabulary_table"
+
+
+@pytest.mark.parametrize("item", ITEMS, ids=lambda item: item.span.text.split("(")[0])
+def test_each_item_says_what_it_means_and_who_supplies_it(item):
+    supplier, _, meaning = comment_above(item).partition(": ")
+    assert supplier in ("Scene", "Map", "Interpretation")
+    assert meaning.endswith(".")
+
+
+def test_a_row_for_each_word():
+    page = vocabulary_page(
+        Source(
+            "small.rules",
+            "vocabulary small {\n  # Scene: things.\n  type thing\n"
+            "  # Map: near\n  # or not.\n  signal near(o: thing), odd default false\n"
+            "  # Scene: how\n  # fast.\n  quantity speed in km/h default 2.5\n"
+            "  # Map: what is under ego.\n  ground is one of ice, sand\n}\n",
+        )
+    )
+    rows = [line for line in page.splitlines() if line.startswith("| `")]
+    assert rows == [
+        "| `thing` |  | things. |",
+        "| `near(o: thing)` | signal | `false` | near or not. | map |",
+        "| `odd` | signal | `false` | near or not. | map |",
+        "| `speed` | in km/h | 2.5 | how fast. | scene |",
+        "| `ground` | `ice`, `sand` | – | what is under ego. | map |",
+    ]
+
+
+def test_a_file_with_mistakes_has_no_page():
+    with pytest.raises(RulecError):
+        vocabulary_page(Source("bad.rules", "vocabulary small { signal }"))
