@@ -95,7 +95,8 @@ def test_inherited_and_softened(page):
 def test_exceptions_are_said_one_by_one(folder, capsys):
     (folder / "excepted.rules").write_text(
         "rulebook excepted\nuse road\n"
-        "define passes(v: vehicle, side) = behind(v) then beside(v) and side(v) then in_front_of(v)\n"
+        "define passes(v: vehicle, side) =\n"
+        "  behind(v) then beside(v) and side(v) then in_front_of(v)\n"
         "hard rule r (v: vehicle) {\n"
         "  require never passes(v, right_of)\n"
         "  unless congested\n"
