@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from rulec.maneuvers import Maneuvers as Maneuvers
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.rulebook.model import Rulebook as Rulebook
-    from rulec.runtime.verdict import Verdict as Verdict
     from rulec.runtime.batch.verifying import verify_many as verify_many
+    from rulec.runtime.verdict import Verdict as Verdict
     from rulec.runtime.verify import verify as verify
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario import load_scenario as load_scenario
