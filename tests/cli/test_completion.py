@@ -24,7 +24,7 @@ def test_verbs(kind):
     assert offered([], "ch", kind) == [("plain", "check")]
 
 
-FILES = ("file", "")
+FILES = ("file", "the word so far")
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,13 @@ FILES = ("file", "")
     ],
 )
 def test_arguments(words, incomplete, expected):
+    expected = [("file", incomplete) if one is FILES else one for one in expected]
     assert offered(words, incomplete) == expected
+
+
+def test_verbs_are_described_by_whole_sentences():
+    program = FishComplete(rulec, {}, "rulec", "_RULEC_COMPLETE")
+    assert {one.value: one.help for one in program.get_completions([], "")} == VERBS
 
 
 def test_codes_come_with_their_titles():
@@ -78,6 +84,38 @@ def test_the_shell_itself_takes_the_script(shell, capsys, tmp_path):
     script = tmp_path / "script"
     script.write_text(capsys.readouterr().out)
     subprocess.run([shell, "-n", str(script)], check=True)
+
+
+def test_fish_offers_files_in_folders_and_whole_descriptions(capsys, tmp_path):
+    if shutil.which("fish") is None:
+        pytest.skip("there is no fish here")
+    main(["completion", "fish"])
+    (tmp_path / "script").write_text(capsys.readouterr().out)
+    (tmp_path / "books").mkdir()
+    (tmp_path / "books" / "mine.rules").touch()
+    program = tmp_path / "rulec"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rulec "$@"\n')
+    program.chmod(0o755)
+
+    def completed(line):
+        done = subprocess.run(
+            ["fish", "--no-config", "-c", f"source script; complete -C '{line}'"],
+            cwd=tmp_path,
+            env={
+                **os.environ,
+                "PATH": f"{tmp_path}:{os.environ['PATH']}",
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout.splitlines()
+
+    assert completed("rulec check books/m") == ["books/mine.rules"]
+    (explained,) = completed("rulec explain R0208")
+    assert explained == f"R0208\t{CODES['R0208']}"
+    assert "," in CODES["R0208"]
 
 
 def test_the_program_answers_the_script():

@@ -51,6 +51,23 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
     assert [(trace.id, trace.place.line) for trace in traces] == [("t1", 1), ("7", 4)]
 
 
+@pytest.mark.parametrize(
+    ("data", "way_out"),
+    [
+        (b'{"step": 1, "states": [{}]}', "did you mean `step_s`?"),
+        (b'{"state": [{}]}', "did you mean `states`?"),
+        (b'{"states": [{"v": NaN}]}', "JSON has no `NaN` and no infinity"),
+        (b'{"states": [{"v": -Infinity}]}', "JSON has no `NaN` and no infinity"),
+        (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
+        (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),
+        (b'{"zebra": 1, "states": [{}]}', "a trace is a line such as"),
+        (b"{", "a trace is a line such as"),
+    ],
+)
+def test_the_way_out(data, way_out):
+    assert problem(data).help.startswith(way_out)
+
+
 def test_a_bad_line_does_not_hide_the_good_ones():
     found = read(line(id="a") + b"{oops\n" + line(id="b"))
     assert [item.id for item in found if isinstance(item, Trace)] == ["a", "b"]

@@ -18,10 +18,6 @@ Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
 
 
-_FILES = CompletionItem("", type="file")
-"""Has the shell offer files, as well as the names that follow."""
-
-
 def complete_rulebooks(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
@@ -99,7 +95,8 @@ def _folders() -> tuple[Path, ...]:
 
 def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
     fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
-    return [_FILES, *fitting]
+    # The first has the shell offer files as well, whose paths begin so.
+    return [CompletionItem(incomplete, type="file"), *fitting]
 
 
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")

@@ -45,6 +45,7 @@ class _Verbs(click.Group):
         if cmd_name not in VERBS:
             return None
         command: click.Command = import_module(f"rulec.cli.{cmd_name}").command
+        command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
         command.name = cmd_name  # in the files all of them are called `command`
         return command
 
