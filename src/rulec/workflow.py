@@ -27,7 +27,7 @@ from rulec.trace import Trace, json_lines
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
     from rulec.analysis.difference import Difference
-    from rulec.analysis.inheritance import Inheritance
+    from rulec.analysis.history import Inheritance
     from rulec.analysis.matrix import Matrix
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.audit import (
-    KINDS,
     Article,
     Audit,
     Counts,
@@ -18,7 +17,9 @@ from rulec.analysis.audit import (
     changes,
     compared,
 )
-from rulec.analysis.inheritance import Inheritance, Member, RuleHistory, Step, inheritance
+from rulec.analysis.audit_kinds import KINDS
+from rulec.analysis.history import Inheritance, Member, RuleHistory, Step
+from rulec.analysis.inheritance import inheritance
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.model import Rule

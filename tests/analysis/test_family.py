@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.family import Branch, forest
-from rulec.analysis.inheritance import Member
+from rulec.analysis.history import Member
 
 
 def book(name, extends=""):

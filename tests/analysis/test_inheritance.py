@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.inheritance import Setting, inheritance
+from rulec.analysis.history import Setting
+from rulec.analysis.inheritance import inheritance
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
 

@@ -63,7 +63,7 @@ CARS_TEXT = "count y: car (near(y))"
 
 def test_a_count_is_a_whole_number():
     assert thresholds(CARS_TEXT, "<= 2") == thresholds(CARS_TEXT, "< 3") == [">= 3"]
-    assert thresholds(CARS_TEXT, "> 5/2") == [">= 3"]
+    assert thresholds(CARS_TEXT, "> 5/2") == thresholds(CARS_TEXT, ">= 5/2") == [">= 3"]
     assert thresholds(CARS_TEXT, "= 2") == [">= 2", ">= 3"]
     assert thresholds(CARS_TEXT, "= 0") == thresholds(CARS_TEXT, "> 0") == [">= 1"]
     # Always, or never, so.

@@ -51,6 +51,16 @@ def test_the_same_past_is_remembered_once():
     assert len(remembered(always(twice)).registers) == 2
 
 
+def test_another_range_is_remembered_apart():
+    def both(inside):
+        within = [Unary(UnaryOperator.ONCE, inside, steps(0, high)) for high in (1, 3)]
+        return remembered(always(Binary(BinaryOperator.AND, *within)))
+
+    assert [one.span for one in both(P).registers] == [Range(0, 1), Range(0, 3)]
+    # One, two, three instants ago; the shorter range needs the first of them.
+    assert len(both(Unary(UnaryOperator.NEXT, P)).memories) == 3
+
+
 def test_no_past_is_no_memory():
     formula = Binary(BinaryOperator.THEN, P, Unary(UnaryOperator.NEVER, Q, steps(0, 2)))
     past = remembered(formula)

@@ -79,7 +79,9 @@ def test_the_past_of_an_instant_that_repeats_the_last_letter():
     """The word x stands for x x x …: in its second instant there was an x before."""
     twice = Unary(UnaryOperator.PREVIOUSLY, Unary(UnaryOperator.PREVIOUSLY, X))
     thrice = Unary(UnaryOperator.PREVIOUSLY, twice)
-    for formula in (twice, thrice):
+    exactly = Bound(Fraction(2), Fraction(2), "steps")
+    since = Binary(BinaryOperator.SINCE, X, twice, exactly)
+    for formula in (twice, thrice, since):
         assert not holds(formula, [{X}])
         assert holds(Unary(UnaryOperator.EVENTUALLY, formula), [{X}])
         at_last = Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, formula))

@@ -1,6 +1,7 @@
 """Exceptions and conditions, read as they are defined: by all ways to cut a word into phases."""
 
-from itertools import combinations
+import random
+from itertools import combinations, combinations_with_replacement, product
 
 import pytest
 from hypothesis import given
@@ -11,7 +12,7 @@ from rulec.logic.formula import Atom
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook
 
-NAMES = "pqrs"
+NAMES = "pqrs"  # of phases and what holds beside them; x and y are of exceptions
 SCOPES = ["initially", "at start", "throughout", "at some point", "at end"]
 
 # A state is the set of the names that are true in it; a condition is a set of states, and the text
@@ -55,7 +56,7 @@ def written(phases):
 def formula_of(require, exceptions, kind, when=None):
     unless = " ".join(f"unless {said} {scope}" for (said, _), scope in exceptions)
     condition = f"when {when[0]}" if when else ""
-    text = f"""rulebook r semantics {kind} signal {", ".join(NAMES)} default false
+    text = f"""rulebook r semantics {kind} signal {", ".join(NAMES)}, x, y default false
     hard rule r {{ require {require} {unless} {condition} }}"""
     return parse_rulebook(text).rules[0].formula
 
@@ -122,6 +123,38 @@ def test_exceptions_of_a_sequence(phases, exceptions, word, kind, when):
     formula = formula_of(f"never ({written(phases)})", exceptions, kind, when)
     long = lasting(word, kind, sum((bound or (1,))[0] + 1 for _, bound in phases) + 2)
     assert judged(formula, word, kind) == never_holds(phases, exceptions, long, when)
+
+
+def named(name):
+    return name, lambda state: name in state
+
+
+def sequences_with(chance, n_phases):
+    """Words in which the phases p, q, r, s occur, with x and y at random, or are cut off."""
+    for lengths in product((1, 2), repeat=n_phases):
+        occurring = "".join(name * n for name, n in zip("pqrs", lengths, strict=False))
+        for word in (occurring, occurring[: -lengths[-1]]):
+            letters = [{one, *(name for name in "xy" if chance.random() < 0.35)} for one in word]
+            if letters:
+                yield letters
+
+
+@pytest.mark.parametrize("scopes", list(combinations_with_replacement(SCOPES, 2)), ids=" and ".join)
+@pytest.mark.parametrize("n_phases", [2, 3, 4])
+@pytest.mark.parametrize("bound", [None, (2, 2)])
+@pytest.mark.parametrize("kind", ["stutter", "finite"])
+def test_two_exceptions_of_a_sequence(scopes, n_phases, bound, kind):
+    """Every pair of scopes, on words in which the sequence does occur."""
+    if bound and "throughout" in scopes:
+        return
+    some = [(named(name), bound) for name in "pqrs"[:n_phases]]
+    exceptions = list(zip((named("x"), named("y")), scopes, strict=True))
+    formula = formula_of(f"never ({written(some)})", exceptions, kind)
+    chance = random.Random(n_phases)
+    for _ in range(2):
+        for word in sequences_with(chance, n_phases):
+            expected = never_holds(some, exceptions, lasting(word, kind, 3 * n_phases))
+            assert judged(formula, word, kind) == expected, word
 
 
 @given(conditions, exceptions, words, semantics, st.none() | conditions)

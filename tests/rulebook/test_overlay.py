@@ -185,7 +185,11 @@ def merged_by_hand(books, day):
         step = {True: "1/2", False: "2"}[book.header["step"]] if "step" in book.header else "1"
         steps.update(dict.fromkeys(book.rules, step))
         for name, (head, inner) in book.overrides.items():
-            rules[name] = ({**rules[name][0], **head}, {**rules[name][1], **inner})
+            before = dict(rules[name][1])
+            if "cite" in inner:  # another provision: what was read elsewhere does not speak of it
+                before.pop("source", None)
+                before.pop("certainty", None)
+            rules[name] = ({**rules[name][0], **head}, {**before, **inner})
             if "accept" in inner:
                 steps[name] = step
     left = {

@@ -320,6 +320,11 @@ LINES = [
     ("hard rule a { require p accept { v 3 m } }", "3", ONE_VALUE),
     ("hard rule a { require p accept { v = w } }", "w", ONE_VALUE),
     (
+        "hard rule a { require p accept { q and p = true } }",
+        "true",
+        "write `p` for true and `not p` for false, without `=`",
+    ),
+    (
         "hard rule a { require p accept { not v = 3 m } }",
         "=",
         "a quantity has one value in a state; write `=` without `not`",

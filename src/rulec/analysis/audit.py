@@ -9,31 +9,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
 
-from rulec.analysis.inheritance import HARDNESS, Inheritance, ProvisionHistory
+from rulec.analysis.audit_kinds import KINDS
+from rulec.analysis.history import Inheritance, ProvisionHistory
+from rulec.analysis.inheritance import HARDNESS
 from rulec.analysis.words import words_used
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.provisions import in_force
 from rulec.syntax import tree
 from rulec.syntax.printer import print_in_force
-
-KINDS: Final = {
-    "uncited": "no provision of the law is cited",
-    "untested": "it lacks an example that it accepts, or one that it rejects",
-    "failing": "an example comes out otherwise than it says",
-    "unverified": "written from memory",
-    "secondary": "taken from a secondary source, not from the law itself",
-    "unstated": "nothing is said about its certainty",
-    "soft-only": "an article of which all rules are soft",
-    "softened": "an inherited hard rule that was made soft",
-    "dropped": "an inherited rule that was taken out",
-    "silent": "what the rulebook says nothing about",
-    "dated": "in force for a time only",
-    "out-of-force": "not in force on the day in question, and left out",
-    "unused": "a word that no rule speaks of",
-}
-"""Kind of finding -> what it means."""
 
 
 @dataclass(frozen=True, slots=True)

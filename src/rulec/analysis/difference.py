@@ -10,7 +10,7 @@ from fractions import Fraction
 from rulec.analysis.common_words import common_words
 from rulec.analysis.comparison import Comparison, Relation, compare, read_by
 from rulec.analysis.distinct import Distinct, at_one_step
-from rulec.analysis.inheritance import Inheritance, ProvisionHistory, ProvisionKind
+from rulec.analysis.history import Inheritance, ProvisionHistory, ProvisionKind
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.compiled import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.analysis.inheritance import Member
+from rulec.analysis.history import Member
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,118 +9,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
-from typing import Literal
 
+from rulec.analysis.history import (
+    Inheritance,
+    Member,
+    ProvisionHistory,
+    RuleHistory,
+    Setting,
+    Step,
+)
 from rulec.rulebook.descriptions import description
 from rulec.rulebook.overlay import merged
 from rulec.rulebook.provisions import in_force
 from rulec.rulebook.uses import names_used
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
-
-Deed = Literal["declared", "overridden", "softened", "dropped", "silent"]
-
-ProvisionKind = Literal["option", "parameter", "definition"]
-
-
-@dataclass(frozen=True, slots=True)
-class Member:
-    """A rulebook of a family: what it is, the base name of its file, and what it builds upon."""
-
-    name: str
-    title: str = ""
-    law: str = ""
-    as_of: str = ""
-    file: str = ""
-    extends: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """What one book did with a rule.
-
-    ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
-    what the rule was from then on, None where it is gone.
-    """
-
-    book: str
-    deed: Deed
-    rule: tree.RuleItem | None
-    clauses: tuple[str, ...] = ()
-    because: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class RuleHistory:
-    """A rule, or a topic that a book is silent on, and what was done with it in order."""
-
-    name: str
-    steps: tuple[Step, ...]
-
-    @property
-    def last(self) -> Step:
-        """What was done with it last."""
-        return self.steps[-1]
-
-    @property
-    def rule(self) -> tree.RuleItem | None:
-        """The rule as it is in the end; None if it is gone."""
-        return self.last.rule
-
-    @property
-    def cited_by(self) -> str:
-        """The book whose law its ``cite`` speaks of: the last that has changed it."""
-        saying = [one for one in self.steps if one.deed == "declared" or "cite" in one.clauses]
-        return saying[-1].book if saying else ""
-
-    def before(self, book: str) -> tree.RuleItem | None:
-        """The rule that a book has inherited; None if it has inherited none."""
-        found = [step for step in self.steps if step.book != book]
-        return found[-1].rule if found else None
-
-
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts.
-
-    ``note`` is the comment beside it.
-    """
-
-    book: str
-    text: str
-    since: str = ""
-    until: str = ""
-    current: bool = False
-    note: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class ProvisionHistory:
-    """An option, a parameter or a definition with all that it was given, in order.
-
-    ``head`` is how it is used: its name, with a definition's parameters. ``used``: some rule speaks
-    of it, or something does that a rule speaks of.
-    """
-
-    kind: ProvisionKind
-    name: str
-    head: str
-    settings: tuple[Setting, ...]
-    used: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Inheritance:
-    """A chain of rulebooks, the most general first, and what became of everything in it."""
-
-    books: tuple[Member, ...]
-    rules: tuple[RuleHistory, ...]
-    provisions: tuple[ProvisionHistory, ...]
-
-    @property
-    def book(self) -> str:
-        """The name of the rulebook at the end of the chain."""
-        return self.books[-1].name
 
 
 def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:

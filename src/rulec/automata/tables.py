@@ -9,8 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, trap
+
+Output = TypeVar("Output")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +55,7 @@ def build_machine(
     met = (1 << n_letters) - 1 if possible is None else possible
     classes = sorted(_letter_classes(automaton, met), key=lambda members: members & -members)
     following, accepting = _tables(automaton, classes)
-    following, accepting = _minimise(following, accepting, automaton.initial)
+    following, accepting = minimise(following, accepting, automaton.initial)
     columns = list(zip(*following, *accepting, strict=True))
     merged = {column: index for index, column in enumerate(dict.fromkeys(columns))}
     kept = [columns.index(column) for column in merged]
@@ -128,14 +131,14 @@ def _loop_verdicts(
     return [verdicts[state] for state in range(len(step))]
 
 
-def _minimise(
-    following: list[list[int]], accepting: list[list[bool]], initial: int
-) -> tuple[list[list[int]], list[list[bool]]]:
+def minimise(
+    following: list[list[int]], outputs: list[list[Output]], initial: int
+) -> tuple[list[list[int]], list[list[Output]]]:
     """Merge states that no word tells apart; number them from ``initial`` in breadth-first order.
 
-    Moore's partition refinement, with the verdicts as the machine's output.
+    Moore's partition refinement, with the outputs (verdicts) as what tells apart.
     """
-    blocks = _number(map(tuple, accepting))
+    blocks = _number(map(tuple, outputs))
     columns = list(zip(*following, strict=True))
     while True:
         targets = (map(blocks.__getitem__, column) for column in columns)
@@ -155,7 +158,7 @@ def _minimise(
                 rows.append(representative[blocks[target]])
     return (
         [[position[blocks[t]] for t in following[row]] for row in rows],
-        [accepting[row] for row in rows],
+        [outputs[row] for row in rows],
     )
 
 

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.analysis.audit import KINDS
+from rulec.analysis.audit_kinds import KINDS
 from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
 from rulec.cli.exit_status import ExitStatus
-from rulec.report.audits import FORMATS
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
+
+FORMATS = ("text", "markdown", "json")
 
 
 @click.command()

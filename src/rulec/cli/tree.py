@@ -11,7 +11,7 @@ import click
 from rulec.cli.arguments import at_option, complete_rulebooks, json_option, only_sources
 
 if TYPE_CHECKING:
-    from rulec.analysis.inheritance import Inheritance, Member
+    from rulec.analysis.history import Inheritance, Member
 
 WIDTH = 100
 """The width of a tree that goes to no terminal."""

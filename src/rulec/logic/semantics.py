@@ -66,13 +66,13 @@ def _values(
     if not word:
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"
-    settling = [] if ends else [word[-1]] * _steps_to_settle(formula)
+    settling = [] if ends else [word[-1]] * steps_to_settle(formula)
     known: dict[Formula, list[bool]] = {}
     _evaluate(formula, [*word, *settling], ends, known)
     return known
 
 
-def _steps_to_settle(formula: Formula) -> int:
+def steps_to_settle(formula: Formula) -> int:
     """For how long may values still change, at most, while the last letter is repeated?
 
     Only the past carries a change on to later instants: where its operands are the same for ever
@@ -82,10 +82,10 @@ def _steps_to_settle(formula: Formula) -> int:
     match formula:
         case Unary(operator, operand):
             carried = _carried(range_of(formula)) if operator in PAST else 0
-            return carried + _steps_to_settle(operand)
+            return carried + steps_to_settle(operand)
         case Binary(operator, left, right):
             carried = _carried(range_of(formula)) if operator in PAST else 0
-            return carried + max(_steps_to_settle(left), _steps_to_settle(right))
+            return carried + max(steps_to_settle(left), steps_to_settle(right))
         case Atom() | Comparison() | Constant() | Same():
             return 0
 

@@ -10,18 +10,17 @@ from textwrap import wrap
 
 import click
 
-from rulec.analysis.audit import KINDS, Audit, Changes, Finding
+from rulec.analysis.audit import Audit, Changes, Finding
+from rulec.analysis.audit_kinds import KINDS
 from rulec.report.excerpt import visible
 from rulec.report.markdown import code, escaped, table
-
-FORMATS = ("text", "markdown", "json")
 
 Compared = Mapping[str, Changes]
 """Rulebook -> what has changed since an older audit of it."""
 
 
 def render(audits: Sequence[Audit], compared: Compared, output_format: str) -> str:
-    """All audits in one of ``FORMATS``."""
+    """All audits as ``text``, ``markdown`` or ``json``."""
     match output_format:
         case "json":
             return _as_json(audits, compared)

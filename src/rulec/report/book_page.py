@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from rulec.analysis.audit import articles_of
-from rulec.analysis.inheritance import Inheritance
+from rulec.analysis.history import Inheritance
 from rulec.report.anchors import anchors
 from rulec.report.book_rule import rule_heading, rule_section
 from rulec.report.book_sections import (

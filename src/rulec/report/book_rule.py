@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 from textwrap import wrap
 
-from rulec.analysis.inheritance import Inheritance, RuleHistory
+from rulec.analysis.history import Inheritance, RuleHistory
 from rulec.logic.english import amount, listed, number_text, spoken
 from rulec.logic.printing import in_words
 from rulec.logic.sentence import Phrase

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rulec.analysis.inheritance import Inheritance, ProvisionHistory
+from rulec.analysis.history import Inheritance, ProvisionHistory
 from rulec.analysis.words import words_used
 from rulec.logic.english import listed, spoken
 from rulec.logic.printing import in_words

@@ -14,14 +14,7 @@ from rich.text import Text
 from rich.tree import Tree
 
 from rulec.analysis.family import Branch
-from rulec.analysis.inheritance import (
-    Inheritance,
-    Member,
-    ProvisionHistory,
-    RuleHistory,
-    Setting,
-    Step,
-)
+from rulec.analysis.history import Inheritance, Member, ProvisionHistory, RuleHistory, Setting, Step
 from rulec.report.excerpt import visible
 from rulec.report.standing import standing
 from rulec.syntax import tree

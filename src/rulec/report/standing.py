@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.analysis.inheritance import RuleHistory, Step
+from rulec.analysis.history import RuleHistory, Step
 
 
 def standing(one: RuleHistory, book: str) -> str:

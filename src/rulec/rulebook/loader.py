@@ -13,12 +13,11 @@ from rulec.rulebook.finding import (
     Dependency,
     available_rulebooks,
     find_rulebook,
-    find_vocabulary,
-    is_same_file,
     read_bytes,
 )
-from rulec.rulebook.model import Rulebook, SourceFile
+from rulec.rulebook.model import Rulebook
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
+from rulec.rulebook.vocabularies import Vocabularies
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
 
@@ -105,7 +104,7 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
         RulecError: it is not found, or with every mistake in it.
     """
     asked = Source("<vocabulary>", name)
-    found = _Vocabularies(tuple(search_path))
+    found = Vocabularies(tuple(search_path))
     use = tree.UseLine(tree.Name(name, Span(asked, 0, len(name))))
     file = found.read(use, None)
     if file is None or found.mistakes:
@@ -166,7 +165,7 @@ def _resolved(
     """The rulebook if it has no errors, and what there is to say about it."""
     file, mistakes = parsed
     based = read_bases(file, path, search_path)
-    found = _Vocabularies(tuple(search_path))
+    found = Vocabularies(tuple(search_path))
     books = [*based.books, Book(file, path)]
     trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
     vocabularies = tuple(one for one in trees if one is not None)
@@ -207,48 +206,6 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
     return tuple(sorted(mistakes, key=rank))
 
 
-@dataclass(slots=True)
-class _Vocabularies:
-    """Reads the vocabularies that rulebooks use, each once; collects records and mistakes.
-
-    ``failed``: one of them could not be read.
-    """
-
-    search_path: tuple[Path, ...]
-    sources: list[SourceFile] = field(default_factory=list)
-    mistakes: list[Diagnostic] = field(default_factory=list)
-    failed: bool = False
-    dependencies: list[Dependency] = field(default_factory=list)
-    read_already: list[Path] = field(default_factory=list)
-
-    def read(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
-        """The tree of a vocabulary; None if there is none to be had, or if it has been read."""
-        name = use.name
-        try:
-            path = find_vocabulary(name.text, name.span, user, self.search_path)
-            data = read_bytes(path, name.span)
-            record = source_file(path.name, data)
-            self.dependencies.append(
-                Dependency("vocabulary", name.text, str(user or ""), str(path), record.sha256)
-            )
-            if any(is_same_file(path, one) for one in self.read_already):
-                return None
-            source = decode(str(path), data)
-        except RulecError as error:
-            self.mistakes += error.diagnostics
-            self.failed = True
-            return None
-        self.read_already.append(path)
-        file, mistakes = parse(source)
-        if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
-            self.mistakes.append(_not_the_vocabulary(use, file, path))
-            self.failed = True
-            return None
-        self.sources.append(record)
-        self.mistakes += mistakes
-        return file
-
-
 def _not_a_rulebook(file: tree.File) -> Diagnostic:
     assert file.name is not None, "only files with a name are known to be vocabularies"
     return Diagnostic(
@@ -257,19 +214,4 @@ def _not_a_rulebook(file: tree.File) -> Diagnostic:
         file.name.span.place,
         expected="expected `rulebook NAME`",
         help=f"a rulebook takes its words from it by `use {file.name.text}`",
-    )
-
-
-def _not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
-    assert file.name is not None, "only files with a name have another one"
-    if file.kind == "rulebook":
-        message = f"`{path.name}` is a rulebook, not a vocabulary"
-    else:
-        message = f"`{path.name}` holds another vocabulary, `{file.name.text}`"
-    return Diagnostic(
-        "R0206",
-        message,
-        use.name.span.place,
-        expected="expected the name of a vocabulary",
-        help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",
     )

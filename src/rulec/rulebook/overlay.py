@@ -262,7 +262,11 @@ def never_in_force(dates: tree.InForce | None) -> bool:
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
-    """An override over a rule: each kind of clause that it has replaces those of the rule."""
+    """An override over a rule: each kind of clause that it has replaces those of the rule.
+
+    Where a provision was read, and how sure that is, goes with the provision.
+    """
+    read = replace(base, source=None, certainty="") if over.cite else base
     return replace(
         base,
         strength=over.strength or base.strength,
@@ -278,7 +282,7 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
         weight=over.weight or base.weight,
         unless=over.unless or base.unless,
         when=over.when or base.when,
-        source=over.source or base.source,
-        certainty=over.certainty or base.certainty,
+        source=over.source or read.source,
+        certainty=over.certainty or read.certainty,
         in_force=over.in_force or base.in_force,
     )

@@ -15,14 +15,24 @@ def check_trace(trace: Trace) -> None:
     Raises:
         RulecError: R0501, R0505 or R0506, with the trace's place.
     """
+    check_frame(trace)
+    for number, state in enumerate(trace.states):
+        if not isinstance(state, Mapping):
+            raise _error("R0501", f"state {number} is no object of names and values", trace)
+    check_presence(trace)
+
+
+def check_frame(trace: Trace) -> None:
+    """As ``check_trace``, of all but the states and who is there."""
     if not trace.states:
         raise _error("R0506", "the trace has no states; it needs at least one to judge", trace)
     if not 0 < trace.step_s < math.inf:
         message = f"`step_s` is {float(trace.step_s):g}; it has to be a number of seconds above 0"
         raise _error("R0501", message, trace)
-    for number, state in enumerate(trace.states):
-        if not isinstance(state, Mapping):
-            raise _error("R0501", f"state {number} is no object of names and values", trace)
+
+
+def check_presence(trace: Trace) -> None:
+    """As ``check_trace``, of who is there."""
     for name, (first, last) in trace.present.items():
         if name not in trace.objects:
             message = f"`present` speaks of `{name}`, which is not among the trace's objects"

@@ -113,6 +113,9 @@ def advise_on_state(scene: Scene) -> str:
         return "a state holds atoms and `not` before a signal; no other operator"
     if text == "=" and "not" in (scene.text_at(scene.at - 2), scene.text_at(0)):
         return "a quantity has one value in a state; write `=` without `not`"
+    signal = scene.text_at(scene.at - 2)
+    if scene.text_before == "=" and text in ("true", "false") and signal.isidentifier():
+        return f"write `{signal}` for true and `not {signal}` for false, without `=`"
     number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
     sums = text in ("+", "-", "*", "/")
     if number or sums or text in _RELATIONS or scene.is_number(scene.at):

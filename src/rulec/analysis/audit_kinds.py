@@ -1,0 +1,22 @@
+"""What an audit looks for. A file of its own, so that a shell completes these words at once."""
+
+from __future__ import annotations
+
+from typing import Final
+
+KINDS: Final = {
+    "uncited": "no provision of the law is cited",
+    "untested": "it lacks an example that it accepts, or one that it rejects",
+    "failing": "an example comes out otherwise than it says",
+    "unverified": "written from memory",
+    "secondary": "taken from a secondary source, not from the law itself",
+    "unstated": "nothing is said about its certainty",
+    "soft-only": "an article of which all rules are soft",
+    "softened": "an inherited hard rule that was made soft",
+    "dropped": "an inherited rule that was taken out",
+    "silent": "what the rulebook says nothing about",
+    "dated": "in force for a time only",
+    "out-of-force": "not in force on the day in question, and left out",
+    "unused": "a word that no rule speaks of",
+}
+"""Kind of finding -> what it means."""

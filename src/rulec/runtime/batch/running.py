@@ -1,0 +1,131 @@
+"""A machine runs over many traces, a step of all of them at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.machine import Machine
+from rulec.runtime.batch.joint import Joint
+from rulec.trace.columns import Array, Layout, smallest_unsigned
+
+_BYTE = 256
+
+
+def run(
+    joint: Joint, cells: Array, layout: Layout, first: int = 0, last: int | None = None
+) -> NDArray[np.uint8]:
+    """The verdicts on all traces, from step ``first`` to ``last`` (inclusive).
+
+    Args:
+        joint: the machine.
+        cells: unsigned integers in the layout's order.
+        layout: the traces; all have step ``last``.
+        first: where the runs begin.
+        last: where they end; None for the end of each trace.
+
+    Returns:
+        For each trace a joint verdict, as in ``Joint``.
+    """
+    n_states, n_cells = len(joint.following), len(joint.letters)
+    if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
+        # What the cells mean is worked into the tables.
+        return _run_bytes(joint, joint.letters, cells, layout, first, last)
+    letters = spelled(cells, joint.letters)
+    if n_states * joint.n_letters <= _BYTE:
+        return _run_bytes(joint, range(joint.n_letters), letters, layout, first, last)
+    return _run_wide(joint, letters, layout, first, last)
+
+
+def spelled(cells: Array, letters: Sequence[int]) -> Array:
+    """The letter of every cell, in the narrowest integers."""
+    dtype = smallest_unsigned(max(letters, default=0) + 1)
+    if cells.dtype == dtype == np.uint8:
+        return np.frombuffer(cells.tobytes().translate(_padded(letters)), np.uint8)
+    return np.take(np.array(letters, dtype=dtype), cells)
+
+
+def _run_bytes(
+    joint: Joint,
+    letters: Sequence[int],
+    column: NDArray[np.uint8],
+    layout: Layout,
+    first: int,
+    last: int | None,
+) -> NDArray[np.uint8]:
+    """A byte names the state and the cell; the C library's own loop looks up what follows."""
+    width = len(letters)
+    following = _padded([row[one] * width for row in joint.following for one in letters])
+    verdicts = _padded([row[one] for row in joint.verdicts for one in letters])
+    ends = np.empty(layout.n_traces, dtype=np.uint8)
+    state = np.zeros(layout.n_traces, dtype=np.uint8)
+    for now, onward, part in _steps(layout, first, last):
+        entry = state[:now]
+        entry = entry + column[part]
+        ends[onward:now] = entry[onward:]
+        if onward:
+            state = np.frombuffer(entry[:onward].tobytes().translate(following), np.uint8)
+    return np.frombuffer(ends.tobytes().translate(verdicts), np.uint8)
+
+
+def _run_wide(
+    joint: Joint, column: Array, layout: Layout, first: int, last: int | None
+) -> NDArray[np.uint8]:
+    """The same for machines that a byte is too small for."""
+    width = joint.n_letters
+    dtype = np.uint16 if len(joint.following) * width <= 1 << 16 else np.intp
+    following = np.array(joint.following, dtype=dtype).ravel() * dtype(width)
+    verdicts = np.array(joint.verdicts, dtype=np.uint8).ravel()
+    found = np.empty(layout.n_traces, dtype=np.uint8)
+    state = np.zeros(layout.n_traces, dtype=dtype)
+    for now, onward, part in _steps(layout, first, last):
+        entry = state[:now] + column[part]
+        found[onward:now] = verdicts.take(entry[onward:])
+        state = following.take(entry[:onward])
+    return found
+
+
+def _steps(layout: Layout, first: int, last: int | None) -> list[tuple[int, int, slice]]:
+    """For each step how many traces have it, how many go on after it, and where it stands."""
+    found = []
+    for step in range(first, layout.n_steps if last is None else last + 1):
+        now = layout.active(step)
+        onward = layout.active(step + 1) if last is None else 0 if step == last else now
+        start = int(layout.starts[step])
+        found.append((now, onward, slice(start, start + now)))
+    return found
+
+
+def first_lost(
+    machine: Machine, letters: Sequence[int], walks: Iterable[Array], lengths: NDArray[Any]
+) -> NDArray[np.int64]:
+    """Where traces are lost, counted from their first step here; -1 where they are not.
+
+    Args:
+        machine: the machine.
+        letters: for each cell the class of its letter.
+        walks: for each step the cells of the traces that have it, which are the first ones.
+        lengths: how many steps the traces have, in descending order.
+    """
+    if machine.dead is None:
+        return np.full(len(lengths), -1, dtype=np.int64)
+    width = len(machine.following[0])
+    following = np.array(machine.following, dtype=np.intp).ravel() * width
+    # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+    lost = (following == machine.dead * width) & ~np.array(machine.accepting, dtype=bool).ravel()
+    classes = np.array(letters, dtype=np.intp)
+    state = np.zeros(len(lengths), dtype=np.intp)
+    kept = np.zeros(len(lengths), dtype=np.int64)
+    for cells in walks:
+        entry = state[: len(cells)] + classes.take(cells)
+        # Once lost, always lost: so many steps are kept as come before.
+        kept[: len(cells)] += ~lost.take(entry)
+        state = following.take(entry)
+    return np.where(kept < lengths, kept, -1)
+
+
+def _padded(table: Sequence[int]) -> bytes:
+    return bytes(table) + bytes(_BYTE - len(table))

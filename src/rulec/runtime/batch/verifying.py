@@ -1,0 +1,173 @@
+"""Many traces judged together; each verdict is the one that ``verify`` gives of the trace alone.
+
+Traces that share their shape run through the machines together. Whatever is odd about a trace, from
+an unknown name to a missing value, is left to ``verify``, which says it best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain, islice
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.facts import counts
+from rulec.diagnostics import RulecError
+from rulec.runtime.batch.gathering import OddError, gathered
+from rulec.runtime.batch.grouping import Shape, grouped, shape_of
+from rulec.runtime.batch.judged import Judged
+from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.reading import NotGivenError
+from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.facts import check_counting_facts
+from rulec.runtime.moment import Moment
+from rulec.runtime.numbers import exact
+from rulec.runtime.verdict import NotJudged, Verdict, Violation
+from rulec.runtime.verify import RulebookFor, check_step, judge, made_for
+from rulec.trace import Trace
+from rulec.trace.check import check_frame, check_presence
+
+MOST_TOGETHER = 1 << 14
+"""So many traces are read before they are judged."""
+
+FEWEST = 4
+"""Fewer traces of one shape are judged one by one."""
+
+_SHARED = 4
+"""Where a state is met so many times, on average, what it means is worked out once."""
+
+Rules = CompiledRulebook | RulebookFor
+Answer = Verdict | NotJudged
+
+
+def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterator[Answer]:
+    """The verdict on each trace, in their order; in place of one that cannot be given, why.
+
+    Traces are read a few thousand at a time, so there may be any number of them. A ``RulecError``
+    in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
+    """
+    waiting = iter(traces)
+    while chunk := list(islice(waiting, MOST_TOGETHER)):
+        yield from judge_chunk(chunk, rulebook)
+
+
+def judge_chunk(
+    items: Sequence[Trace | RulecError], rulebook: Rules, fewest: int = FEWEST
+) -> list[Answer]:
+    """The same for a few traces; ``fewest`` of one shape are judged together."""
+    answers: list[Answer | None] = [None] * len(items)
+    shapes: dict[Shape, list[int]] = {}
+    for place, item in enumerate(items):
+        if isinstance(item, Trace):
+            try:
+                shapes.setdefault(shape_of(item), []).append(place)
+            except (TypeError, AttributeError):  # it is no trace, which ``verify`` will say
+                continue
+    for places in shapes.values():
+        if len(places) >= fewest:
+            _judge_group(items, places, rulebook, answers)
+    return [
+        judge(item, rulebook) if answer is None else answer
+        for item, answer in zip(items, answers, strict=True)
+    ]
+
+
+def _judge_group(
+    items: Sequence[Trace | RulecError],
+    places: Sequence[int],
+    rulebook: Rules,
+    answers: list[Answer | None],
+) -> None:
+    """Answer for those traces of one shape that nothing is odd about."""
+    sound: list[tuple[int, Trace]] = []
+    for place in places:
+        trace = items[place]
+        if isinstance(trace, Trace) and _is_framed(trace):
+            sound.append((place, trace))
+    if not sound:
+        return
+    try:
+        rules = _rules_for(sound[0][1], rulebook)
+    except RulecError:
+        return
+    judged, found, order = _judged(sound, rules)
+    unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
+    violations = _violations(judged)
+    for number, place in enumerate(order):
+        if number not in unread:
+            where, trace = found[place]
+            answers[where] = Verdict(trace.id, tuple(violations.get(number, ())))
+
+
+_Placed = tuple[int, Trace]
+
+
+def _judged(
+    traces: Sequence[_Placed], rules: CompiledRulebook
+) -> tuple[list[Judged], Sequence[_Placed], Sequence[int]]:
+    """What the engine says, of which of the traces, and in which order it does."""
+    group = grouped([trace for _, trace in traces])
+    cells = group.cells
+    if len(cells.states) * _SHARED > cells.layout.n_states:
+        if any(counts(fact.formula) for fact in rules.facts):
+            return [], (), ()
+        try:
+            return judge_columns(gathered(cells, rules.vocabulary), rules), traces, group.order
+        except (OddError, NotGivenError):
+            return [], (), ()
+    scenes = cells.there or (cells.objects,) * len(cells.states)
+    odd = {
+        id(state)
+        for state, there in zip(cells.states, scenes, strict=True)
+        if not _fits(state, cells.objects, there, rules)
+    }
+    if odd:
+        traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
+        if not traces:
+            return [], (), ()
+        group = grouped([trace for _, trace in traces])
+    return judge_cells(group.cells, rules), traces, group.order
+
+
+def _is_framed(trace: Trace) -> bool:
+    try:
+        check_frame(trace)
+        if trace.present:
+            check_presence(trace)
+    except (RulecError, TypeError):
+        return False
+    return True
+
+
+def _rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
+    """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
+    rules = made_for(trace, rulebook)
+    for rule in rules.rules:
+        check_step(rule, exact(trace.step_s))
+    check_objects(trace.objects, rules.vocabulary)
+    return rules
+
+
+def _fits(
+    state: object, objects: Mapping[str, str], there: Mapping[str, str], rulebook: CompiledRulebook
+) -> bool:
+    if not isinstance(state, Mapping):
+        return False
+    vocabulary = rulebook.vocabulary
+    try:
+        check_state(state, objects, vocabulary, "")
+        moment = Moment(state, there, vocabulary)
+        check_counting_facts(rulebook, 1, lambda _: moment, str, None)
+    except RulecError:
+        return False
+    return True
+
+
+def _violations(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
+    """The violations of each trace that has some, in the order of rules and objects."""
+    found: dict[int, list[Violation]] = {}
+    for one in judged:
+        rule, objects = one.task.rule, one.task.objects
+        for trace, step in zip(one.violated.tolist(), one.lost_at().tolist(), strict=True):
+            violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
+            found.setdefault(trace, []).append(violation)
+    return found

@@ -1,0 +1,322 @@
+"""Many traces together: every answer is the one that the trace gets alone."""
+
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from random import Random
+
+import numpy as np
+import pytest
+from books import always, both, compile_here, eventually, far, implies, near, no, rule
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from timed import TIMED_VOCABULARY, timed_formulas
+
+from rulec.automata.machine import NumberRead, Threshold
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.logic.formula import Comparison, Count, Quantity, Same
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.model import Rulebook
+from rulec.runtime.batch.gathering import OddError, gathered
+from rulec.runtime.batch.grouping import grouped
+from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.reading import NotGivenError
+from rulec.runtime.batch.sums import digits_of_sum
+from rulec.runtime.batch.verifying import judge_chunk, verify_many
+from rulec.runtime.bits.judging import judge_on_bits
+from rulec.runtime.letters import present_in
+from rulec.runtime.numbers import exact
+from rulec.runtime.verdict import NotJudged, Verdict
+from rulec.runtime.verify import judge, verify
+from rulec.trace import Trace
+
+
+@st.composite
+def rulebooks(draw):
+    rules = []
+    for number in range(draw(st.integers(1, 3))):
+        formula = draw(timed_formulas)
+        variables = draw(st.sampled_from([("x: thing",), ("x: car",)]))
+        strength = draw(st.sampled_from(["hard", "soft"]))
+        rules.append(rule(f"r{number}", formula, *variables, strength=strength))
+    semantics = draw(st.sampled_from(["stutter", "finite"]))
+    return Rulebook("b", TIMED_VOCABULARY, tuple(rules), semantics=semantics)
+
+
+OBJECTS = {"a": "car", "b": "thing", "c": "car"}
+numbers = st.sampled_from([0, 1, 0.1, 0.3, -0.5, 1.5, 2, 1e300, 2**60, 0.30000000000000004])
+places = st.sampled_from(["near", "far", "gone"])
+
+
+@st.composite
+def states(draw, objects, odd):
+    """A state that says all there is to say, unless it is odd."""
+    state = {"p": draw(st.booleans()), "q": draw(st.booleans()), "speed": draw(numbers)}
+    state["place"] = {name: draw(places) for name in objects}
+    state["gap"] = {name: draw(numbers) for name in objects}
+    for name in draw(st.lists(st.sampled_from([*state]), max_size=1 + odd)):
+        if odd or name == "p":
+            state.pop(name, None)
+    if odd:
+        wrong = {"place": {"nobody": "near"}, "q": 1, "speed": "fast", "light": "blue", "u": True}
+        key = draw(st.sampled_from([*wrong]) | st.none())
+        if key is not None:
+            state[key] = wrong[key]
+    return state
+
+
+@st.composite
+def chunks(draw):
+    """Traces of a few shapes that meet again in the same states, some of them odd."""
+    found = []
+    for shape in range(draw(st.integers(1, 2))):
+        objects = {name: OBJECTS[name] for name in sorted(draw(st.sets(st.sampled_from("abc"))))}
+        odd = draw(st.booleans())
+        pool = draw(st.lists(states(objects, odd), min_size=1, max_size=4))
+        present = {}
+        shortest = 1
+        for name in objects:
+            if draw(st.booleans()):
+                first = draw(st.integers(0, 2))
+                present[name] = (first, first + draw(st.integers(0, 2)))
+                shortest = max(shortest, present[name][1] + 1)
+        lengths = st.integers(shortest if not odd else 0, 6)
+        for number in range(draw(st.integers(1, 6))):
+            n_states = draw(lengths)
+            word = draw(st.lists(st.sampled_from(pool), min_size=n_states, max_size=n_states))
+            found.append(Trace(f"{shape}.{number}", 1.0, objects, tuple(word), present))
+    return draw(st.permutations(found))
+
+
+def told(answer):
+    return (answer.trace, answer.error.diagnostics) if isinstance(answer, NotJudged) else answer
+
+
+@given(rulebooks(), chunks())
+@settings(max_examples=settings.default.max_examples // 2)
+def test_answers_are_those_of_the_traces_alone(rulebook, traces):
+    compiled = compile_here(rulebook)
+    alone = [told(judge(trace, compiled)) for trace in traces]
+    assert [told(one) for one in judge_chunk(traces, compiled, fewest=1)] == alone
+
+
+@given(rulebooks(), chunks())
+@settings(max_examples=settings.default.max_examples // 2)
+def test_cells_and_columns_say_the_same(rulebook, traces):
+    """Whether states are told apart as a whole, or by what is read of them."""
+    compiled = compile_here(rulebook)
+    sound = [one for one in traces if isinstance(judge(one, compiled), Verdict)]
+    sound = [one for one in sound if one.objects == sound[0].objects]
+    sound = [one for one in sound if one.present == sound[0].present]
+    if not sound:
+        return
+    group = grouped(sound)
+    expected = violations(verify(sound[place], compiled) for place in group.order)
+    assert listed(judge_cells(group.cells, compiled), sound) == expected
+    with suppress(OddError, NotGivenError):
+        columns = gathered(group.cells, TIMED_VOCABULARY)
+        assert listed(judge_columns(columns, compiled), sound) == expected
+        assert kept(judge_on_bits(columns, compiled)) == kept_by(judge_columns(columns, compiled))
+
+
+def listed(judged, traces):
+    found = [[] for _ in traces]
+    for one in judged:
+        assert not len(one.unread)
+        for trace, step in zip(one.violated, one.lost_at(), strict=True):
+            step = None if step < 0 else step
+            found[trace].append((one.task.rule.name, one.task.objects, step))
+    return found
+
+
+def kept(on_bits):
+    return [(task.rule.name, task.objects, accepted.tolist()) for task, accepted in on_bits]
+
+
+def kept_by(judged):
+    return [(one.task.rule.name, one.task.objects, one.accepted.tolist()) for one in judged]
+
+
+def violations(verdicts):
+    return [[(v.rule, v.binding, v.step) for v in one.violations] for one in verdicts]
+
+
+def times(factor, quantity, *variables):
+    return Fraction(factor), Quantity(quantity, variables)
+
+
+def number(relation, limit, *terms):
+    return Comparison(terms, relation, Fraction(limit), f"{terms} {relation} {limit}")
+
+
+def count(variable, kind, body):
+    return Fraction(1), Count(variable, kind, body)
+
+
+CLOSE = number("<", Fraction(3, 10), times(1, "gap", "x"), times(-1, "gap", "y"))
+OTHERS = both(near("x"), no(Same("x", "v")))
+NESTED = number(">=", 1, count("y", "thing", both(no(Same("x", "y")), CLOSE)))
+CROWDED = Rulebook(
+    "crowded",
+    TIMED_VOCABULARY,
+    (
+        rule("apart", always(implies(near("v"), no(far("w")))), "v: car", "w: car"),
+        rule("pass", eventually(both(far("v"), near("w"))), "v: car", "w: thing"),
+        rule("others", always(number("<", 2, count("x", "car", OTHERS))), "v: car"),
+        rule("nobody", eventually(number("=", 0, count("x", "thing", near("x"))))),
+        rule("nested", always(number("<", 3, count("x", "car", NESTED)))),
+        rule("slow", always(number("<=", Fraction(3, 10), times(1, "speed")))),
+    ),
+)
+
+
+@cache
+def crowded(semantics):
+    return compile_here(replace(CROWDED, semantics=semantics))
+
+
+def state_of(chance, names):
+    tenths = (0.1, 0.2, 0.3, 0.30000000000000004, 0.5, 0.6000000000000001, 2)
+    return {
+        "place": {name: chance.choice(["near", "far", "gone"]) for name in names},
+        "gap": {name: chance.choice(tenths) for name in names},
+        "q": chance.random() < 0.5,
+        "speed": chance.choice(tenths),
+    }
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(st.randoms(use_true_random=False), st.integers(0, 5))
+def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
+    """In a state, values are given of those that are there."""
+    objects = {f"o{n}": chance.choice(["car", "thing"]) for n in range(n_objects)}
+    present = {}
+    for name in chance.sample(list(objects), n_objects // 2):
+        first = chance.randint(0, 2)
+        present[name] = (first, chance.randint(first, 3))
+    shortest = max([1, *(last + 1 for _, last in present.values())])
+    pools = [
+        [state_of(chance, present_in(step, objects, present)) for _ in range(3)]
+        for step in range(shortest + 3)
+    ]
+    traces = []
+    for place in range(30):
+        pool = pools[: chance.randint(shortest, shortest + 3)]
+        states = tuple(chance.choice(choice) for choice in pool)
+        traces.append(Trace(str(place), 1.0, objects, states, present))
+    compiled = crowded(semantics)
+    alone = [verify(trace, compiled) for trace in traces]
+    assert judge_chunk(traces, compiled) == alone
+    group = grouped(traces)
+    expected = violations(alone[place] for place in group.order)
+    assert listed(judge_cells(group.cells, compiled), traces) == expected
+    columns = gathered(group.cells, TIMED_VOCABULARY)
+    judged = judge_columns(columns, compiled)
+    assert listed(judged, traces) == expected
+    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
+
+
+def test_three_hundred_objects():
+    chance = Random(300)
+    objects = {f"o{n}": "car" for n in range(300)}
+    rules = tuple(one for one in CROWDED.rules if len(one.variables) < 2 and one.name != "nested")
+    compiled = compile_here(replace(CROWDED, rules=rules))
+    pool = [state_of(chance, objects) for _ in range(4)]
+    traces = [
+        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 4))))
+        for n in range(6)
+    ]
+    alone = [verify(trace, compiled) for trace in traces]
+    assert sum(len(one.violations) for one in alone) > 300
+    assert judge_chunk(traces, compiled) == alone
+    columns = gathered(grouped(traces).cells, TIMED_VOCABULARY)
+    expected = violations(alone[place] for place in grouped(traces).order)
+    judged = judge_columns(columns, compiled)
+    assert listed(judged, traces) == expected
+    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
+
+
+def test_any_number_of_traces_and_what_is_none():
+    compiled = crowded("stutter")
+    broken = RulecError(Diagnostic("R0501", "this is not a trace"))
+    states = tuple(state_of(Random(1), ()) for _ in range(3))
+    traces = [Trace(str(n), 1.0, {}, states[: 1 + n % 3]) for n in range(20_000)]
+    answers = list(verify_many(iter([broken, *traces]), compiled))
+    assert answers[0] == NotJudged(None, broken)
+    assert answers[1:] == [verify(trace, compiled) for trace in traces]
+
+
+def test_what_can_be_no_trace_is_not_judged():
+    compiled = crowded("stutter")
+    bad = [
+        Trace("a", 1.0, {}, ()),
+        Trace("b", 0.0, {}, ({"speed": 1.0},)),
+        Trace("c", 1.0, {"o": "plane"}, ({"speed": 1.0},)),
+        Trace("d", 1.0, {}, ({"speed": 1.0},), {"o": (0, 0)}),
+        Trace("e", 1.0, {}, ("speed",)),
+    ]
+    for one in bad:
+        answers = judge_chunk([one] * 5, compiled)
+        assert [told(answer) for answer in answers] == [told(judge(one, compiled))] * 5
+        assert isinstance(answers[0], NotJudged)
+
+
+THRESHOLDS = (
+    Threshold(Fraction(3, 10), inclusive=True),
+    Threshold(Fraction(3, 10), inclusive=False),
+)
+SUM = NumberRead((times(1, "gap", "x"), times(Fraction(1, 3), "speed")), THRESHOLDS)
+floats = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from(
+    [0.1, 0.2, 0.3, 0.6, 0.9, 0.30000000000000004, 5e-324, -5e-324, 1.7e308, 0.0, -0.0]
+)
+
+
+@given(st.lists(st.tuples(floats, floats), min_size=1))
+@example([(0.1, 0.6), (0.2, 0.3), (0.3, 0.0), (0.3, 5e-324), (0.3, -5e-324), (1.7e308, 1.7e308)])
+@example([(-1.7e308, 1.7e308), (0.30000000000000004, 0.0), (0.29999999999999999, 0.0)])
+def test_sums_are_exact(pairs):
+    """0.1 and a third of 0.6 are 0.3, whatever floats make of it."""
+    ones, others = (np.array(column) for column in zip(*pairs, strict=True))
+    found = digits_of_sum(SUM, [(Fraction(1), ones), (Fraction(1, 3), others)], len(pairs))
+    assert found.tolist() == [SUM.digit(exact(one) + exact(other) / 3) for one, other in pairs]
+
+
+QUEUE = """rulebook queue
+type car
+signal loud(v: car) default false
+signal horn
+quantity speed(v: car) in km/h default 0
+fact loud(v) implies horn
+fact speed(v) <= 120 km/h
+hard rule calm (v: car) { require always (loud(v) implies speed(v) <= 100 km/h) }
+soft rule fast (v: car) { require never (speed(v) > 50 km/h and next speed(v) > 60 km/h) }
+"""
+
+
+@cache
+def queue(more):
+    return compile_here(parse_rulebook(QUEUE + more, "queue.rules"))
+
+
+@pytest.mark.parametrize("more", ["", "fact count c: car (loud(c)) <= 1"])
+@pytest.mark.parametrize("n_states", [2, 40])
+@given(chance=st.randoms(use_true_random=False))
+def test_states_that_cannot_be(more, n_states, chance):
+    """Few states that are met again and again, or as many as there are."""
+    objects = {"a": "car", "b": "car"}
+
+    def state():
+        return {
+            "horn": chance.random() < 0.8,
+            "loud": {name: chance.random() < 0.4 for name in objects},
+            "speed": {name: chance.choice([40, 55.5, 61, 99, 120, 120.5]) for name in objects},
+        }
+
+    pool = [state() for _ in range(n_states)]
+    traces = [
+        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
+        for n in range(20)
+    ]
+    alone = [told(judge(trace, queue(more))) for trace in traces]
+    assert [told(one) for one in judge_chunk(traces, queue(more))] == alone
