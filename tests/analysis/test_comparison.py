@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, formulas, sides, states
 
 from rulec.analysis.comparison import compare
+from rulec.analysis.reasons import unusual
 from rulec.trace import Trace
 
 SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
@@ -15,28 +16,31 @@ SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
 
 def check(one, other, traces):
     """The witnesses are real and shortest, and where there is none no short trace tells."""
-    found = compare(one, other)
+    found = compare(one, other, most=3)
     assert not found.undecided
     witnesses = {True: found.first_forbids, False: found.second_forbids}
-    for witness, forbids, permits in (
+    for traces_of_one, forbids, permits in (
         (found.first_forbids, one, other),
         (found.second_forbids, other, one),
     ):
-        if witness is not None:
+        for witness in traces_of_one:
             assert not allows(forbids, witness)
             assert allows(permits, witness)
+        needs = [unusual(witness, one.rulebook.vocabulary) for witness in traces_of_one]
+        for number, later in enumerate(needs):
+            assert not any(earlier <= later for earlier in needs[:number])
     expected = {
         (True, True): "equal",
         (False, True): "stricter",
         (True, False): "laxer",
         (False, False): "incomparable",
     }
-    assert found.relation == expected[found.first_forbids is None, found.second_forbids is None]
+    assert found.relation == expected[not found.first_forbids, not found.second_forbids]
     for trace in traces:
         verdicts = allows(one, trace), allows(other, trace)
         if verdicts[0] != verdicts[1]:
-            witness = witnesses[verdicts[1]]
-            assert witness is not None, trace
+            assert witnesses[verdicts[1]], trace
+            witness = witnesses[verdicts[1]][0]
             assert len(witness.states) <= len(trace.states)
 
 

@@ -55,7 +55,7 @@ def test_a_rule_that_overrides(page):
         "- **Provision:** § 10a",
         "- **Kind of rule:** hard, it must never be violated",
         "- **Certainty:** ◐ taken from a secondary source",
-        "- **Read in:** a book",
+            "-source \"a book\"",
         "- **Origin:** overrides mainland: cite, require",
         # 3 s in steps of 1 s.
         "The states are 1 s apart.",
