@@ -150,6 +150,14 @@ quantity speed in km/h
             ["R0804 cannot both be kept at all"],
         ),
         (
+            (
+                "hard rule r { require always (wet implies next (slow or fog)) } "
+                "hard rule s { require never (wet and next slow) } "
+                "hard rule t { require never (wet and next fog) }"
+            ),
+            ["R0804 `r`, `s` and `t` cannot all be kept any more, after the trace: { wet"],
+        ),
+        (
             "hard rule r { require eventually wet } soft rule s { require never wet }",
             [],
         ),

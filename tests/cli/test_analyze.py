@@ -41,7 +41,7 @@ error[R0804]: rules `caution` and `flow` cannot both be kept any more, though ea
   | ------------------------------------------------------------ `caution` is here
 4 | hard rule flow { require never (wet and next slow) }
   | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-  = help: except from one of them what the other one asks for, or make it soft
+  = help: except from one of them what another one asks for, or make it soft
   = note: after the trace: { wet }
 
 1 error

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import combinations
 
 from rulec.analysis.comparison import compare
-from rulec.analysis.conflicts import conflict, share_words
+from rulec.analysis.conflict_findings import conflicts
 from rulec.analysis.distinct import Distinct, Side
 from rulec.analysis.errors import UndecidedError
+from rulec.analysis.finding_words import shown, undecided
 from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by
-from rulec.analysis.trace_in_words import in_words_of
 from rulec.analysis.triggers import Trigger, has_constant, occurrence, triggers
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
 from rulec.rulebook.model import Rule, Rulebook
-from rulec.trace import Trace
 
 
 def findings(
@@ -57,7 +55,7 @@ def findings(
     good = [name for name in by_name if name not in hopeless]
     diagnostics += _needless(good, by_name, own)
     hard = [name for name in good if by_name[name].strength == "hard"]
-    diagnostics += _conflicts(hard, own, by_name)
+    diagnostics += conflicts(hard, own, by_name)
     for base, sides in zip(bases, found[1:], strict=True):
         for name, side in sides.items():
             diagnostics += _weaker(by_name[name], own[name], side, base)
@@ -75,7 +73,7 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Trigger, Side]]) -> Iterator[Dia
         try:
             occurs = can_be_kept(side)
         except UndecidedError as problem:
-            yield _undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
+            yield undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
             continue
         if not occurs:
             yield Diagnostic(
@@ -108,7 +106,7 @@ def _alone(rule: Rule, side: Side) -> Iterator[Diagnostic]:
                 help="every trace violates it; say what it is to allow",
             )
     except UndecidedError as problem:
-        yield _undecided(rule, "it can be kept and violated", problem)
+        yield undecided(rule, "it can be kept and violated", problem)
 
 
 def _needless(
@@ -134,7 +132,7 @@ def _implied(
     try:
         premises = implied_by(sides[rule.name], others)
     except UndecidedError as problem:
-        yield _undecided(rule, "others imply it", problem)
+        yield undecided(rule, "others imply it", problem)
         return
     if premises:
         listed = [one.rule.name for one in premises]
@@ -154,40 +152,11 @@ def _implied(
         )
 
 
-def _conflicts(
-    names: Sequence[str], sides: dict[str, Side], rules: dict[str, Rule]
-) -> Iterator[Diagnostic]:
-    for first, second in combinations(names, 2):
-        pair = sides[first], sides[second]
-        if not share_words(*pair):
-            continue
-        try:
-            found = conflict(pair)
-        except UndecidedError as problem:
-            yield _undecided(
-                rules[second], f"it can always be kept together with `{first}`", problem
-            )
-            continue
-        if found is None:
-            continue
-        when = "at all" if found.trace is None else "any more"
-        notes = () if found.trace is None else _shown("after the trace", found.trace, pair)
-        place = at(rules[first].span)
-        yield Diagnostic(
-            "R0804",
-            f"rules `{first}` and `{second}` cannot both be kept {when}, though each alone could",
-            at(rules[second].span),
-            help="except from one of them what the other one asks for, or make it soft",
-            labels=() if place is None else (Label(place, f"`{first}` is here"),),
-            notes=notes,
-        )
-
-
 def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[Diagnostic]:
     found = compare(own, inherited)
     if found.undecided:
         problem = UndecidedError(found.undecided)
-        yield _undecided(rule, f"it is as strict as in `{base.name}`", problem)
+        yield undecided(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
     if not found.second_forbids and not softer:
@@ -195,31 +164,16 @@ def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[
     how = "laxer" if found.second_forbids else "softer"
     if found.relation == "incomparable":
         how = "neither stricter nor laxer"
-    shown = [
+    notes = [
         note
         for trace in found.second_forbids
-        for note in _shown(f"`{base.name}` forbids", trace, (own, inherited))
+        for note in shown(f"`{base.name}` forbids", trace, (own, inherited))
     ]
     yield Diagnostic(
         "R0806",
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
         at(rule.span),
         help="if the law has it so, nothing is to be done",
-        notes=tuple(shown),
-        severity="warning",
-    )
-
-
-def _shown(what: str, trace: Trace, sides: Sequence[Side]) -> tuple[str, ...]:
-    rules = [one.rule for one in sides]
-    return (f"{what}: {in_words_of(trace, rules, sides[0].rulebook.vocabulary)}",)
-
-
-def _undecided(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
-    return Diagnostic(
-        "R0807",
-        f"not decided of rule `{rule.name}` whether {what}: {problem}",
-        at(rule.span),
-        help="say less in one rule; rules beside each other are looked at one by one",
+        notes=tuple(notes),
         severity="warning",
     )

@@ -47,7 +47,7 @@ def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
     for other in related:
         if violation(side, [other]) is None:
             return (other,)
-    premises = _premises(side, related)
+    premises = walkable(side, related)
     if len(premises) < 2 or violation(side, premises) is not None:
         return ()
     for other in premises:
@@ -57,8 +57,8 @@ def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
     return tuple(premises)
 
 
-def _premises(side: Side, related: Sequence[Side]) -> list[Side]:
-    """Those of the others that can be walked together with the rule."""
+def walkable(side: Side, related: Sequence[Side]) -> list[Side]:
+    """Those of the others whose automata stay small together with that of the rule."""
     types = sorted(variable.type for variable in side.rule.variables)
     chosen: list[Side] = []
     for other in sorted(related, key=lambda one: len(one.rule.machine.following)):

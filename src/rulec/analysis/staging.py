@@ -13,6 +13,7 @@ from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import EXTRA, Scene
 from rulec.analysis.situation import Key, Situation, Value, keys_of, usual
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 
 
@@ -42,11 +43,21 @@ def staged(
     for fill in _fills(scene, types):
         written = tuple(_written(values, scene, everyone, fill) for values in states)
         trace = Trace("witness", float(step_s), everyone, written)
-        if shows(trace):
+        if _does_show(trace, shows, certain=not types):
             return trace
     if types:
         raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
+
+
+def _does_show(trace: Trace, shows: Callable[[Trace], bool], *, certain: bool) -> bool:
+    try:
+        return shows(trace)
+    except RulecError:
+        # Objects that are there to be counted may be what facts of several objects rule out.
+        if certain:
+            raise
+        return False
 
 
 def _types(companies: Iterable[Sequence[Any]]) -> list[str]:
