@@ -121,11 +121,9 @@ def test_facts_rule_out_states(pair, semantics):
     one, other = sides(pair, [X], semantics, (Fact((X,), FACT),))
     check(one, other, POSSIBLE)
     found = compare(one, other)
-    for trace in (found.first_forbids, found.second_forbids):
-        if trace is not None:
-            defaults = {"p": False}
-            states = tuple({**defaults, **state} for state in trace.states)
-            assert is_possible(replace(trace, states=states))
+    for trace in (*found.first_forbids, *found.second_forbids):
+        states = tuple({"p": False, **state} for state in trace.states)
+        assert is_possible(replace(trace, states=states))
 
 
 CARS = [trace for kind in ("thing", "car") for trace in words({"x": kind}, ["p", "place"], 2)]
