@@ -16,7 +16,6 @@ from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
 from rulec.trace import TraceGraph
 
-
 HARD: tuple[Strength, ...] = ("hard",)
 EVERY: tuple[Strength, ...] = ("hard", "soft")
 
