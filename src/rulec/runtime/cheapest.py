@@ -42,7 +42,7 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
         _, path, spent, here = heappop(queue)
         layer = len(path) - 1
         if layer == last:
-            yield _maneuver(graph, path, spent)
+            yield maneuver(graph, path, spent)
             continue
         for step, cost in product.steps[layer][here]:
             rest = to_come[layer + 1].get(step)
@@ -65,7 +65,8 @@ def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
     return costs[::-1]
 
 
-def _maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
+def maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
+    """A path through the graph with its margin; ``cost`` is in the graph's unit."""
     margins = [
         graph.margins[layer][node][graph.successors[layer][node].index(target)]
         for layer, (node, target) in enumerate(pairwise(path))

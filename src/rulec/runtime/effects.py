@@ -153,7 +153,6 @@ def _merged(
 
     None if no path loses the instance: then it does not matter.
     """
-    binding = instance.binding
     nobody = {len(layer): (0,) * len(layer) for layer in on_the_way}
     merging = _Merging(instance)
     known: dict[object, tuple[Effect, ...]] = {}
@@ -161,8 +160,8 @@ def _merged(
     layers = []
     for layer in reversed(range(len(on_the_way))):
         alive = on_the_way[layer]
-        here = binding.first <= layer <= binding.last
-        symbols = instance.letters[layer - binding.first] if here else nobody[len(alive)]
+        here = instance.first <= layer <= instance.last
+        symbols = instance.letters[layer - instance.first] if here else nobody[len(alive)]
         raw = merging.raw(layer)
         rows = steps[layer] if layer < len(steps) else ()
         key = (symbols, id(raw), id(rows), id(later), id(alive))
@@ -184,7 +183,7 @@ class _Merging:
 
     def __init__(self, instance: Instance) -> None:
         machine = instance.rule.machine
-        self._binding = instance.binding
+        self._instance = instance
         n_states = len(machine.following)
         self._before = [((instance.start,) * n_states)]
         self._after = [((SAFE,) * n_states)]
@@ -197,11 +196,11 @@ class _Merging:
 
         The machine waits until its objects are there. With their last layer it gives its verdict.
         """
-        if layer < self._binding.first:
+        if layer < self._instance.first:
             return self._before
-        if layer > self._binding.last:
+        if layer > self._instance.last:
             return self._after
-        return self._last if layer == self._binding.last else self._within
+        return self._last if layer == self._instance.last else self._within
 
     def layer(
         self,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
@@ -13,7 +13,8 @@ from rulec.runtime.checking import check_objects, check_state
 from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns, present_in
 from rulec.runtime.numbers import exact
-from rulec.runtime.verify import check_step
+from rulec.runtime.verdict import Violation
+from rulec.runtime.verify import check_step, run
 from rulec.trace import TraceGraph
 
 HARD: tuple[Strength, ...] = ("hard",)
@@ -24,16 +25,24 @@ EVERY: tuple[Strength, ...] = ("hard", "soft")
 class Instance:
     """A rule with objects bound, and the letter class of every node.
 
-    ``letters[p]`` are those of layer ``binding.first + p``'s nodes. ``start`` is the state in which
-    the machine waits for them. ``times`` is for how many bindings of the rule all this is the same;
-    ``binding`` is the first of them.
+    ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
+    machine waits for them. ``bindings`` are all those of the rule for which all this is the same.
     """
 
     rule: CompiledRule
-    binding: Binding
+    bindings: tuple[Binding, ...]
     letters: tuple[tuple[int, ...], ...]
     start: int = 0
-    times: int = 1
+
+    @property
+    def first(self) -> int:
+        """The first layer in which all objects are there."""
+        return self.bindings[0].first
+
+    @property
+    def last(self) -> int:
+        """The last layer in which all objects are there."""
+        return self.bindings[0].last
 
 
 def instances(
@@ -74,17 +83,28 @@ def instances(
         check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
     found: list[Instance] = []
     for rule in rules:
-        alike: dict[object, Instance] = {}
+        alike: dict[tuple[int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
             letters = tuple(
                 columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
                 for layer in range(binding.first, binding.last + 1)
             )
-            known = alike.get((binding.first, letters))
-            alike[binding.first, letters] = (
-                Instance(rule, binding, letters)
-                if known is None
-                else replace(known, times=known.times + 1)
-            )
-        found += alike.values()
+            alike.setdefault((binding.first, letters), []).append(binding)
+        found += [Instance(rule, tuple(bound), letters) for (_, letters), bound in alike.items()]
     return found
+
+
+def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
+    """What a path, given by its nodes' indices, violates, and from which layer on it is lost."""
+    found = []
+    for one in rules:
+        path = nodes[one.first : one.last + 1]
+        word = [row[node] for row, node in zip(one.letters, path, strict=True)]
+        accepted, lost = run(one.rule.machine, word)
+        if not accepted:
+            layer = None if lost is None else one.first + lost
+            found += [
+                Violation(one.rule.name, one.rule.strength, binding.objects, layer)
+                for binding in one.bindings
+            ]
+    return tuple(found)
