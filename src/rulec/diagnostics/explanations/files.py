@@ -46,7 +46,7 @@ FILES = {
         "command",
     ),
     "R0706": Explanation(
-        "Parquet cannot be read or written here",
+        "a Parquet file cannot be read or written here",
         "It takes the package `pyarrow`, which is installed on request: `pip install "
         "'rulec[parquet]'`. And it takes a file: a Parquet file has its table of contents at the "
         "end, so it cannot be read from a pipe.",
