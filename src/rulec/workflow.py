@@ -22,7 +22,8 @@ from rulec.logic.timing import speaks_of_seconds
 from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
-from rulec.trace import Trace, json_lines
+from rulec.trace import Trace
+from rulec.trace.formats import format_of, read_chunks
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
@@ -138,6 +139,7 @@ def compare_rulebooks(
     step_s: Fraction | None = None,
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     tell: Callable[[float], object] = lambda _: None,
+    most: int = 1,
 ) -> Difference:
     """Compare the rules of two rulebooks, given by name or by their sources' paths.
 
@@ -150,7 +152,7 @@ def compare_rulebooks(
         read_with_inheritance(each, search_path, at) for each in (first, second)
     )
     warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
     return replace(found, settings=setting_pairs(ours, theirs))
 
 
@@ -222,9 +224,13 @@ def audit_rulebook(
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """The traces of a JSON Lines file one by one; in place of a bad one, what is wrong with it."""
+    """The traces of a file one by one; in place of a bad one, what is wrong with it.
+
+    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
+    """
     with opened(Path(path)) as stream:
-        yield from json_lines.read_traces(stream, str(path))
+        for chunk in read_chunks(stream, str(path), format_of(str(path))):
+            yield from chunk
 
 
 def navigation_graph(
