@@ -18,6 +18,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
+from rulec.runtime.batch import verifying
 from rulec.runtime.batch.gathering import OddError, gathered
 from rulec.runtime.batch.grouping import grouped
 from rulec.runtime.batch.judging import judge_cells, judge_columns
@@ -237,14 +238,19 @@ def test_three_hundred_objects():
     assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
 
 
-def test_any_number_of_traces_and_what_is_none():
+def test_any_number_of_traces_and_what_is_none(monkeypatch):
+    monkeypatch.setattr(verifying, "MOST_STATES", 1000)
     compiled = crowded("stutter")
     broken = RulecError(Diagnostic("R0501", "this is not a trace"))
     states = tuple(state_of(Random(1), ()) for _ in range(3))
-    traces = [Trace(str(n), 1.0, {}, states[: 1 + n % 3]) for n in range(20_000)]
-    answers = list(verify_many(iter([broken, *traces]), compiled))
-    assert answers[0] == NotJudged(None, broken)
-    assert answers[1:] == [verify(trace, compiled) for trace in traces]
+    traces = [Trace(str(n), 1.0, {}, states[: 1 + n % 3]) for n in range(2000)]
+    waiting = iter([broken, *traces])
+    answers = verify_many(waiting, compiled)
+    assert next(answers) == NotJudged(None, broken)
+    # Three states a trace, or two, or one; and one more for the trace itself.
+    assert len(list(waiting)) == 2000 - 333
+    traces = traces[:333]
+    assert list(answers) == [verify(trace, compiled) for trace in traces]
 
 
 def test_what_can_be_no_trace_is_not_judged():
