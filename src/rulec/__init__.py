@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rulec.maneuvers import Maneuvers as Maneuvers
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.rulebook.model import Rulebook as Rulebook
+    from rulec.runtime.batch.verifying import verify_many as verify_many
     from rulec.runtime.monitor import Monitor as Monitor
     from rulec.runtime.verdict import Verdict as Verdict
     from rulec.runtime.verify import verify as verify
@@ -55,6 +56,7 @@ _HOME = {
     "navigation_graph": "rulec.workflow",
     "read_traces": "rulec.workflow",
     "verify": "rulec.runtime.verify",
+    "verify_many": "rulec.runtime.batch.verifying",
 }
 
 __all__ = ["__version__", *_HOME]

@@ -166,6 +166,28 @@ def compare_all(
     return matrix(rulebooks, patterns, step_s, tell)
 
 
+def analyze_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    tell: Callable[[float], object] = lambda _: None,
+) -> tuple[Diagnostic, ...]:
+    """What the automata of its rules tell about a rulebook, given by name or by its source's path.
+
+    ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
+    RulecError.
+    """
+    from rulec.analysis.findings import findings
+    from rulec.rulebook.loader import read_rulebook
+
+    folders = [Path(folder) for folder in search_path]
+    loaded = read_rulebook(reference, folders, at)
+    book = loaded.rulebook
+    above = [one.span.source.name for one in loaded.books[-2:-1]]
+    bases = [read_rulebook(Path(file), folders, book.at).rulebook for file in above]
+    return findings(book, bases, tell)
+
+
 def read_with_inheritance(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> tuple[Loaded, Inheritance]:

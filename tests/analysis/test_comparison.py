@@ -1,13 +1,16 @@
 """Two rules side by side, against direct evaluation on short words and on the witnesses."""
 
+from dataclasses import replace
 from itertools import product
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, formulas, sides, states
+from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, sides, states
 
 from rulec.analysis.comparison import compare
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.rulebook.model import Fact, Variable
 from rulec.trace import Trace
 
 SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
@@ -87,6 +90,53 @@ GROUPS = [
 @given(st.tuples(*[formulas(COUNTED)] * 2), SEMANTICS)
 def test_rules_that_count(pair, semantics):
     check(*sides(pair, [], semantics), GROUPS)
+
+
+FACT = Binary(
+    BinaryOperator.OR,
+    Unary(UnaryOperator.NOT, Atom("place", ("x",), "near")),
+    Binary(BinaryOperator.AND, Atom("p"), compared([(1, ("gap", ("x",)))], "<", 2)),
+)
+
+
+def is_possible(trace):
+    return all(
+        state["place"]["x"] != "near" or (state["p"] and state["gap"]["x"] < 2)
+        for state in trace.states
+    )
+
+
+POSSIBLE = [
+    trace for trace in words({"x": "thing"}, ["p", "place", "gap"], 2) if is_possible(trace)
+]
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas([*ALONE[:3], ALONE[5]])] * 2), SEMANTICS)
+def test_facts_rule_out_states(pair, semantics):
+    one, other = sides(pair, [X], semantics, (Fact((X,), FACT),))
+    check(one, other, POSSIBLE)
+    found = compare(one, other)
+    for trace in (found.first_forbids, found.second_forbids):
+        if trace is not None:
+            defaults = {"p": False}
+            states = tuple({**defaults, **state} for state in trace.states)
+            assert is_possible(replace(trace, states=states))
+
+
+CARS = [trace for kind in ("thing", "car") for trace in words({"x": kind}, ["p", "place"], 2)]
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(ALONE[:3])] * 2), SEMANTICS)
+def test_one_rule_speaks_of_more_objects(pair, semantics):
+    one, _ = sides(pair, [X], semantics)
+    _, other = sides(pair, [Variable("x", "car")], semantics)
+    check(one, other, CARS)
+    found = compare(one, other)
+    assert found.common == ("car",)
+    narrow, _ = sides(pair, [Variable("x", "car")], semantics)
+    assert found.on_common == compare(narrow, other).relation
 
 
 @pytest.mark.parametrize("swapped", [False, True])

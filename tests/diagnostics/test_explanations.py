@@ -15,7 +15,13 @@ from rulec.rulebook.loader import diagnose, parse_rulebook
 from rulec.runtime.exercise import unexercised
 from rulec.runtime.verify import judge
 from rulec.scenario.read import read_scenario
-from rulec.workflow import compile_rulebook, find_maneuvers, read_traces, run_examples
+from rulec.workflow import (
+    analyze_rulebook,
+    compile_rulebook,
+    find_maneuvers,
+    read_traces,
+    run_examples,
+)
 
 CODE = re.compile(r"\[(R\d{4})\]")
 
@@ -38,6 +44,12 @@ def run_on_examples(text, folder):
     run = run_examples(path)
     assert all(one.passed for one in run.outcomes)
     return [*run.warnings, *unexercised(run)]
+
+
+def analyzed(text, folder):
+    path = folder / "example.rules"
+    path.write_text(text, encoding="utf-8")
+    return analyze_rulebook(path)
 
 
 def judged_on_a_graph(text, folder):
@@ -69,6 +81,7 @@ NOTHING = RulecError(())
 RUN = {
     "rules": checked,
     "compiled": compiled,
+    "analyzed": analyzed,
     "examples": run_on_examples,
     "maneuvers": judged_on_a_graph,
     "trace": judged,

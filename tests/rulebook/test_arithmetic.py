@@ -5,9 +5,11 @@ Sizes of units are written out here, and the arithmetic is done here with fracti
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -226,6 +228,17 @@ def test_a_bare_zero_fits_every_kind_and_nothing_else_does(number, unit):
     assert formula_of("gap > 0") == formula_of("gap > 0 km") == formula_of("gap - 0 > 0 * speed")
     (comparison,) = atoms_of(formula_of(f"gap > {number} {unit}"))
     assert comparison.limit == Fraction(number) * UNITS["length"][unit]
+
+
+def test_a_sum_with_a_bare_zero_is_of_the_other_kind():
+    plain = formula_of("gap > 5 m")
+    for number in ("0 + gap", "gap + 0", "0 + (0 + gap)", "gap - 0", "(0 if wet else 0) + gap"):
+        assert formula_of(f"{number} > 5 m") == plain
+    assert formula_of("0 - gap < -5 m") == plain
+    for wrong in ("0 + gap > 5 s", "gap + 0 > 5 s", "0 - gap < 5"):
+        with pytest.raises(RulecError) as caught:
+            formula_of(wrong)
+        assert [one.code for one in caught.value.diagnostics] == ["R0312"]
 
 
 def test_what_depends_on_the_same_condition_twice_has_no_impossible_cases():

@@ -2,8 +2,9 @@
 
 import pytest
 
+from rulec.logic.one_state import holds
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.moment import Moment, holds
+from rulec.runtime.moment import Moment
 
 BOOK = """rulebook r type car signal near(c: car) default false
 define another_is_near(c: car) = some x: car (x != c and near(x))

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace, json_lines
 from rulec.trace.json_lines import read_traces, write_traces
+from rulec.trace.lines import lines_as_they_come
 
 GOOD = {
     "id": "t1",
@@ -140,3 +141,53 @@ def test_written_traces_read_back(written):
     stream = io.BytesIO()
     assert write_traces(written, stream) == len(written)
     assert read(stream.getvalue()) == written
+
+
+class Pipe(io.BytesIO):
+    """A stream of which each read gives as much as has been written at once."""
+
+    def __init__(self, *writes):
+        super().__init__()
+        self.writes = list(writes)
+
+    def read1(self, size=-1):
+        return self.writes.pop(0) if self.writes else b""
+
+
+def test_a_pipe_is_read_as_lines_arrive():
+    one, two, three = (line(id=name) for name in "abc")
+    pipe = Pipe(one, two[:20], two[20:] + three[:5], three[5:-1])
+    chunks = json_lines.read_chunks(pipe, "pipe")
+    assert [trace.id for trace in next(chunks)] == ["a"]
+    assert len(pipe.writes) == 3
+    assert [trace.id for trace in next(chunks)] == ["b"]
+    assert [trace.id for trace in next(chunks)] == ["c"]
+    assert list(chunks) == []
+
+
+def test_states_that_are_written_alike_are_one():
+    first, second = read(line() + line(id="t2"))
+    assert first.states[0] is second.states[0]
+
+
+def test_states_that_never_come_again_are_not_remembered(monkeypatch):
+    monkeypatch.setattr(json_lines._StateReader, "_MOST", 10)
+    lines = [line(id=str(n), states=[{"speed": n}, {"speed": n + 0.5}]) for n in range(20)]
+    traces = read(b"".join(lines))
+    assert [[state["speed"] for state in trace.states] for trace in traces] == [
+        [n, n + 0.5] for n in range(20)
+    ]
+
+
+@given(st.lists(st.binary(max_size=30), max_size=8), st.randoms(use_true_random=False))
+def test_lines_are_the_same_however_they_arrive(parts, chance):
+    data = b"\n".join(parts)
+    writes = []
+    while data:
+        size = chance.randint(1, 20)
+        writes.append(data[:size])
+        data = data[size:]
+    found = [line for lines in lines_as_they_come(Pipe(*writes), 1000) for line in lines]
+    expected = b"\n".join(parts).split(b"\n")
+    # After the last line feed nothing begins.
+    assert found == (expected if expected[-1] else expected[:-1])

@@ -107,12 +107,17 @@ class Alphabet:
             return
         for digit in range(self._joint.reads[level].size):
             chosen = (*sides, (level, digit))
-            if len(chosen) == 1 or self._fits(chosen):
+            if self._fits(chosen):
                 yield from self._numbered(self._after(nodes, level, digit), chosen)
 
     def _fits(self, sides: Sequence[tuple[int, int]]) -> bool:
+        """Can the sums come out so? The last one is new, the others can."""
         reads = [(self._joint.reads[level], digit) for level, digit in sides]
         numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
+        *others, (last, _) = numbers
+        known = {term for read, _ in others for _, term in read.terms}
+        if known.isdisjoint(term for _, term in last.terms):
+            return True
         return numbers_for(numbers, self._scene.vocabulary, {}) is not None
 
     def _ways(self, nodes: tuple[int, ...]) -> Mapping[Symbol, tuple[int, Steps]]:

@@ -21,11 +21,12 @@ from rulec.analysis.distinct import Side
 from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import Scene
 from rulec.analysis.search import shortest
-from rulec.analysis.staging import Claim, alone, staged
+from rulec.analysis.staging import alone, staged
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead
 from rulec.rulebook.model import Variable
 from rulec.runtime.terms import names_in
+from rulec.runtime.verify import verify
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
@@ -65,7 +66,7 @@ def compare(one: Side, other: Side) -> Comparison:
 
 def _compare(one: Side, other: Side) -> Comparison:
     try:
-        first, second = forbidden_by_one(one, other), forbidden_by_one(other, one)
+        first, second = violation(one, [other]), violation(other, [one])
     except UndecidedError as problem:
         return Comparison("undecided", undecided=str(problem))
     return Comparison(relation_of(first, second), first, second)
@@ -78,37 +79,52 @@ def relation_of(first_forbids: object, second_forbids: object) -> Relation:
     return "stricter" if second_forbids is None else "incomparable"
 
 
-def forbidden_by_one(one: Side, other: Side) -> Trace | None:
-    """A shortest trace that the first rule forbids and the second one allows; None if none is.
+def violation(side: Side, others: Sequence[Side]) -> Trace | None:
+    """A shortest trace that a rule forbids and all others allow; None if there is none.
 
     Raises UndecidedError.
     """
-    words = common_words(one.rulebook.vocabulary, other.rulebook.vocabulary)
-    facts = tuple(dict.fromkeys((*one.facts, *other.facts)))
-    read = {*read_by(one.rule), *read_by(other.rule)}
-    read.update(name for fact in facts for name in names_in(fact.formula))
-    for name in sorted(words.unlike & read):
-        raise UndecidedError(f"`{name}` is not declared alike in both")
-    unsaid = (words.not_shared | words.unlike) - read_by(one.rule) - read_by(other.rule)
-    objects = {variable.name: variable.type for variable in one.rule.variables}
-    scene = Scene(objects, words.vocabulary, facts, unsaid)
-    own = {variable.name: variable.name for variable in one.rule.variables}
-    machines, wanted = [one.rule.machine], [False]
-    columns = [machine_column(one.rule.machine, own, scene)]
-    for binding in scene.bindings(other.rule.variables):
-        machines.append(other.rule.machine)
-        columns.append(machine_column(other.rule.machine, binding, scene))
-        wanted.append(True)
+    scene = _scene(side, others)
+    own = {variable.name: variable.name for variable in side.rule.variables}
+    machines, wanted = [side.rule.machine], [False]
+    columns = [machine_column(side.rule.machine, own, scene)]
+    for other in others:
+        for binding in scene.bindings(other.rule.variables):
+            machines.append(other.rule.machine)
+            columns.append(machine_column(other.rule.machine, binding, scene))
+            wanted.append(True)
     alphabet = Alphabet(scene, columns)
     word = shortest(machines, wanted, alphabet.symbols)
     if word is None:
         return None
-    claims = [
-        Claim(alone(one.rulebook, one.rule, scene), forbids=True),
-        Claim(alone(other.rulebook, other.rule, scene), forbids=False),
-    ]
+    forbidding = alone(side.rulebook, side.rule, scene)
+    allowing = [alone(other.rulebook, other.rule, scene) for other in others]
+
+    def shows(trace: Trace) -> bool:
+        forbids = bool(verify(trace, forbidding).violations)
+        return forbids and not any(verify(trace, one).violations for one in allowing)
+
     situations = [alphabet.situations[symbol] for symbol in word]
-    return staged(situations, scene, _step(one.rule, other.rule), claims)
+    steps = [one.rule.step_s for one in (side, *others) if one.rule.step_s is not None]
+    return staged(situations, scene, (*steps, Fraction(1))[0], shows)
+
+
+def _scene(side: Side, others: Sequence[Side]) -> Scene:
+    """The objects that a rule speaks of, in the words of all the rulebooks."""
+    sides = (side, *others)
+    read = {name for one in sides for name in read_by(one.rule)}
+    facts = tuple(dict.fromkeys(fact for one in sides for fact in one.facts))
+    asked = read | {name for fact in facts for name in names_in(fact.formula)}
+    vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
+    for other in others:
+        if other.rulebook.vocabulary == vocabulary:
+            continue
+        words = common_words(vocabulary, other.rulebook.vocabulary)
+        for name in sorted(words.unlike & asked):
+            raise UndecidedError(f"`{name}` is not declared alike in both")
+        vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
+    objects = {variable.name: variable.type for variable in side.rule.variables}
+    return Scene(objects, vocabulary, facts, unsaid - read)
 
 
 def read_by(rule: CompiledRule) -> frozenset[str]:
@@ -120,10 +136,6 @@ def read_by(rule: CompiledRule) -> frozenset[str]:
         else:
             names.add(read.name)
     return frozenset(names)
-
-
-def _step(one: CompiledRule, other: CompiledRule) -> Fraction:
-    return one.step_s or other.step_s or Fraction(1)
 
 
 def common_types(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -13,22 +13,17 @@ from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import EXTRA, Scene
 from rulec.analysis.situation import Key, Situation, Value, keys_of, usual
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
-from rulec.runtime.verify import verify
+from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 
 
-@dataclass(frozen=True, slots=True)
-class Claim:
-    """That a rule forbids a trace, or that it does not; ``rule`` alone is in ``rulebook``."""
-
-    rulebook: CompiledRulebook
-    forbids: bool
-
-
 def staged(
-    situations: Sequence[Situation], scene: Scene, step_s: Fraction, claims: Sequence[Claim]
+    situations: Sequence[Situation],
+    scene: Scene,
+    step_s: Fraction,
+    shows: Callable[[Trace], bool],
 ) -> Trace:
-    """A trace through these situations that bears out the claims.
+    """A trace through these situations that shows what it is to show.
 
     Raises UndecidedError if the objects that are there to be counted are in the way.
     """
@@ -48,15 +43,21 @@ def staged(
     for fill in _fills(scene, types):
         written = tuple(_written(values, scene, everyone, fill) for values in states)
         trace = Trace("witness", float(step_s), everyone, written)
-        if all(_is_true(claim, trace) for claim in claims):
+        if _does_show(trace, shows, certain=not types):
             return trace
     if types:
         raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
 
 
-def _is_true(claim: Claim, trace: Trace) -> bool:
-    return bool(verify(trace, claim.rulebook).violations) is claim.forbids
+def _does_show(trace: Trace, shows: Callable[[Trace], bool], *, certain: bool) -> bool:
+    try:
+        return shows(trace)
+    except RulecError:
+        # Objects that are there to be counted may be what facts of several objects rule out.
+        if certain:
+            raise
+        return False
 
 
 def _types(companies: Iterable[Sequence[Any]]) -> list[str]:

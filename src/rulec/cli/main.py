@@ -15,6 +15,7 @@ from rulec.diagnostics import RulecError
 from rulec.version import __version__
 
 VERBS = {
+    "analyze": "Find rules that have no effect, contradict each other, or weaken a treaty.",
     "audit": "Say what rulebooks rest on: rules without a source or examples, what was left out.",
     "check": "Check rulebooks and vocabularies.",
     "compile": "Compile a rulebook to automata files.",

@@ -106,11 +106,11 @@ def _answers(files: tuple[str, ...], rules: Rules) -> Iterator[Answer]:
 
 def _judged(stream: IO[bytes], name: str, size: int | None, rules: Rules) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.verify import judge
-    from rulec.trace.json_lines import read_traces
+    from rulec.runtime.batch.verifying import judge_chunk
+    from rulec.trace.json_lines import read_chunks
 
     with progress(f"judging {name}", size) as tell:
-        for number, trace in enumerate(read_traces(stream, name)):
-            if size is not None and number % 100 == 0:
+        for traces in read_chunks(stream, name):
+            yield from zip(traces, judge_chunk(traces, rules), strict=True)
+            if size is not None:
                 tell(stream.tell())
-            yield trace, judge(trace, rules)

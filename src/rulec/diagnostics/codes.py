@@ -1,12 +1,13 @@
 """The registry of diagnostic codes, with what each kind of message is about.
 
 The hundreds name the stage that speaks: 1 syntax, 2 names, 3 types and meaning, 4 compiling,
-5 traces, 6 scenarios and graphs, 7 files. A code is registered by explaining it, in the file of
-its stage in ``explanations``; docs/codes.md is made from there.
+5 traces, 6 scenarios and graphs, 7 files, 8 analysis. A code is registered by explaining it, in
+the file of its stage in ``explanations``; docs/codes.md is made from there.
 """
 
 from __future__ import annotations
 
+from rulec.diagnostics.explanations.analysis import ANALYSIS
 from rulec.diagnostics.explanations.compiling import COMPILING
 from rulec.diagnostics.explanations.explanation import Explanation
 from rulec.diagnostics.explanations.files import FILES
@@ -25,6 +26,7 @@ STAGES: dict[str, dict[str, Explanation]] = {
     "Traces": TRACES,
     "Scenarios and graphs": SCENARIOS,
     "Files": FILES,
+    "Analysis": ANALYSIS,
 }
 """The stages by their names, with their codes."""
 

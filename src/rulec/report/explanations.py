@@ -12,6 +12,7 @@ from rulec.diagnostics.explanations.explanation import Explanation, Kind
 _KINDS: dict[Kind, str] = {
     "rules": "to check",
     "compiled": "to compile",
+    "analyzed": "to analyze",
     "examples": "to test",
     "maneuvers": "to judge the maneuvers of `s1` by",
     "trace": "a trace, to judge by `esterle2019`",
@@ -24,6 +25,7 @@ _KINDS: dict[Kind, str] = {
 _FENCES: dict[Kind, str] = {
     "rules": "rulec",
     "compiled": "rulec",
+    "analyzed": "rulec",
     "examples": "rulec",
     "maneuvers": "rulec",
     "trace": "json",

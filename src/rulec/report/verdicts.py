@@ -18,6 +18,8 @@ from rulec.runtime.verdict import NotJudged, Verdict, Violation
 MOST_VIOLATIONS = 20
 """So many are shown for a trace; JSON has them all."""
 
+_ENCODE = json.JSONEncoder(ensure_ascii=False).encode
+
 
 def as_json(
     verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
@@ -30,9 +32,8 @@ def as_json(
     violations = [_as_data(violation, rules[violation.rule]) for violation in verdict.violations]
     for violation, why in zip(violations, explained, strict=False):
         violation["explanation"] = explanation.as_data(why)
-    return json.dumps(
-        {"trace": verdict.trace, "satisfied": verdict.satisfied, "violations": violations},
-        ensure_ascii=False,
+    return _ENCODE(
+        {"trace": verdict.trace, "satisfied": verdict.satisfied, "violations": violations}
     )
 
 
@@ -58,7 +59,7 @@ def not_judged_as_json(answer: NotJudged) -> str:
         "file": place.file if place else None,
         "line": place.line if place else None,
     }
-    return json.dumps({"trace": answer.trace, "error": details}, ensure_ascii=False)
+    return _ENCODE({"trace": answer.trace, "error": details})
 
 
 def as_text(

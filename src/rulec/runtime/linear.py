@@ -5,7 +5,7 @@ The systems are those of one state of a rule: a handful of numbers and of inequa
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
@@ -105,11 +105,13 @@ def _choose(
 
 def _candidates(
     preferred: Fraction | None, ends: Sequence[Fraction], *, whole: bool
-) -> list[Fraction]:
+) -> Iterator[Fraction]:
     """Numbers at and beside the ends of the interval, those with the shortest decimals first."""
-    tried = [] if preferred is None else [preferred]
-    tried.append(Fraction(0))
+    if preferred is not None and (preferred.denominator == 1 or not whole):
+        yield preferred
+    yield Fraction(0)
     for places in range(1 if whole else _MOST_PLACES):
         scale = 10**places
-        tried += [Fraction(floor(end * scale) + n, scale) for end in ends for n in (0, 1, -1)]
-    return [value for value in tried if value.denominator == 1 or not whole]
+        for end in ends:
+            for n in (0, 1, -1):
+                yield Fraction(floor(end * scale) + n, scale)

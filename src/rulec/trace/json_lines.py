@@ -10,7 +10,8 @@ import msgspec
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
 from rulec.diagnostics.json_words import json_words
-from rulec.trace.model import Trace
+from rulec.trace.lines import lines_as_they_come
+from rulec.trace.model import State, Trace
 
 LONGEST_LINE_BYTES = 256 << 20
 """A longer line is refused: it is not a trace but a file that lacks its line ends."""
@@ -26,11 +27,34 @@ class _Record(msgspec.Struct, forbid_unknown_fields=True):
 
 _UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
 _REFUSED_BYTE = re.compile(r"\(byte ([0-9]+)\)")
+
+
+class _Outline(msgspec.Struct, forbid_unknown_fields=True):
+    """The same, its states not yet read."""
+
+    states: list[msgspec.Raw]
+    id: str | int = ""
+    step_s: float = 1.0
+    objects: dict[str, str] = {}
+    present: dict[str, tuple[int, int]] = {}
+
+
+_UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
+_REFUSED_BYTE = re.compile(r"\(byte ([0-9]+)\)")
 _DECODER = msgspec.json.Decoder(_Record)
+_OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
 def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
-    """The traces of a stream, one per line, blank lines skipped; never more than a line in memory.
+    """The traces of a stream, one per line, blank lines skipped. See ``read_chunks``."""
+    for chunk in read_chunks(stream, file):
+        yield from chunk
+
+
+def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
+    """The same, as many at a time as a block of the stream holds; of a pipe, as have arrived.
+
+    States that are written alike are the same object, as far as there is room to remember them.
 
     Args:
         stream: the open file.
@@ -41,23 +65,36 @@ def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
         without any trace one RulecError (R0501).
     """
     number = found = 0
-    while line := stream.readline(LONGEST_LINE_BYTES + 1):
-        number += 1
-        if number == 1:
-            line = line.removeprefix(b"\xef\xbb\xbf")
-        place = Place(file, number)
-        found += bool(line.strip())
-        if len(line) > LONGEST_LINE_BYTES:
-            yield _bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
-            while line and not line.endswith(b"\n"):
-                line = stream.readline(LONGEST_LINE_BYTES)
-        elif line.strip():
-            yield _trace(line, place)
+    read_state = _StateReader()
+    for lines in lines_as_they_come(stream, LONGEST_LINE_BYTES):
+        chunk: list[Trace | RulecError] = []
+        for line in lines:
+            number += 1
+            if number == 1:
+                line = line.removeprefix(b"\xef\xbb\xbf")
+            if line.isspace() or not line:
+                continue
+            place = Place(file, number)
+            if len(line) > LONGEST_LINE_BYTES:
+                chunk.append(_bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place))
+            else:
+                chunk.append(_trace(line, place, read_state))
+        found += len(chunk)
+        if chunk:
+            yield chunk
     if not found:
-        yield _bad("there is no trace in this file", Place(file))
+        yield [_bad("there is no trace in this file", Place(file))]
 
 
-def _trace(line: bytes, place: Place) -> Trace | RulecError:
+def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | RulecError:
+    record: _Outline | _Record
+    if read_state.pays:
+        try:
+            record = _OUTLINE_DECODER.decode(line)
+            states = tuple([read_state[bytes(raw)] for raw in record.states])
+            return _made(record, states, place)
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+            pass  # read as a whole, it says what is wrong
     try:
         record = _DECODER.decode(line)
     except RecursionError:
@@ -65,14 +102,34 @@ def _trace(line: bytes, place: Place) -> Trace | RulecError:
     except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
         message = f"this is not a trace: {json_words(problem)}"
         return _bad(message, place, _way_out(str(problem), line))
-    return Trace(
-        str(record.id) or f"line {place.line}",
-        record.step_s,
-        record.objects,
-        tuple(record.states),
-        record.present,
-        place,
-    )
+    return _made(record, tuple(record.states), place)
+
+
+def _made(record: _Outline | _Record, states: tuple[State, ...], place: Place) -> Trace:
+    name = str(record.id) or f"line {place.line}"
+    return Trace(name, record.step_s, record.objects, states, record.present, place)
+
+
+class _StateReader(dict[bytes, State]):
+    """Reads each state once, however often it is met, as long as that happens."""
+
+    _MOST = 1 << 16
+    _LONGEST = 1 << 12
+    _DECODE = msgspec.json.Decoder(dict[str, bool | float | str | dict[str, Any]]).decode
+
+    pays = True
+    _met = 0
+
+    def __missing__(self, text: bytes) -> State:
+        state = self._DECODE(text)
+        self._met += 1
+        if self._met > self._MOST or len(text) > self._LONGEST:
+            # There is no end to them: what is remembered is of no use.
+            self.pays = False
+            self.clear()
+        else:
+            self[text] = state
+        return state
 
 
 def _way_out(problem: str, line: bytes) -> str:

@@ -8,6 +8,7 @@ from typing import Literal
 Kind = Literal[
     "rules",
     "compiled",
+    "analyzed",
     "examples",
     "maneuvers",
     "trace",
@@ -19,7 +20,7 @@ Kind = Literal[
 """What an example is, and so how it is run.
 
 ``rules``: a rulebook or a vocabulary, to check. ``compiled``: a rulebook, to compile.
-``examples``: a rulebook, to run the examples of.
+``analyzed``: a rulebook, to analyze. ``examples``: a rulebook, to run the examples of.
 ``maneuvers``: a rulebook, to judge the maneuvers of scenario s1 by. ``trace``: a line, to judge by
 ``esterle2019``. ``scenario``: a file, to build the graph of. ``command``: lines for a POSIX shell
 in an empty folder. ``python``: a program. ``circumstance``: no input makes it; there is no example.

@@ -1,0 +1,87 @@
+"""What has to happen before a rule asks for anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.rulebook.model import Rule
+
+TriggerKind = Literal["implies", "phase", "when", "unless"]
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """A part of a rule that matters only if it holds at some time."""
+
+    kind: TriggerKind
+    formula: Formula
+
+
+def triggers(rule: Rule) -> Iterator[Trigger]:
+    """The rule's condition and exceptions, the left side of what it implies, the first phase.
+
+    What an option has switched off is not among them.
+    """
+    for one in _all(rule):
+        if not has_constant(one.formula):
+            yield one
+
+
+def has_constant(formula: Formula) -> bool:
+    """Has it a part that is true or false for good, as options are?"""
+    match formula:
+        case Constant():
+            return True
+        case Unary(_, operand):
+            return has_constant(operand)
+        case Binary(_, left, right):
+            return has_constant(left) or has_constant(right)
+    return False
+
+
+def _all(rule: Rule) -> Iterator[Trigger]:
+    if rule.condition is not None:
+        yield Trigger("when", rule.condition)
+    for exemption in rule.exemptions:
+        yield Trigger("unless", exemption.formula)
+    yield from _of(rule.required or rule.formula)
+
+
+def _of(formula: Formula) -> Iterator[Trigger]:
+    match formula:
+        case Binary(BinaryOperator.AND, left, right):
+            yield from _of(left)
+            yield from _of(right)
+        case Unary(UnaryOperator.ALWAYS, operand):
+            yield from _implied(operand)
+        case Unary(UnaryOperator.NEVER, operand):
+            yield from _first_phase(operand)
+
+
+def _implied(formula: Formula) -> Iterator[Trigger]:
+    match formula:
+        case Binary(BinaryOperator.AND, left, right):
+            yield from _implied(left)
+            yield from _implied(right)
+        case Binary(BinaryOperator.IMPLIES, left, _):
+            yield Trigger("implies", left)
+        case Unary(UnaryOperator.NOT, operand):
+            yield from _first_phase(operand)
+
+
+def _first_phase(formula: Formula) -> Iterator[Trigger]:
+    match formula:
+        case Binary(BinaryOperator.THEN, first, _):
+            yield Trigger("phase", first)
+        case Binary(BinaryOperator.OR, left, right):
+            yield from _first_phase(left)
+            yield from _first_phase(right)
+
+
+def occurrence(rule: Rule, trigger: Trigger, name: str) -> Rule:
+    """The rule that this trigger holds at some time."""
+    formula = Unary(UnaryOperator.EVENTUALLY, trigger.formula)
+    return Rule(name, rule.strength, rule.variables, formula, span=rule.span, step_s=rule.step_s)

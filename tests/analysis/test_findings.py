@@ -1,0 +1,202 @@
+"""``rulec analyze``: every kind of finding in small rulebooks, and on random rules."""
+
+from functools import reduce
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pairs import ALONE, COUNTED, X, allows, formulas, sides, states
+
+from rulec.analysis.comparison import compare
+from rulec.analysis.conflicts import conflict, share_words
+from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.trace import Trace
+from rulec.workflow import analyze_rulebook
+
+OBJECTS = {"x": "thing"}
+STATES = list(states(OBJECTS, ["p", "place"]))
+LONGEST = 3
+WORDS = [word for length in range(1, LONGEST + 1) for word in product(STATES, repeat=length)]
+BOTH = st.sampled_from(["stutter", "finite"])
+
+
+def trace(states):
+    return Trace("t", 1.0, OBJECTS, tuple(states))
+
+
+@settings(deadline=None, max_examples=60)
+@given(formulas(ALONE[:3]), BOTH)
+def test_what_can_be_violated_and_kept(formula, semantics):
+    (side,) = sides([formula], [X], [semantics])
+    verdicts = {allows(side, trace(word)) for word in WORDS}
+    # A formula of four leaves may need a longer word; what a short one shows is certain.
+    assert can_be_violated(side) >= (False in verdicts)
+    assert can_be_kept(side) >= (True in verdicts)
+    if not can_be_violated(side):
+        assert verdicts == {True}
+    if not can_be_kept(side):
+        assert verdicts == {False}
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(ALONE[:3])] * 3), BOTH)
+def test_what_others_imply_they_forbid(three, semantics):
+    one, *others = sides(three, [X], [semantics] * 3)
+    premises = implied_by(one, others)
+    if premises:
+        for word in WORDS:
+            if not allows(one, trace(word)):
+                assert not all(allows(other, trace(word)) for other in premises)
+    else:
+        related = [other for other in others if share_words(one, other)]
+        assert all(
+            compare(one, other).relation in ("stricter", "incomparable") for other in related
+        )
+
+
+def joined(formulas):
+    return reduce(lambda left, right: Binary(BinaryOperator.AND, left, right), formulas)
+
+
+def begins_with(prefix):
+    """That a trace begins with these states, as a formula."""
+    here = [
+        Atom("place", ("x",), prefix[0]["place"]["x"]),
+        Atom("p") if prefix[0]["p"] else Unary(UnaryOperator.NOT, Atom("p")),
+    ]
+    later = [Unary(UnaryOperator.NEXT, begins_with(prefix[1:]))] if prefix[1:] else []
+    return joined([*here, *later])
+
+
+def could_be_kept(rules, semantics, prefix):
+    """By the automaton of all that is asked, at once: a way of its own to the answer."""
+    start = [begins_with(prefix)] if prefix else []
+    return can_be_kept(*sides([joined([*start, *rules])], [X], [semantics]))
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(*[formulas(ALONE[:3])] * 2), BOTH)
+def test_conflicts(pair, semantics):
+    found = conflict(sides(pair, [X], [semantics] * 2))
+    prefixes = [(), *product(STATES, repeat=1)]
+    if found is not None:
+        prefix = () if found.trace is None else found.trace.states
+        prefix = [{"p": False, **state} for state in prefix]
+        assert not could_be_kept(pair, semantics, prefix)
+        assert all(could_be_kept([rule], semantics, prefix) for rule in pair)
+        prefixes = [one for one in prefixes if len(one) < len(prefix)]
+    for prefix in prefixes:
+        if all(could_be_kept([rule], semantics, prefix) for rule in pair):
+            assert could_be_kept(pair, semantics, prefix)
+
+
+def test_counts_can_be_met_by_further_objects():
+    (side,) = sides([COUNTED[2]], [], ["stutter"])
+    assert can_be_violated(side)
+    assert can_be_kept(side)
+
+
+HEAD = """\
+rulebook example
+light is one of red, green
+signal wet, fog, slow
+quantity speed in km/h
+"""
+
+
+@pytest.mark.parametrize(
+    ("rules", "expected"),
+    [
+        ("hard rule r { require always (red or green) }", ["R0801"]),
+        ("hard rule r { require eventually (red and green) }", ["R0802"]),
+        (
+            "hard rule r { require never wet } hard rule s { require never (wet and fog) }",
+            ["R0803 `s` adds nothing: `r` forbids"],
+        ),
+        (
+            "hard rule r { require never wet } hard rule s { require always not wet }",
+            ["R0803 `s` adds nothing: `r` forbids"],
+        ),
+        (
+            (
+                "hard rule r { require never (wet and fog) } hard rule s { require never "
+                "(wet and not fog) } hard rule t { require never wet }"
+            ),
+            ["R0803 `t` adds nothing: `r` and `s` together"],
+        ),
+        (
+            (
+                "hard rule r { require never (wet and fog) } hard rule s { require never "
+                "(slow and not fog) } hard rule t { require never (wet and slow) }"
+            ),
+            ["R0803 `t` adds nothing: `r` and `s` together forbid"],
+        ),
+        ("hard rule r { require never wet } soft rule s { require never wet }", ["R0803 `s`"]),
+        (
+            "soft rule r { require never wet } hard rule s { require never (wet and fog) }",
+            [],
+        ),
+        (
+            (
+                "hard rule r { require always (wet implies next slow) } "
+                "hard rule s { require always (wet implies next not slow) }"
+            ),
+            ["R0804 cannot both be kept any more, after the trace: { wet }"],
+        ),
+        (
+            "hard rule r { require eventually wet } hard rule s { require never wet }",
+            ["R0804 cannot both be kept at all"],
+        ),
+        (
+            (
+                "hard rule r { require always (wet implies next (slow or fog)) } "
+                "hard rule s { require never (wet and next slow) } "
+                "hard rule t { require never (wet and next fog) }"
+            ),
+            ["R0804 `r`, `s` and `t` cannot all be kept any more, after the trace: { wet"],
+        ),
+        (
+            "hard rule r { require eventually wet } soft rule s { require never wet }",
+            [],
+        ),
+        (
+            "hard rule r { require always (speed < 3 km/h and speed > 5 km/h implies wet) }",
+            ["R0805 `implies`"],
+        ),
+        ("hard rule r { require never (red and green then wet) }", ["R0805 phase"]),
+        ("hard rule r { require never wet when red and green }", ["R0805 `when`"]),
+        ("hard rule r { require never wet unless red and green }", ["R0805 exception"]),
+        ("hard rule r { require always (red and slow implies wet) }", []),
+        ("option on_ice = off hard rule r { require never wet unless on_ice and fog }", []),
+    ],
+)
+def test_findings(rules, expected, tmp_path):
+    path = tmp_path / "example.rules"
+    path.write_text(HEAD + rules)
+    found = analyze_rulebook(path)
+    assert len(found) == len(expected), found
+    for one, words in zip(found, expected, strict=True):
+        text = " ".join([one.code, one.message, *one.notes])
+        assert all(word in text for word in words.split(" ")), text
+
+
+def test_weaker_than_what_is_extended(tmp_path):
+    (tmp_path / "base.rules").write_text(
+        HEAD.replace("example", "base") + "hard rule r { require never wet }\n"
+        "hard rule s { require never fog }\nhard rule t { require never slow }\n"
+        'hard rule u { require never red cite "1" }\n'
+    )
+    path = tmp_path / "example.rules"
+    path.write_text(
+        "rulebook example\nextends base\noverride rule r { unless fog }\n"
+        'soften rule s\ndrop rule t because "so"\noverride rule u { require never (red or wet) }\n'
+    )
+    found = analyze_rulebook(path)
+    assert [(one.code, one.message.split(" than ")[0]) for one in found] == [
+        ("R0803", "rule `r` adds nothing: `u` forbids all that it forbids"),
+        ("R0806", "rule `r` is laxer"),
+        ("R0806", "rule `s` is softer"),
+    ]
+    assert found[1].notes == ("`base` forbids: { wet and fog }",)
