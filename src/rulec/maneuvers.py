@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
 from rulec.runtime.cheapest import Maneuver, cheapest
-from rulec.runtime.product import Product, count_paths, explore, instances
+from rulec.runtime.effects import effects
+from rulec.runtime.instances import instances
+from rulec.runtime.product import Product, count_paths, explore
 from rulec.runtime.terms import names_in
 from rulec.trace import State, TraceGraph, Value
 from rulec.vocabulary import Vocabulary
@@ -60,7 +62,7 @@ def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
-    explored = explore(traces, bound)
+    explored = explore(effects(traces, bound))
     return Maneuvers(graph, rules, count_paths(traces), explored.accepted, explored)
 
 

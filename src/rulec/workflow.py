@@ -22,7 +22,8 @@ from rulec.logic.timing import speaks_of_seconds
 from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
-from rulec.trace import Trace, json_lines
+from rulec.trace import Trace
+from rulec.trace.formats import format_of, read_chunks
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
@@ -222,9 +223,13 @@ def audit_rulebook(
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """The traces of a JSON Lines file one by one; in place of a bad one, what is wrong with it."""
+    """The traces of a file one by one; in place of a bad one, what is wrong with it.
+
+    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
+    """
     with opened(Path(path)) as stream:
-        yield from json_lines.read_traces(stream, str(path))
+        for chunk in read_chunks(stream, str(path), format_of(str(path))):
+            yield from chunk
 
 
 def navigation_graph(

@@ -147,7 +147,7 @@ def test_what_is_no_saved_monitor(answer, folder, text):
     (folder / "m.json").write_bytes(data)
     status, out, err = answer([SIGN], "--restore", "m.json")
     assert (status, out) == (2, [])
-    assert "error[R0509]" in err
+    assert "error[R0510]" in err
     assert "m.json" in err
 
 
@@ -170,7 +170,7 @@ def test_the_step_is_that_of_the_saved_monitor_unless_it_is_given(answer, folder
     p = '{"state": {"p": true}}'
     assert answer([p, p], "--step", "1/2", "--save", "m.json")[1][-1] == "1: pending"
     assert answer([p], "--restore", "m.json")[1] == ["2: violated; soon: violated"]
-    assert "error[R0509]" in answer([p], "--step", "1", "--restore", "m.json")[2]
+    assert "error[R0510]" in answer([p], "--step", "1", "--restore", "m.json")[2]
 
 
 @pytest.fixture

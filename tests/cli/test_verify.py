@@ -188,3 +188,29 @@ def test_a_source_and_what_it_compiles_to_judge_alike(tmp_path, capsys):
     assert first["satisfied"]
     (violation,) = first["violations"]
     assert (violation["rule"], violation["strength"], violation["step"]) == ("gentle", "soft", 1)
+
+
+@pytest.mark.parametrize("form", ["csv", "parquet", "jsonl"])
+def test_every_format_is_written_and_judged_alike(form, tmp_path, capsys):
+    if form == "parquet":
+        pytest.importorskip("pyarrow")
+    path = tmp_path / f"traces.{form}"
+    assert main(["traces", "s1", "--step", "0.5", "-o", str(path)]) == 0
+    assert capsys.readouterr().out == f"wrote 672 of 672 traces to {path}\n"
+    assert main(["verify", str(path), "--rulebook", "esterle2019", "--json"]) == 1
+    answers = [json.loads(one) for one in capsys.readouterr().out.splitlines()]
+    # Table V of the paper.
+    assert (len(answers), sum(one["satisfied"] for one in answers)) == (672, 640)
+    other = path.rename(tmp_path / "traces")
+    assert main(["verify", str(other), "-r", "esterle2019", "--format", form, "--json"]) == 1
+    assert [json.loads(one) for one in capsys.readouterr().out.splitlines()] == answers
+
+
+def test_csv_in_a_pipe(capsys, monkeypatch, tmp_path):
+    path = tmp_path / "in"
+    assert main(["traces", "s1", "-o", "-", "--format", "csv", "--limit", "3"]) == 0
+    path.write_text(capsys.readouterr().out)
+    with path.open() as stream:
+        monkeypatch.setattr("sys.stdin", stream)
+        assert main(["verify", "-", "-r", "esterle2019", "--format", "csv"]) == 0
+    assert "3 traces: 3 satisfied" in capsys.readouterr().out

@@ -7,7 +7,9 @@ from random_scenarios import scenarios
 from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.cheapest import cheapest
-from rulec.runtime.product import count_paths, explore, instances
+from rulec.runtime.effects import effects
+from rulec.runtime.instances import instances
+from rulec.runtime.product import count_paths, explore
 from rulec.runtime.verify import verify
 from rulec.trace.paths import all_traces
 from rulec.workflow import compile_rulebook, navigation_graph
@@ -45,6 +47,6 @@ def test_counts_of_random_scenarios(scenario, partition):
     traces = list(all_traces(graph, "t", MOST + 1))
     assert len(traces) == total
     satisfying = sum(verify(trace, rules).satisfied for trace in traces)
-    explored = explore(graph, instances(graph, rules))
+    explored = explore(effects(graph, instances(graph, rules)))
     assert explored.accepted == satisfying
     assert len(list(cheapest(explored))) == satisfying

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -63,8 +64,10 @@ def test_a_change_anywhere_counts(folder, made, name):
     assert [code for code, _, _ in again] == ([] if name == "base" else ["R0202"])
 
 
-def test_a_mistake_is_recalled_in_every_detail(folder, made):
-    (folder / "book.rules").write_text(BOOK.replace("always q", "always qq or p(v) or 1 m"))
+@pytest.mark.parametrize("formula", ["always qq or p(v) or 1 m", "never p then q"])
+def test_a_mistake_is_recalled_in_every_detail(folder, made, formula):
+    """Errors; and a warning."""
+    (folder / "book.rules").write_text(BOOK.replace("always q", formula))
     found = [checking.check(["book.rules"], bytes, recalls=True).findings for _ in range(2)]
     assert found[0] == found[1] != ()
     assert made == ["book.rules"]
@@ -76,6 +79,18 @@ def test_a_file_that_comes_nearer_counts(folder, made):
     assert check() == []
     (folder / "words.rules").write_text("vocabulary words {\n  signal p\n}\n")
     assert [code for code, _, _ in check()] == ["R0202"]
+
+
+def test_a_file_that_comes_nearer_with_the_same_words_is_the_one_named(folder, made):
+    (folder / "vocabulary").mkdir()
+    (folder / "words.rules").rename(folder / "vocabulary" / "words.rules")
+    farther = folder / "vocabulary" / "words.rules"
+    farther.write_text(WORDS.replace("p, q", "p, q, p"))
+    assert [file for _, file, _ in check()] == ["vocabulary/words.rules"]
+    assert [file for _, file, _ in check()] == ["vocabulary/words.rules"]
+    assert len(made) == 1
+    (folder / "words.rules").write_bytes(farther.read_bytes())
+    assert [file for _, file, _ in check()] == ["words.rules"]
 
 
 def test_a_file_that_goes_or_comes_counts(folder, made):
@@ -111,6 +126,23 @@ def test_the_search_path_counts(folder, made, tmp_path):
     (folder / "words.rules").unlink()
     assert check(search_path=[tmp_path / "one"]) == []
     assert [code for code, _, _ in check(search_path=[tmp_path / "two"])] == ["R0202"]
+    # Each is kept for itself.
+    assert check(search_path=[tmp_path / "one"]) == []
+    assert len(made) == 2
+
+
+def test_files_of_one_name_in_two_folders_are_kept_apart(folder, made, tmp_path, monkeypatch):
+    other = tmp_path / "other"
+    other.mkdir()
+    for name in ("base", "book"):
+        (other / f"{name}.rules").write_bytes((folder / f"{name}.rules").read_bytes())
+    (other / "words.rules").write_text(WORDS.replace(", q", ""))
+    for _ in range(2):
+        monkeypatch.chdir(folder)
+        assert check() == []
+        monkeypatch.chdir(other)
+        assert [code for code, _, _ in check()] == ["R0202"]
+    assert len(made) == 2
 
 
 def test_standard_input_is_recalled_by_its_text(folder, made):
@@ -120,9 +152,14 @@ def test_standard_input_is_recalled_by_its_text(folder, made):
     assert len(made) == 2
 
 
-def test_another_rulec_checks_anew(folder, made, monkeypatch):
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("__version__", "0.0.0"), ("package_files", lambda: [("a.py", Path(__file__).stat())])],
+)
+def test_another_rulec_checks_anew(folder, made, monkeypatch, name, value):
     check()
-    monkeypatch.setattr(recollection, "__version__", "0.0.0")
+    monkeypatch.setattr(recollection, name, value)
+    check()
     check()
     assert len(made) == 2
 
@@ -168,17 +205,18 @@ def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
     assert cache_folder() == tmp_path / ".cache" / "rulec"
 
 
-def test_the_longest_unused_go_first(folder, monkeypatch):
+@pytest.mark.parametrize(("used", "left"), [(None, {2, 3}), (0, {0, 3})])
+def test_the_longest_unused_go_first(folder, monkeypatch, used, left):
+    """Half of them, once there are too many; recalling is using."""
     monkeypatch.setattr(recollection, "MOST_FILES", 3)
     questions = [Question(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
-    for age, question in enumerate(questions):
+    for age, question in enumerate(questions[:3]):
         remember(question, (), ())
-        newest = cache_folder() / f"{question.place()}.json"
-        if newest.exists():
-            os.utime(newest, (age, age))
-    known = [recall(question) is not None for question in questions]
-    assert known[3] or len(list(cache_folder().iterdir())) <= 3
-    assert not known[0]
+        os.utime(cache_folder() / f"{question.place()}.json", (age, age))
+    if used is not None:
+        recall(questions[used])
+    remember(questions[3], (), ())
+    assert {n for n, question in enumerate(questions) if recall(question) is not None} == left
 
 
 def test_recalling_imports_neither_the_parser_nor_the_language(folder):

@@ -8,7 +8,7 @@ from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.coverage import coverage
 from rulec.runtime.examples import run_all
-from rulec.runtime.product import instances
+from rulec.runtime.instances import instances
 from rulec.runtime.shortest import shortest_traces
 from rulec.runtime.verify import verify
 from rulec.trace import Trace, TraceGraph

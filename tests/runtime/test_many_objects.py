@@ -25,7 +25,9 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.product import explore, instances
+from rulec.runtime.effects import effects
+from rulec.runtime.instances import instances
+from rulec.runtime.product import explore
 from rulec.runtime.verify import verify
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
@@ -268,4 +270,4 @@ def test_a_graph_of_one_path_counts_objects_as_its_trace_does(semantics, trace):
     for one in rules.rules:
         alone = replace(rules, rules=(one,))
         kept = not verify(trace, alone).violations
-        assert explore(graph, instances(graph, alone)).accepted == kept
+        assert explore(effects(graph, instances(graph, alone))).accepted == kept

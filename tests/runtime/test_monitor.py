@@ -287,7 +287,7 @@ def test_what_is_no_snapshot_of_these_rules_is_refused(damage):
     damage(data)
     with pytest.raises(RulecError) as refused:
         restored(data)
-    assert [one.code for one in refused.value.diagnostics] == ["R0509"]
+    assert [one.code for one in refused.value.diagnostics] == ["R0510"]
 
 
 @pytest.mark.parametrize("data", [None, [], 1, "text", {}])

@@ -11,7 +11,9 @@ from words import formulas
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import atoms_of
 from rulec.runtime.cheapest import cheapest
-from rulec.runtime.product import count_paths, explore, instances
+from rulec.runtime.effects import effects
+from rulec.runtime.instances import instances
+from rulec.runtime.product import count_paths, explore
 from rulec.runtime.verify import verify
 from rulec.trace import TraceGraph
 from rulec.trace.paths import all_traces, paths, trace_of
@@ -53,7 +55,7 @@ def test_counts_are_those_of_enumeration(graph):
         for path in enumerate_paths(graph)
         if verify(trace_of(graph, path, ""), RULES).satisfied
     ]
-    explored = explore(graph, instances(graph, RULES))
+    explored = explore(effects(graph, instances(graph, RULES)))
     assert explored.accepted == len(satisfying)
     assert sorted(maneuver.nodes for maneuver in cheapest(explored)) == satisfying
 
@@ -63,12 +65,12 @@ def test_any_rule_counts_as_enumeration_does(formula, graph):
     x = ("x: thing",) if any(atom.arguments for atom in atoms_of(formula)) else ()
     rules = compile_here(book(rule("A", formula, *x)))
     verdicts = [verify(trace, rules).satisfied for trace in all_traces(graph, "t", 10**6)]
-    assert explore(graph, instances(graph, rules)).accepted == sum(verdicts)
+    assert explore(effects(graph, instances(graph, rules))).accepted == sum(verdicts)
 
 
 @given(graphs())
 def test_the_cheapest_come_first_with_their_cost_and_margin(graph):
-    explored = explore(graph, instances(graph, RULES))
+    explored = explore(effects(graph, instances(graph, RULES)))
     found = list(cheapest(explored))
     assert [(m.cost, m.nodes) for m in found] == sorted((m.cost, m.nodes) for m in found)
     assert list(islice(cheapest(explored), 3)) == found[:3]
@@ -100,7 +102,7 @@ def test_paths_do_not_wander_into_dead_ends():
         goals=(2,),
     )
     assert list(paths(graph)) == [(0,) + (2,) * (n - 1)]
-    (only,) = cheapest(explore(graph, instances(graph, RULES)))
+    (only,) = cheapest(explore(effects(graph, instances(graph, RULES))))
     assert only.cost == 1.0
 
 
@@ -122,4 +124,4 @@ def test_counts_beyond_any_machine_number():
     )
     assert count_paths(graph) == 2 ** (n - 1)
     # Of these only the one without any p has nothing that would have to be answered.
-    assert explore(graph, instances(graph, RULES)).accepted == 1
+    assert explore(effects(graph, instances(graph, RULES))).accepted == 1

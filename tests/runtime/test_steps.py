@@ -11,7 +11,7 @@ from rulec.automata.any_step import AnyStep
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.product import instances
+from rulec.runtime.instances import instances
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph

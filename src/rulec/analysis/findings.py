@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import combinations
 
 from rulec.analysis.comparison import compare
-from rulec.analysis.conflicts import Conflict, conflict, share_words
+from rulec.analysis.conflict_findings import conflicts
 from rulec.analysis.distinct import Distinct, Side
 from rulec.analysis.errors import UndecidedError
-from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by, walkable
-from rulec.analysis.trace_in_words import in_words_of
+from rulec.analysis.finding_words import shown, undecided
+from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.analysis.triggers import Trigger, has_constant, occurrence, triggers
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
 from rulec.rulebook.model import Rule, Rulebook
-from rulec.trace import Trace
 
 
 def findings(
@@ -57,7 +55,7 @@ def findings(
     good = [name for name in by_name if name not in hopeless]
     diagnostics += _needless(good, by_name, own)
     hard = [name for name in good if by_name[name].strength == "hard"]
-    diagnostics += _conflicts(hard, own, by_name)
+    diagnostics += conflicts(hard, own, by_name)
     for base, sides in zip(bases, found[1:], strict=True):
         for name, side in sides.items():
             diagnostics += _weaker(by_name[name], own[name], side, base)
@@ -75,7 +73,7 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Trigger, Side]]) -> Iterator[Dia
         try:
             occurs = can_be_kept(side)
         except UndecidedError as problem:
-            yield _undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
+            yield undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
             continue
         if not occurs:
             yield Diagnostic(
@@ -108,7 +106,7 @@ def _alone(rule: Rule, side: Side) -> Iterator[Diagnostic]:
                 help="every trace violates it; say what it is to allow",
             )
     except UndecidedError as problem:
-        yield _undecided(rule, "it can be kept and violated", problem)
+        yield undecided(rule, "it can be kept and violated", problem)
 
 
 def _needless(
@@ -134,7 +132,7 @@ def _implied(
     try:
         premises = implied_by(sides[rule.name], others)
     except UndecidedError as problem:
-        yield _undecided(rule, "others imply it", problem)
+        yield undecided(rule, "others imply it", problem)
         return
     if premises:
         listed = [one.rule.name for one in premises]
@@ -154,87 +152,11 @@ def _implied(
         )
 
 
-def _conflicts(
-    names: Sequence[str], sides: dict[str, Side], rules: dict[str, Rule]
-) -> Iterator[Diagnostic]:
-    """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
-    found: list[frozenset[str]] = []
-    for pair in combinations(names, 2):
-        if not share_words(sides[pair[0]], sides[pair[1]]):
-            continue
-        try:
-            clash = conflict([sides[name] for name in pair])
-        except UndecidedError as problem:
-            what = f"it can always be kept together with `{pair[0]}`"
-            yield _undecided(rules[pair[1]], what, problem)
-            continue
-        if clash is not None:
-            found.append(frozenset(pair))
-            yield _cannot_be_kept(pair, clash, sides, rules)
-    for name in names:
-        related = [sides[one] for one in names if share_words(sides[name], sides[one])]
-        others = [one for one in related if one.rule.name != name]
-        group = [sides[name], *walkable(sides[name], others)]
-        clash = None if _holds_one(found, group) else _clash(group)
-        if clash is not None:
-            smaller = _smallest(group)
-            chosen = tuple(one for one in names if one in {side.rule.name for side in smaller})
-            found.append(frozenset(chosen))
-            yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
-
-
-def _holds_one(found: Sequence[frozenset[str]], group: Sequence[Side]) -> bool:
-    names = {one.rule.name for one in group}
-    return any(one <= names for one in found)
-
-
-def _clash(group: Sequence[Side]) -> Conflict | None:
-    """A conflict in a group, as far as it is small enough to look at."""
-    if len(group) < 3:
-        return None
-    try:
-        return conflict(group)
-    except UndecidedError:
-        return None
-
-
-def _smallest(group: Sequence[Side]) -> Sequence[Side]:
-    """The group without those that its conflict does not need."""
-    for one in group:
-        fewer = [other for other in group if other is not one]
-        if _clash(fewer) is not None:
-            return _smallest(fewer)
-    return group
-
-
-def _cannot_be_kept(
-    names: Sequence[str], clash: Conflict, sides: dict[str, Side], rules: dict[str, Rule]
-) -> Diagnostic:
-    *firsts, last = names
-    whole = [sides[name] for name in names]
-    when = "at all" if clash.trace is None else "any more"
-    notes = () if clash.trace is None else _shown("after the trace", clash.trace, whole)
-    both = "both" if len(names) == 2 else "all"
-    return Diagnostic(
-        "R0804",
-        f"rules {', '.join(f'`{name}`' for name in firsts)} and `{last}` cannot {both} be kept "
-        f"{when}, though each alone could",
-        at(rules[last].span),
-        help="except from one of them what another one asks for, or make it soft",
-        labels=tuple(
-            Label(place, f"`{name}` is here")
-            for name in firsts
-            if (place := at(rules[name].span)) is not None
-        ),
-        notes=notes,
-    )
-
-
 def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[Diagnostic]:
     found = compare(own, inherited)
     if found.undecided:
         problem = UndecidedError(found.undecided)
-        yield _undecided(rule, f"it is as strict as in `{base.name}`", problem)
+        yield undecided(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
     if found.second_forbids is None and not softer:
@@ -248,21 +170,6 @@ def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
         at(rule.span),
         help="if the law has it so, nothing is to be done",
-        notes=() if trace is None else _shown(f"`{base.name}` forbids", trace, (own, inherited)),
-        severity="warning",
-    )
-
-
-def _shown(what: str, trace: Trace, sides: Sequence[Side]) -> tuple[str, ...]:
-    rules = [one.rule for one in sides]
-    return (f"{what}: {in_words_of(trace, rules, sides[0].rulebook.vocabulary)}",)
-
-
-def _undecided(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
-    return Diagnostic(
-        "R0807",
-        f"not decided of rule `{rule.name}` whether {what}: {problem}",
-        at(rule.span),
-        help="say less in one rule; rules beside each other are looked at one by one",
+        notes=() if trace is None else shown(f"`{base.name}` forbids", trace, (own, inherited)),
         severity="warning",
     )

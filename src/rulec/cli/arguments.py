@@ -171,6 +171,16 @@ def json_option(function: Decorated) -> Decorated:
     return click.option("--json", "json_output", is_flag=True, help="Print JSON.")(function)
 
 
+def traces_format_option(function: Decorated) -> Decorated:
+    """``--format``: that of files of traces."""
+    return click.option(
+        "--format",
+        "form",
+        type=click.Choice(["jsonl", "csv", "parquet"]),
+        help="The format of the traces.  [default: what the file's name ends with, else jsonl]",
+    )(function)
+
+
 def graph_options(function: Decorated) -> Decorated:
     """The scenario, and how it is cut into cells: step, horizon, partition, adjacency."""
     for decorate in (

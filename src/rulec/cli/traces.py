@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import graph_options
+from rulec.cli.arguments import graph_options, traces_format_option
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
+    from rulec.trace.formats import Format
 
 MOST_TRACES = 10_000_000
 
@@ -33,8 +35,11 @@ MOST_TRACES = 10_000_000
     metavar="N",
     help=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
 )
-def command(scenario: str, output: Path, limit: int | None, **options: Any) -> None:
-    """Write every maneuver of SCENARIO (a name or a file) as a trace, one JSON object a line.
+@traces_format_option
+def command(
+    scenario: str, output: Path, limit: int | None, form: Format | None, **options: Any
+) -> None:
+    """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 
     `rulec verify` reads the file. It appears whole or not at all.
     """
@@ -42,8 +47,9 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     from rulec.report.console import print_result, progress
     from rulec.report.maneuvers import shown_count
     from rulec.runtime.product import count_paths
-    from rulec.trace.json_lines import write_traces
+    from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces
+    from rulec.trace.tables import kinds_in
     from rulec.workflow import navigation_graph
 
     cells = navigation_graph(scenario, **{**options, "partition": options["partition"] or "paper"})
@@ -57,11 +63,13 @@ def command(scenario: str, output: Path, limit: int | None, **options: Any) -> N
     wanted = total if limit is None else min(limit, total)
     with progress(f"writing {output}", wanted) as tell:
         found = _told(all_traces(graph, name, wanted), tell)
+        form = form or format_of(str(output))
+        kinds = kinds_in(chain.from_iterable(graph.states))
         if str(output) == "-":
-            write_traces(found, sys.stdout.buffer)
+            write_traces(found, sys.stdout.buffer, "standard output", form, kinds)
             return
         with written_whole(output) as stream:
-            write_traces(found, stream)
+            write_traces(found, stream, str(output), form, kinds)
     print_result(f"wrote {wanted:,} of {shown_count(total)} traces to {output}")
 
 

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, json_option, rulebook_option
+from rulec.cli.arguments import at_option, json_option, rulebook_option, traces_format_option
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rulec.runtime.verdict import NotJudged, Verdict
     from rulec.runtime.verify import RulebookFor
     from rulec.trace import Trace
+    from rulec.trace.formats import Format
 
     Rules = CompiledRulebook | RulebookFor
     Answer = tuple[Trace | RulecError, Verdict | NotJudged]
@@ -35,12 +36,18 @@ if TYPE_CHECKING:
     metavar="N",
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
+@traces_format_option
 @json_option
 @at_option
 def command(
-    files: tuple[str, ...], rulebook: str, n_explained: int | None, json_output: bool, at: str
+    files: tuple[str, ...],
+    rulebook: str,
+    n_explained: int | None,
+    form: Format | None,
+    json_output: bool,
+    at: str,
 ) -> int:
-    """Judge the traces in FILE..., one JSON object a line; `-` is standard input.
+    """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
@@ -60,7 +67,7 @@ def command(
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    for trace, answer in _answers(files, rules):
+    for trace, answer in _answers(files, form, rules):
         if isinstance(answer, Verdict) and isinstance(trace, Trace):
             satisfied += answer.satisfied
             violated += not answer.satisfied
@@ -85,32 +92,35 @@ def command(
     return ExitStatus.VIOLATED if violated else ExitStatus.OK
 
 
-def _answers(files: tuple[str, ...], rules: Rules) -> Iterator[Answer]:
+def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Iterator[Answer]:
     """Every trace, or why there is none, with its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
+    from rulec.trace.formats import format_of
 
     for file in files:
-        if file == "-":
-            yield from _judged(sys.stdin.buffer, "standard input", None, rules)
-            continue
         try:
+            if file == "-":
+                yield from _judged(sys.stdin.buffer, "standard input", form or "jsonl", None, rules)
+                continue
             with opened(Path(file)) as stream:
                 about = os.fstat(stream.fileno())
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
-                yield from _judged(stream, file, size, rules)
+                yield from _judged(stream, file, form or format_of(file), size, rules)
         except RulecError as error:
             yield error, NotJudged(None, error)
 
 
-def _judged(stream: IO[bytes], name: str, size: int | None, rules: Rules) -> Iterator[Answer]:
+def _judged(
+    stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
+) -> Iterator[Answer]:
     from rulec.report.console import progress
     from rulec.runtime.batch.verifying import judge_chunk
-    from rulec.trace.json_lines import read_chunks
+    from rulec.trace.formats import read_chunks
 
     with progress(f"judging {name}", size) as tell:
-        for traces in read_chunks(stream, name):
+        for traces in read_chunks(stream, name, form):
             yield from zip(traces, judge_chunk(traces, rules), strict=True)
             if size is not None:
                 tell(stream.tell())

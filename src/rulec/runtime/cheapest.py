@@ -42,40 +42,31 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
         _, path, spent, here = heappop(queue)
         layer = len(path) - 1
         if layer == last:
-            yield _maneuver(graph, path, spent)
+            yield maneuver(graph, path, spent)
             continue
-        for step in product.steps[layer][here]:
+        for step, cost in product.steps[layer][here]:
             rest = to_come[layer + 1].get(step)
             if rest is not None:
-                cost = spent + _weight(graph, layer, here[0], step[0])
-                heappush(queue, (cost + rest, (*path, step[0]), cost, step))
-
-
-def _weight(graph: TraceGraph, layer: int, node: int, target: int) -> int:
-    """The cost of the edge from ``node`` of ``layer`` to ``target``, in the graph's unit."""
-    return graph.weights[layer][node][graph.successors[layer][node].index(target)]
+                total = spent + cost
+                heappush(queue, (total + rest, (*path, step[0]), total, step))
 
 
 def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
     """For each layer the product nodes that a goal can be reached from, and at what least cost."""
-    graph = product.graph
-    goals = set(graph.goals)
-    costs = [{node: 0 for node in product.counts[-1] if node[0] in goals}]
-    for layer in reversed(range(len(product.steps))):
+    costs = [dict.fromkeys(product.ends, 0)]
+    for steps in reversed(product.steps):
+        later = costs[-1]
         here: dict[ProductNode, int] = {}
-        for node, steps in product.steps[layer].items():
-            onward = [
-                costs[-1][step] + _weight(graph, layer, node[0], step[0])
-                for step in steps
-                if step in costs[-1]
-            ]
-            if onward:
-                here[node] = min(onward)
+        for node, onward in steps.items():
+            rest = [cost + later[step] for step, cost in onward if step in later]
+            if rest:
+                here[node] = min(rest)
         costs.append(here)
     return costs[::-1]
 
 
-def _maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
+def maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
+    """A path through the graph with its margin; ``cost`` is in the graph's unit."""
     margins = [
         graph.margins[layer][node][graph.successors[layer][node].index(target)]
         for layer, (node, target) in enumerate(pairwise(path))

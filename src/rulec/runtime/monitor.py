@@ -125,7 +125,7 @@ class Monitor:
             place: where it was read, for messages.
 
         Raises:
-            RulecError: R0509 if this is no snapshot, one of other rules, or damaged.
+            RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
         monitor = cls(rulebook, step_in(snapshot, rulebook, place))
         monitor._now, monitor._violations = from_data(snapshot, rulebook, monitor._ready, place)

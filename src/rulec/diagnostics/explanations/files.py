@@ -45,4 +45,13 @@ FILES = {
         "rulec audit esterle2019 --compare old.json",
         "command",
     ),
+    "R0706": Explanation(
+        "a Parquet file cannot be read or written here",
+        "It takes the package `pyarrow`, which is installed on request: `pip install "
+        "'rulec[parquet]'`. And it takes a file: a Parquet file has its table of contents at the "
+        "end, so it cannot be read from a pipe.",
+        "echo PAR1 | rulec verify - --format parquet -r esterle2019",
+        "echo '{\"states\": [{}]}' | rulec verify - --format jsonl -r esterle2019",
+        "command",
+    ),
 }

@@ -111,6 +111,17 @@ TRACES = {
         "command",
     ),
     "R0509": Explanation(
+        "rows of a table are not traces",
+        "In CSV and Parquet the rows of a trace stand together, in the order of its steps, from "
+        "step 0 on: for every step a row without `object` for what is about no object, and a row "
+        "for each object that is there. An object's first row says its `type`.",
+        "printf 'trace,step,object,type,position\nt1,1,v1,vehicle,b\n' > t.csv\n"
+        "rulec verify t.csv -r esterle2019",
+        "printf 'trace,step,object,type,position\nt1,0,v1,vehicle,b\n' > t.csv\n"
+        "rulec verify t.csv -r esterle2019",
+        "command",
+    ),
+    "R0510": Explanation(
         "a saved monitor cannot be restored",
         "What `rulec monitor --save` writes says in which states the automata of the rules are, "
         "and nothing of the states of the world that led there. So it means something only to the "

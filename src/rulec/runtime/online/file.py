@@ -15,7 +15,7 @@ from rulec.runtime.monitor import Monitor
 
 
 def read_saved(path: Path) -> Any:
-    """What the file holds, for ``Monitor.restore``. Raises RulecError R0701 or R0509."""
+    """What the file holds, for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
         try:
             return json.loads(stream.read())
@@ -23,7 +23,7 @@ def read_saved(path: Path) -> Any:
             message = "this is not a saved monitor: it is not JSON"
             help_text = "give a file that `rulec monitor --save` has written"
             raise RulecError(
-                Diagnostic("R0509", message, Place(str(path)), help=help_text)
+                Diagnostic("R0510", message, Place(str(path)), help=help_text)
             ) from None
 
 

@@ -111,7 +111,7 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: Place | None) -> Fract
     """The step that a monitor was saved with, once it is clear that it fits the rulebook.
 
     Raises:
-        RulecError: R0509.
+        RulecError: R0510.
     """
     return _checked(data, rulebook, place)[1]
 
@@ -122,7 +122,7 @@ def from_data(
     """Where a monitor with these rules stood, and what was violated for good by then.
 
     Raises:
-        RulecError: R0509 if this is no saved monitor, one of another rulebook or damaged.
+        RulecError: R0510 if this is no saved monitor, one of another rulebook or damaged.
     """
     saved, _ = _checked(data, rulebook, place)
     try:
@@ -192,4 +192,4 @@ def _violation(one: _Violation, n_states: int, ready: Sequence[Ready]) -> Violat
 
 def _refused(message: str, place: Place | None) -> RulecError:
     way_out = "restore it with the rulebook that it was saved with, or begin anew"
-    return RulecError(Diagnostic("R0509", message, place, help=way_out))
+    return RulecError(Diagnostic("R0510", message, place, help=way_out))

@@ -1,0 +1,110 @@
+"""A rulebook's rules bound to the objects of a graph, and what every node is to their machines."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.rulebook.model import Strength
+from rulec.runtime.binding import Binding, bindings
+from rulec.runtime.checking import check_objects, check_state
+from rulec.runtime.facts import check_counting_facts
+from rulec.runtime.letters import Columns, present_in
+from rulec.runtime.numbers import exact
+from rulec.runtime.verdict import Violation
+from rulec.runtime.verify import check_step, run
+from rulec.trace import TraceGraph
+
+HARD: tuple[Strength, ...] = ("hard",)
+EVERY: tuple[Strength, ...] = ("hard", "soft")
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """A rule with objects bound, and the letter class of every node.
+
+    ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
+    machine waits for them. ``bindings`` are all those of the rule for which all this is the same.
+    """
+
+    rule: CompiledRule
+    bindings: tuple[Binding, ...]
+    letters: tuple[tuple[int, ...], ...]
+    start: int = 0
+
+    @property
+    def first(self) -> int:
+        """The first layer in which all objects are there."""
+        return self.bindings[0].first
+
+    @property
+    def last(self) -> int:
+        """The last layer in which all objects are there."""
+        return self.bindings[0].last
+
+
+def instances(
+    graph: TraceGraph,
+    rulebook: CompiledRulebook,
+    step_s: Fraction | None = None,
+    strengths: Collection[Strength] = HARD,
+) -> list[Instance]:
+    """Every rule of these strengths with every binding of its variables to the graph's objects.
+
+    ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
+    of a rule that every node is the same to are one instance.
+
+    Raises:
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if one of
+            these rules was compiled for another step, R0508 if a state contradicts a fact.
+    """
+    vocabulary = rulebook.vocabulary
+    rules = [rule for rule in rulebook.rules if rule.strength in strengths]
+    for rule in rules:
+        check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
+    check_objects(graph.objects, vocabulary)
+    for layer, states in enumerate(graph.states):
+        for state in states:
+            check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
+    columns = [
+        Columns(
+            states,
+            vocabulary,
+            f"a cell of layer {layer}".format,
+            objects=present_in(layer, graph.objects, graph.present),
+            facts=rulebook.facts,
+        )
+        for layer, states in enumerate(graph.states)
+    ]
+    for layer, read in enumerate(columns):
+        where = f"a cell of layer {layer}".format
+        check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
+    found: list[Instance] = []
+    for rule in rules:
+        alike: dict[tuple[int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
+        for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
+            letters = tuple(
+                columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
+                for layer in range(binding.first, binding.last + 1)
+            )
+            alike.setdefault((binding.first, letters), []).append(binding)
+        found += [Instance(rule, tuple(bound), letters) for (_, letters), bound in alike.items()]
+    return found
+
+
+def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
+    """What a path, given by its nodes' indices, violates, and from which layer on it is lost."""
+    found = []
+    for one in rules:
+        path = nodes[one.first : one.last + 1]
+        word = [row[node] for row, node in zip(one.letters, path, strict=True)]
+        accepted, lost = run(one.rule.machine, word)
+        if not accepted:
+            layer = None if lost is None else one.first + lost
+            found += [
+                Violation(one.rule.name, one.rule.strength, binding.objects, layer)
+                for binding in one.bindings
+            ]
+    return tuple(found)

@@ -1,0 +1,78 @@
+"""The formats of files of traces: which one a file has, reading and writing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from pathlib import PurePath
+from typing import IO, Literal, get_args
+
+from rulec.diagnostics import RulecError
+from rulec.trace import json_lines
+from rulec.trace.model import Trace
+from rulec.trace.tables import Kinds, columns_for, rows_of
+
+Format = Literal["jsonl", "csv", "parquet"]
+FORMATS: tuple[Format, ...] = get_args(Format)
+
+_CHUNK_STATES = 1 << 16
+
+
+def format_of(file: str) -> Format:
+    """The format that the end of a file's name says; JSON Lines if it says none."""
+    match PurePath(file).suffix.lower():
+        case ".csv":
+            return "csv"
+        case ".parquet" | ".pq":
+            return "parquet"
+    return "jsonl"
+
+
+def read_chunks(stream: IO[bytes], file: str, form: Format) -> Iterator[list[Trace | RulecError]]:
+    """The traces of a stream, some at a time; in place of a bad one what is wrong with it.
+
+    Raises RulecError R0706 for Parquet that cannot be read here.
+    """
+    if form == "jsonl":
+        yield from json_lines.read_chunks(stream, file)
+        return
+    if form == "csv":
+        from rulec.trace.csv_table import read_csv as read
+    else:
+        from rulec.trace.parquet_table import read_parquet as read
+    chunk: list[Trace | RulecError] = []
+    n_states = 0
+    for trace in read(stream, file):
+        chunk.append(trace)
+        n_states += len(trace.states) if isinstance(trace, Trace) else 1
+        if n_states >= _CHUNK_STATES:
+            yield chunk
+            chunk, n_states = [], 0
+    if chunk:
+        yield chunk
+
+
+def write_traces(
+    traces: Iterable[Trace], stream: IO[bytes], file: str, form: Format, kinds: Kinds
+) -> None:
+    """Write traces; ``kinds`` are those of all names that they speak of.
+
+    Raises:
+        RulecError: R0706 if Parquet cannot be written here.
+        ValueError: if a name cannot be a column.
+    """
+    if form == "jsonl":
+        json_lines.write_traces(traces, stream)
+        return
+    columns = columns_for(kinds)
+    rows = chain.from_iterable(rows_of(trace, list(kinds)) for trace in traces)
+    if form == "csv":
+        from rulec.trace.csv_table import write_csv
+
+        write_csv(rows, columns, stream)
+        return
+    from rulec.trace.parquet_table import write_parquet
+
+    own = {"step": int, "step_s": float}
+    types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]
+    write_parquet(rows, types, stream, file)

@@ -1,0 +1,135 @@
+"""Homotopy classes, against sorting every path into its own."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import groupby, islice
+from math import comb
+
+from graphs import graphs
+from hypothesis import given
+from random_priorities import RULES, rulebooks
+
+from rulec.automata.stuttering import stutter_invariant
+from rulec.runtime.cheapest import cheapest
+from rulec.runtime.classes import Classes, count_classes, variants
+from rulec.runtime.effects import effects
+from rulec.runtime.instances import instances
+from rulec.runtime.places import places
+from rulec.runtime.product import explore
+from rulec.runtime.verify import verify
+from rulec.trace import TraceGraph
+from rulec.trace.paths import paths, trace_of
+
+STUTTERING = replace(
+    RULES, rules=tuple(one for one in RULES.rules if stutter_invariant(one.machine))
+)
+
+
+def by_class(graph):
+    """Every path under the places that it visits."""
+    where = places(graph)
+    classes = {}
+    for path in paths(graph):
+        visited = [where[layer][node] for layer, node in enumerate(path)]
+        classes.setdefault(tuple(place for place, _ in groupby(visited)), []).append(path)
+    return classes
+
+
+@given(graphs(objects=("car1",)), rulebooks(strengths=("hard",)))
+def test_classes_are_counted_by_their_members_verdicts(graph, rulebook):
+    found = effects(graph, instances(graph, rulebook))
+    counts = {(True,): 0, (False,): 0, (False, True): 0}
+    satisfying = {}
+    for word, members in by_class(graph).items():
+        verdicts = {path: verify(trace_of(graph, path, ""), rulebook).satisfied for path in members}
+        counts[tuple(sorted(set(verdicts.values())))] += 1
+        if any(verdicts.values()):
+            satisfying[word] = [path for path, fine in verdicts.items() if fine]
+    assert count_classes(found) == Classes(counts[True,], counts[False,], counts[False, True])
+    product = explore(found)
+    cost = {maneuver.nodes: maneuver for maneuver in cheapest(product)}
+    listed = list(variants(product))
+    assert {one.places: one.members for one in listed} == {
+        word: len(members) for word, members in satisfying.items()
+    }
+    assert len(listed) == len(satisfying)
+    assert [one.cheapest.cost for one in listed] == sorted(one.cheapest.cost for one in listed)
+    for one in listed:
+        members = satisfying[one.places]
+        assert one.cheapest.nodes in members
+        assert one.cheapest == cost[one.cheapest.nodes]
+        assert one.cheapest.cost == min(cost[path].cost for path in members)
+    assert list(islice(variants(product), 2)) == listed[:2]
+
+
+def steady(graph):
+    """The same graph, with a place being one state from first to last, and everybody there."""
+    known = {}
+    states = tuple(
+        tuple(known.setdefault(place, state) for place, state in zip(row, layer, strict=True))
+        for row, layer in zip(places(graph), graph.states, strict=True)
+    )
+    return replace(graph, states=states, present={})
+
+
+@given(graphs(objects=("car1",)))
+def test_rules_that_do_not_count_steps_divide_no_class(graph):
+    same = steady(graph)
+    assert count_classes(effects(same, instances(same, STUTTERING))).divided == 0
+
+
+STAYING, CHANGING = (None, 0), (2, 6)
+
+
+def graph_of(*layers, states=None):
+    """A graph from its edges: for each node the followers, each with its margin and cost."""
+    sizes = [*(len(layer) for layer in layers), len(layers[-1])]
+    return TraceGraph(
+        1.0,
+        {},
+        {},
+        states=states or tuple(({"p": False, "q": False},) * size for size in sizes),
+        successors=tuple(tuple(tuple(row) for row in layer) for layer in layers),
+        weights=tuple(
+            tuple(tuple(cost for _, cost in row.values()) for row in layer) for layer in layers
+        ),
+        margins=tuple(
+            tuple(tuple(margin for margin, _ in row.values()) for row in layer) for layer in layers
+        ),
+        cost_unit=Fraction(1, 12),
+        start=0,
+        goals=tuple(range(sizes[-1])),
+    )
+
+
+TWO_LANES = [{0: STAYING, 1: CHANGING}, {0: CHANGING, 1: STAYING}]
+
+
+def test_lanes_side_by_side_have_a_class_for_every_number_of_changes():
+    graph = graph_of(*[TWO_LANES] * 30)
+    assert places(graph) == ((0, 1),) * 31
+    found = effects(graph, [])
+    assert count_classes(found) == Classes(31, 0, 0)
+    listed = list(variants(explore(found)))
+    assert [one.places for one in listed] == [
+        (0, 1) * (n // 2) + (0,) * (n % 2) for n in range(1, 32)
+    ]
+    # A class with k changes has a member for every choice of k steps to change in.
+    assert [one.members for one in listed] == [comb(30, k) for k in range(31)]
+    assert [one.cheapest.cost for one in listed] == [k / 2 for k in range(31)]
+
+
+def test_a_rule_that_is_about_where_one_ends_divides_classes_by_place():
+    graph = graph_of(
+        *[TWO_LANES] * 4, states=(({"p": False, "q": False}, {"p": True, "q": False}),) * 5
+    )
+    never_p = replace(RULES, rules=tuple(one for one in RULES.rules if one.name == "never_p"))
+    assert count_classes(effects(graph, instances(graph, never_p))) == Classes(1, 4, 0)
+
+
+def test_places_begin_anew_where_cells_fall_apart_or_run_together():
+    splitting = [{0: STAYING, 1: STAYING}]
+    joining = [{0: STAYING, 2: CHANGING}, {0: STAYING}]
+    graph = graph_of(splitting, joining, [{0: STAYING}, {1: STAYING}, {1: CHANGING}])
+    # 0 falls apart into 1 and 2; these run together into 3, beside 4 and 5; 3 and 4 go on.
+    assert places(graph) == ((0,), (1, 2), (3, 4, 5), (3, 4, 6))

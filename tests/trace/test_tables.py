@@ -1,0 +1,263 @@
+"""Traces as CSV and as Parquet: what is read, what is refused, and that it comes back."""
+
+import builtins
+import io
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.diagnostics import RulecError
+from rulec.trace import Trace
+from rulec.trace.formats import format_of, read_chunks, write_traces
+from rulec.trace.tables import columns_for, kinds_in
+
+pyarrow = pytest.importorskip("pyarrow")
+parquet = pytest.importorskip("pyarrow.parquet")
+
+CSV = """\
+trace,step,step_s,object,type,other,surface,position,speed,near,busy
+t1,0,0.5,,,,R_cw,,13.9,,false
+t1,0,0.5,v1,vehicle,,,b,,,
+t1,1,0.5,,,,R_pc,,1e1,,true
+t1,1,0.5,v1,,,,l,,,
+t1,1,,p1,pedestrian,,,f,,,
+t1,1,0.5,v1,vehicle,p1,,,,true,
+t2,0,,,,,"R_cw",,-.5,,
+"""
+T1 = Trace(
+    "t1",
+    0.5,
+    {"v1": "vehicle", "p1": "pedestrian"},
+    (
+        {"surface": "R_cw", "speed": 13.9, "busy": False, "position": {"v1": "b"}},
+        {
+            "surface": "R_pc",
+            "speed": 10.0,
+            "busy": True,
+            "position": {"v1": "l", "p1": "f"},
+            "near": {"v1": {"p1": True}},
+        },
+    ),
+    {"p1": (1, 1)},
+)
+T2 = Trace("t2", 1.0, {}, ({"surface": "R_cw", "speed": -0.5},))
+
+
+def read(data, form="csv"):
+    return [one for chunk in read_chunks(io.BytesIO(data), "t", form) for one in chunk]
+
+
+def read_text(text):
+    return read(text.encode())
+
+
+def problem(data, form="csv"):
+    (error,) = read(data if isinstance(data, bytes) else data.encode(), form)
+    assert isinstance(error, RulecError)
+    (found,) = error.diagnostics
+    assert found.code == "R0509"
+    return found
+
+
+def test_rows_are_traces():
+    assert read_text(CSV) == [T1, T2]
+    assert [trace.place.line for trace in read_text(CSV)] == [2, 8]
+
+
+@pytest.mark.parametrize("change", ["\r\n", "\ufeff"])
+def test_other_line_ends_and_a_byte_order_mark(change):
+    text = change + CSV if change == "\ufeff" else CSV.replace("\n", change)
+    assert read_text(text) == [T1, T2]
+
+
+def test_an_object_may_be_in_any_rows_between_its_first_and_last():
+    (trace,) = read_text(
+        "trace,step,object,type,p\nt,0,v,car,true\nt,1,,,\nt,2,v,car,true\nt,3,,,\n"
+    )
+    assert trace.present == {"v": (0, 2)}
+    assert trace.states == ({"p": {"v": True}}, {}, {"p": {"v": True}}, {})
+
+
+HEAD = "trace,step,object,type,other,p\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words", "way_out"),
+    [
+        ("", None, "there is no trace", ""),
+        ("trace,step,p\n", None, "there is no trace", ""),
+        ("\n\n", None, "there is no trace", ""),
+        ('"trace', 1, "cannot be read as CSV", ""),
+        ("trace,stop,p\nt,0,true\n", 1, "there is no column `step`", "did you mean `stop`?"),
+        ("step,p\n0,true\n", 1, "there is no column `trace`", "the first columns are"),
+        ("trace;step\n", 1, "there is no column `trace`", ""),
+        ("trace,step,\n", 1, "a column has no name", ""),
+        ("trace,step,p,p\n", 1, "there are two columns `p`", ""),
+        (HEAD + "t,0,,,true\n", 2, "this row has 5 cells; there are 6 columns", ""),
+        (HEAD + ",0,,,,true\n", 2, "does not say of which trace", ""),
+        (HEAD + "t,1,,,,true\n", 2, "the step is `1`; here it is 0", "stand together"),
+        (HEAD + "t,0,,,,true\nt,2,,,,true\n", 3, "the step is `2`; here it is 0 or 1", ""),
+        (HEAD + "t,0,,,,true\nt,1,,,,\nt,0,,,,\n", 4, "the step is `0`; here it is 1 or 2", ""),
+        (HEAD + "t,0.0,,,,true\n", 2, "the step is `0.0`", ""),
+        (HEAD + "t,,,,,true\n", 2, "the step is empty", ""),
+        (HEAD + "t,0,v,,,true\n", 2, "object `v` does not say its `type`", ""),
+        (HEAD + "t,0,v,car,,\nt,1,v,bus,,\n", 3, "`v` is of type `bus`; before it is of `car`", ""),
+        (HEAD + "t,0,,car,,true\n", 2, "a `type`, but no `object`", ""),
+        (HEAD + "t,0,,,w,true\n", 2, "a `other`, but no `object`", ""),
+        (HEAD + "t,0,,,,true\nt,0,,,,false\n", 3, "step 0 gives `p` twice", ""),
+        (HEAD + "t,0,v,car,,true\nt,0,v,car,,true\n", 3, "step 0 gives `p` twice for `v`", ""),
+        (HEAD + "t,0,v,car,,true\nt,0,v,car,v,true\n", 3, "gives `p` twice for `v, v`", ""),
+        ("trace,step,step_s\nt,0,x\n", 2, "`step_s` is `x`", ""),
+        ("trace,step,step_s\nt,0,1\nt,1,2\n", 3, "`step_s` is `2`; in the rows before it is 1", ""),
+        (HEAD + 't,0,,,,"true', 2, "cannot be read as CSV", ""),
+    ],
+)
+def test_what_is_refused(text, line, words, way_out):
+    found = problem(text)
+    assert words in found.message
+    assert found.place.line == line
+    assert way_out in found.help
+
+
+def test_a_trace_that_is_cut_off_is_not_taken_for_whole():
+    a, error = read_text(HEAD + 'a,0,,,,true\nb,0,,,,true\nb,1,,,,"tr\nue')
+    assert a.id == "a"
+    assert error.diagnostics[0].place.line == 4
+
+
+def test_bytes_that_are_no_text():
+    found = problem(b"trace,step,p\n\xff,0,true\n")
+    assert "UTF-8" in found.message
+
+
+def test_a_bad_trace_does_not_hide_the_good_ones():
+    text = HEAD + "a,0,,,,true\nb,1,,,,\nb,2,,,,\nc,0,,,,\nd,0\n"
+    a, b, c, d = read_text(text)
+    assert (a.id, c.id) == ("a", "c")
+    assert [one.diagnostics[0].place.line for one in (b, d)] == [3, 6]
+
+
+def test_the_end_of_a_name_says_the_format():
+    ends = {"a.csv": "csv", "a.CSV": "csv", "a.parquet": "parquet", "a.pq": "parquet"}
+    for name, form in {**ends, "a.jsonl": "jsonl", "a": "jsonl", "csv": "jsonl"}.items():
+        assert format_of(name) == form
+
+
+names = st.text("abc é,\"'\n;", min_size=1, max_size=4)
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+kinds = st.sampled_from([st.booleans(), numbers, st.sampled_from(["R_cw", "a b", "x,y"])])
+
+
+@st.composite
+def traces(draw):
+    """Traces that a table can hold: one kind for each name, values of objects that are there."""
+    of_nobody = {name: draw(kinds) for name in ("surface", "speed")}
+    of_one = {name: draw(kinds) for name in ("position", "gap")}
+    of_two = {"near": draw(kinds)}
+    found = []
+    for number in range(draw(st.integers(1, 3))):
+        n_states = draw(st.integers(1, 4))
+        objects = draw(st.dictionaries(names, st.sampled_from(["car", "bus"]), max_size=3))
+        present = {}
+        for name in objects:
+            first = draw(st.integers(0, n_states - 1))
+            last = draw(st.integers(first, n_states - 1))
+            if (first, last) != (0, n_states - 1):
+                present[name] = (first, last)
+        states = []
+        for step in range(n_states):
+            there = [
+                name
+                for name in objects
+                if present.get(name, (0, step))[0] <= step <= present.get(name, (0, step))[1]
+            ]
+            about = st.sampled_from(there) if there else st.nothing()
+            state = draw(st.fixed_dictionaries({}, optional=of_nobody))
+            for name, values in of_one.items():
+                state[name] = draw(st.dictionaries(about, values))
+            pairs = st.dictionaries(about, of_two["near"], min_size=1)
+            state["near"] = draw(st.dictionaries(about, pairs))
+            states.append({name: value for name, value in state.items() if value != {}})
+        step_s = draw(st.floats(1e-3, 1e3))
+        found.append(Trace(f"t{number}", step_s, objects, tuple(states), present))
+    return found
+
+
+@pytest.mark.parametrize("form", ["csv", "parquet", "jsonl"])
+@given(traces())
+def test_written_traces_read_back(form, written):
+    stream = io.BytesIO()
+    found = kinds_in(state for trace in written for state in trace.states)
+    write_traces(written, stream, "t", form, found)
+    assert read(stream.getvalue(), form) == written
+
+
+def test_a_name_that_is_a_column_cannot_be_written():
+    with pytest.raises(ValueError, match="step"):
+        columns_for({"step": float})
+
+
+def table(**columns):
+    stream = io.BytesIO()
+    parquet.write_table(pyarrow.table(columns), stream)
+    return stream.getvalue()
+
+
+def test_parquet_knows_types_of_its_own():
+    data = table(
+        trace=pyarrow.array([1, 1, 2]),
+        step=pyarrow.array([0, 1, 0], pyarrow.uint8()),
+        surface=pyarrow.array(["R_cw", None, "R_pc"]).dictionary_encode(),
+        speed=pyarrow.array([3, 2**60, 0]),
+        note=pyarrow.nulls(3),
+    )
+    assert read(data, "parquet") == [
+        Trace("1", 1.0, {}, ({"surface": "R_cw", "speed": 3}, {"speed": 2**60})),
+        Trace("2", 1.0, {}, ({"surface": "R_pc", "speed": 0},)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "cannot be read as Parquet"),
+        (b"PAR1 and no more", "cannot be read as Parquet"),
+        (table(trace=["t"], step=pyarrow.array([0.5])), "the step is `0.5`; here it is 0"),
+        (table(trace=["t"], p=[True]), "there is no column `step`"),
+        (table(trace=["t"], step=[0], p=[[True]]), "the column `p` is of type list"),
+        (
+            table(trace=["t"], step=[0], p=pyarrow.array([0.1], pyarrow.float32())),
+            "the column `p` is of type float",
+        ),
+        (
+            table(
+                trace=pyarrow.array([], pyarrow.string()), step=pyarrow.array([], pyarrow.int8())
+            ),
+            "there is no trace",
+        ),
+    ],
+)
+def test_parquet_that_is_refused(data, words):
+    assert words in problem(data, "parquet").message
+
+
+def test_a_parquet_file_that_is_cut_off():
+    whole = table(trace=["t"] * 3, step=[0, 1, 2])
+    assert "cannot be read" in problem(whole[:-20], "parquet").message
+
+
+def test_parquet_takes_a_package(monkeypatch):
+    real = builtins.__import__
+
+    def without(name, *rest, **more):
+        if name.startswith("pyarrow"):
+            raise ImportError(name)
+        return real(name, *rest, **more)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(RulecError) as caught:
+        read(b"", "parquet")
+    (found,) = caught.value.diagnostics
+    assert found.code == "R0706"
+    assert "rulec[parquet]" in found.help
