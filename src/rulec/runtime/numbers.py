@@ -13,7 +13,7 @@ from rulec.logic.formula import Quantity
 from rulec.runtime.terms import variables_of
 from rulec.trace import Value
 
-_EXACT_IN_FLOATS = 1 << 53
+EXACT_IN_FLOATS = 1 << 53
 """Whole numbers up to this size are floats, too, and their decimals are themselves."""
 
 
@@ -60,7 +60,7 @@ class Scale:
     def digit(self, value: Value) -> int:
         """The digit of the quantity's value."""
         assert not isinstance(value, str), "check_state has refused it"
-        if isinstance(value, float) or -_EXACT_IN_FLOATS <= value <= _EXACT_IN_FLOATS:
+        if isinstance(value, float) or -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS:
             return bisect_right(self.floors, value)
         return self.read.digit(Fraction(value))
 
