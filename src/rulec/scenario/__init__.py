@@ -7,8 +7,10 @@ each in its place, which ``toml_places`` finds. ``motion`` says where an obstacl
 
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
+    Account,
     ConstantAcceleration,
     Ego,
+    Footprints,
     MissingLane,
     Obstacle,
     Road,
@@ -19,9 +21,11 @@ from rulec.scenario.model import (
 from rulec.scenario.read import available_scenarios, load_scenario
 
 __all__ = [
+    "Account",
     "Box",
     "ConstantAcceleration",
     "Ego",
+    "Footprints",
     "MissingLane",
     "Obstacle",
     "Road",

@@ -1,0 +1,179 @@
+"""The lanes of ego's road side by side, and places on it as if every lane had straight bounds.
+
+Lanes get wider and narrower, begin and end; the road of a scenario has lanes of one width. So
+across the road a place is put in proportion between the bounds of its lane: the middle of a lane
+stays the middle, and a car that keeps within its lane does so in the scenario. Where ego is, lanes
+have the width that they have there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.scenario.commonroad.recording import Lanelet, Points, Recording
+from rulec.scenario.commonroad.reference_line import ReferenceLine
+from rulec.scenario.commonroad.route import beside
+from rulec.scenario.model import MissingLane
+
+NARROWEST_LANE_M = 1.0
+"""Where a lane is narrower it has not begun yet, or has ended."""
+
+_EVERY_M = 1.0
+_MARGIN_M = 5.0
+_HAIR_M = 0.01
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """Bounds of lanes from right to left: ``bounds[i]`` at ``s[i]``, ``straight`` in the scenario.
+
+    ``there[i][k]``: does lane k (from 0) exist between ``s[i]`` and ``s[i + 1]``?
+    """
+
+    s: _Values
+    bounds: _Values
+    straight: _Values
+    there: NDArray[np.bool_]
+
+    def straightened(self, places: Points) -> Points:
+        """Places, ``s`` and ``d`` in each row, with ``d`` between the lanes' straight bounds."""
+        at = np.nan_to_num(places[:, 0])
+        before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
+        part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
+        part = np.clip(part, 0.0, 1.0)[:, None]
+        bounds = self.bounds[before] * (1 - part) + self.bounds[before + 1] * part
+        d = places[:, 1:]
+        lane = np.clip((bounds <= d).sum(axis=1) - 1, 0, bounds.shape[1] - 2)
+        row = np.arange(len(places))
+        right, left = bounds[row, lane], bounds[row, lane + 1]
+        low, high = self.straight[lane], self.straight[lane + 1]
+        offset = d[:, 0] - right
+        inside = (offset >= 0) & (d[:, 0] <= left)
+        stretched = low + offset * (high - low) / (left - right)
+        beyond = np.where(offset < 0, low + offset, high + d[:, 0] - left)
+        return np.stack((places[:, 0], np.where(inside, stretched, beyond)), axis=1)
+
+    def count_at(self, s: float) -> int:
+        """How many lanes there are at a place."""
+        piece = int(np.clip(np.searchsorted(self.s, s, "right") - 1, 0, len(self.there) - 1))
+        return int(self.there[piece].sum())
+
+    def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
+        """Where lanes are not there between two places, ``shift`` taken from each ``s``."""
+        return tuple(
+            MissingLane(lane + 1, (low - shift, high - shift))
+            for lane in range(self.there.shape[1])
+            for low, high in self._gaps(lane, start, end)
+        )
+
+    def _gaps(self, lane: int, start: float, end: float) -> Iterator[tuple[float, float]]:
+        gap: tuple[float, float] | None = None
+        for there, (low, high) in zip(self.there[:, lane], pairwise(self.s), strict=True):
+            low, high = max(float(low), start), min(float(high), end)
+            if low >= high:
+                continue
+            if not there:
+                gap = (gap[0] if gap else low, high)
+            elif gap:
+                yield gap
+                gap = None
+        if gap and gap[1] - gap[0] > _HAIR_M:
+            yield gap
+
+
+def lanes_along(
+    recording: Recording, way: Sequence[int], line: ReferenceLine, ego_s: float
+) -> Lanes:
+    """The lanes beside those of the way, numbered from them, that lead the same way."""
+    lanelets = [recording.lanelets[number] for number in way]
+    ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
+    borders = np.clip(np.nan_to_num(line.coordinates(ends)[:, 0]), 0.0, line.length)
+    borders = np.maximum.accumulate(borders)
+    borders[-1] = line.length
+    grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
+    grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
+    pieces = np.clip(
+        np.searchsorted(borders, (grid[:-1] + grid[1:]) / 2, "right") - 1, 0, len(way) - 1
+    )
+    inner = {left: _bound(lanelets, borders, line, grid, left=left) for left in (True, False)}
+    sides = {left: _side(recording, lanelets, borders, line, grid, inner[left], left=left) for left in (True, False)}
+    width = inner[True] - inner[False]
+    columns = [
+        *(w for w, _ in reversed(sides[False])),
+        (np.maximum(width, _HAIR_M)),
+        *(w for w, _ in sides[True]),
+    ]
+    present = [
+        *(p[pieces] for _, p in reversed(sides[False])),
+        np.ones(len(pieces), dtype=bool),
+        *(p[pieces] for _, p in sides[True]),
+    ]
+    wide = [np.minimum(w[:-1], w[1:]) >= NARROWEST_LANE_M for w in columns]
+    first = inner[False] - sum((w for w, _ in sides[False]), start=np.zeros(len(grid)))
+    bounds = np.cumsum(np.stack((first, *columns), axis=1), axis=1)
+    straight = np.array([np.interp(ego_s, grid, column) for column in bounds.T])
+    there = np.stack([p & w for p, w in zip(present, wide, strict=True)], axis=1)
+    return Lanes(grid, bounds, straight, there)
+
+
+def _side(
+    recording: Recording,
+    lanelets: Sequence[Lanelet],
+    borders: _Values,
+    line: ReferenceLine,
+    grid: _Values,
+    inner: _Values,
+    *,
+    left: bool,
+) -> list[tuple[_Values, NDArray[np.bool_]]]:
+    """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
+    rows = [beside(recording, lanelet.id, left=left) for lanelet in lanelets]
+    found = []
+    for k in range(max(map(len, rows))):
+        present = np.array([len(row) > k for row in rows])
+        own = [recording.lanelets[row[k]] if len(row) > k else None for row in rows]
+        outer = _bound(own, borders, line, grid, left=left)
+        pieces = np.clip(np.searchsorted(borders, grid, "right") - 1, 0, len(rows) - 1)
+        known = present[pieces] | present[np.maximum(pieces - 1, 0)] & np.isin(grid, borders)
+        width = np.maximum(outer - inner if left else inner - outer, _HAIR_M)
+        width = np.interp(grid, grid[known], width[known])
+        inner = inner + width if left else inner - width
+        found.append((width, present))
+    return found
+
+
+def _bound(
+    lanelets: Sequence[Lanelet | None],
+    borders: _Values,
+    line: ReferenceLine,
+    grid: _Values,
+    *,
+    left: bool,
+) -> _Values:
+    """The offset of the lanelets' left or right bound at the places of the grid."""
+    found = []
+    for lanelet, (start, end) in zip(lanelets, pairwise(borders), strict=True):
+        if lanelet is None:
+            continue
+        places = line.coordinates(dense(lanelet.left if left else lanelet.right, _EVERY_M))
+        near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
+        found.append(places[near])
+    places = np.concatenate(found)
+    places = places[np.argsort(places[:, 0], kind="stable")]
+    return np.interp(grid, places[:, 0], places[:, 1])
+
+
+def dense(points: Points, every_m: float) -> Points:
+    """A line of straight pieces with further points, so that no two are farther apart."""
+    parts = [points[:1]]
+    for one, other in pairwise(points):
+        count = max(1, int(np.ceil(np.hypot(*(other - one)) / every_m)))
+        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(parts)
