@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
+from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.effects import effects
 from rulec.runtime.instances import instances
 from rulec.runtime.product import Product, count_paths, explore
 from rulec.runtime.terms import names_in
+from rulec.runtime.verdict import Violation
 from rulec.trace import State, TraceGraph, Value
 from rulec.vocabulary import Vocabulary
 
@@ -35,7 +37,8 @@ SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
 class Maneuvers:
     """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
 
-    ``rules`` have judged them, by machines for the graph's step.
+    ``rules`` have judged them, by machines for the graph's step. ``violated_before`` is what the
+    past has violated for good, None if there was no past; nothing of that counts against them.
     """
 
     graph: NavigationGraph
@@ -43,27 +46,34 @@ class Maneuvers:
     traces: int
     satisfying: int
     product: Product
+    violated_before: tuple[Violation, ...] | None = None
 
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
         return list(islice(cheapest(self.product), min(n, self.satisfying)))
 
 
-def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
+def judged(
+    graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
+) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
+
+    ``after`` has led up to the first layer.
 
     Raises:
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
-            rule was compiled for another step.
+            rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
     traces = _in_terms_of(rules.vocabulary, graph.trace_graph())
+    past = past_of(traces, after, rules, graph.step)
     try:
-        bound = instances(traces, rules, graph.step)
+        bound = instances(traces, rules, graph.step, past=past)
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
     explored = explore(effects(traces, bound))
-    return Maneuvers(graph, rules, count_paths(traces), explored.accepted, explored)
+    before = None if after is None else past.violations
+    return Maneuvers(graph, rules, count_paths(traces), explored.accepted, explored, before)
 
 
 def _in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:

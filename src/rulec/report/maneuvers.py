@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import click
 
 from rulec.maneuvers import Maneuvers
 from rulec.partition import Cell, Envelope, NavigationGraph, envelope
+from rulec.report.excerpt import visible
 from rulec.runtime.cheapest import Maneuver
+from rulec.runtime.verdict import Violation
 
 MOST_NAMED = 6
 """So many objects' relations fit on a line of text; JSON has them all."""
@@ -34,6 +36,11 @@ def as_json(found: Maneuvers, listed: Sequence[Maneuver] | None, seconds: float)
         "satisfying": found.satisfying,
         "seconds": round(seconds, 6),
     }
+    if found.violated_before is not None:
+        data["violated_before"] = [
+            {"rule": one.rule, "binding": dict(one.binding), "step": one.step}
+            for one in found.violated_before
+        ]
     if listed is not None:
         data["maneuvers"] = [_as_data(graph, maneuver) for maneuver in listed]
     return json.dumps(data, ensure_ascii=False)
@@ -77,12 +84,23 @@ def as_text(found: Maneuvers, listed: Sequence[Maneuver] | None, seconds: float)
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(found.traces)}",
         f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
+        *_violated_before(found.violated_before or ()),
         f"computed in {seconds:.3f} s",
     ]
     if listed:
         for rank, maneuver in enumerate(listed, 1):
             lines += ["", *_block(graph, rank, maneuver)]
     return "\n".join(lines)
+
+
+def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
+    """A line for each rule that the past has violated, which no maneuver can mend."""
+    for one in violations[:MOST_NAMED]:
+        where = ", ".join(f"{name} = {item}" for name, item in one.binding.items())
+        about = f" for {where}" if where else ""
+        yield visible(f"violated    {one.rule}{about}, before, and not counted any more")
+    if len(violations) > MOST_NAMED:
+        yield f"            and {len(violations) - MOST_NAMED:,} more; --json has them all"
 
 
 def shown_count(count: int) -> str:
