@@ -258,9 +258,8 @@ def test_what_the_past_has_violated_is_said_and_not_counted(tmp_path, capsys):
 
 def test_only_so_many_are_named(tmp_path, capsys):
     names = [f"x{number}" for number in range(9)]
-    objects, states = dict.fromkeys(names, "vehicle"), []
-    for place in "brf":
-        states.append({"position": dict.fromkeys(names, place)})
+    objects = dict.fromkeys(names, "vehicle")
+    states = [{"position": dict.fromkeys(names, place)} for place in "brf"]
     past = written(tmp_path, "past.jsonl", {"objects": objects, "states": states})
     _, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
     assert "            and 3 more; --json has them all" in out.splitlines()
