@@ -138,9 +138,9 @@ TRACES = {
     ),
     "R0511": Explanation(
         "a past does not lead up to a scenario",
-        "`rulec maneuvers --after` goes on where a trace has ended: the first layer of the "
-        "scenario is the state after its last one. So there is one such trace, its states are as "
-        "far apart as the layers, and who is in both is of the same type in both.",
+        "With `--after` the maneuvers of a scenario go on where a trace has ended: the first layer "
+        "is the state after its last one. So there is one such trace, its states are as far apart "
+        "as the layers, and who is in both is of the same type in both.",
         _FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl",
         _FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl --step 0.5",
         "command",
