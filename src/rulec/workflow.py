@@ -139,6 +139,7 @@ def compare_rulebooks(
     step_s: Fraction | None = None,
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     tell: Callable[[float], object] = lambda _: None,
+    most: int = 1,
 ) -> Difference:
     """Compare the rules of two rulebooks, given by name or by their sources' paths.
 
@@ -151,8 +152,9 @@ def compare_rulebooks(
         read_with_inheritance(each, search_path, at) for each in (first, second)
     )
     warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell)
-    return replace(found, settings=setting_pairs(ours, theirs))
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
+    # What rules that were not asked for depend on is not asked for either.
+    return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
 
 
 def compare_all(

@@ -52,7 +52,7 @@ def found(one, kind):
         ),
         ("failing", [("own", "example 1")]),
         ("unverified", [("softer", "")]),
-        ("secondary", [("changed", "a book")]),
+        ("secondary", [("changed", "")]),
         ("unstated", [("own", "")]),
         ("soft-only", [("§ 2", "softer")]),
         ("softened", [("softer", "only recommended")]),

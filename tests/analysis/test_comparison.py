@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, sides, states
 
 from rulec.analysis.comparison import compare
+from rulec.analysis.reasons import unusual
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.model import Fact, Variable
 from rulec.trace import Trace
@@ -18,28 +19,31 @@ SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
 
 def check(one, other, traces):
     """The witnesses are real and shortest, and where there is none no short trace tells."""
-    found = compare(one, other)
+    found = compare(one, other, most=3)
     assert not found.undecided
     witnesses = {True: found.first_forbids, False: found.second_forbids}
-    for witness, forbids, permits in (
+    for traces_of_one, forbids, permits in (
         (found.first_forbids, one, other),
         (found.second_forbids, other, one),
     ):
-        if witness is not None:
+        for witness in traces_of_one:
             assert not allows(forbids, witness)
             assert allows(permits, witness)
+        needs = [unusual(witness, one.rulebook.vocabulary) for witness in traces_of_one]
+        for number, later in enumerate(needs):
+            assert not any(earlier <= later for earlier in needs[:number])
     expected = {
         (True, True): "equal",
         (False, True): "stricter",
         (True, False): "laxer",
         (False, False): "incomparable",
     }
-    assert found.relation == expected[found.first_forbids is None, found.second_forbids is None]
+    assert found.relation == expected[not found.first_forbids, not found.second_forbids]
     for trace in traces:
         verdicts = allows(one, trace), allows(other, trace)
         if verdicts[0] != verdicts[1]:
-            witness = witnesses[verdicts[1]]
-            assert witness is not None, trace
+            assert witnesses[verdicts[1]], trace
+            witness = witnesses[verdicts[1]][0]
             assert len(witness.states) <= len(trace.states)
 
 
@@ -117,11 +121,9 @@ def test_facts_rule_out_states(pair, semantics):
     one, other = sides(pair, [X], semantics, (Fact((X,), FACT),))
     check(one, other, POSSIBLE)
     found = compare(one, other)
-    for trace in (found.first_forbids, found.second_forbids):
-        if trace is not None:
-            defaults = {"p": False}
-            states = tuple({**defaults, **state} for state in trace.states)
-            assert is_possible(replace(trace, states=states))
+    for trace in (*found.first_forbids, *found.second_forbids):
+        states = tuple({"p": False, **state} for state in trace.states)
+        assert is_possible(replace(trace, states=states))
 
 
 CARS = [trace for kind in ("thing", "car") for trace in words({"x": kind}, ["p", "place"], 2)]

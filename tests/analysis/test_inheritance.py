@@ -52,7 +52,7 @@ def test_the_chain(village):
             [
                 ("mainland", "declared", (), ""),
                 # Its certainty is said again, but it is the same.
-                ("island", "overridden", ("cite", "require"), ""),
+                ("island", "overridden", ("cite", "source", "require"), ""),
                 ("village", "overridden", ("says",), ""),
             ],
         ),

@@ -111,9 +111,9 @@ def test_json(capsys):
     relations = {one["rule"]: one["relation"] for one in found["rules"]}
     assert relations == {"leave_room": "stricter", "no_passing": "laxer", "no_crowd": "equal"}
     room = found["rules"][0]
-    assert room["second_forbids"] is None
-    assert room["first_forbids"]["objects"] == {"c": "cyclist"}
-    assert room["first_forbids"]["states"][0]["side_gap"] == {"c": 1.5}
+    assert room["second_forbids"] == []
+    assert room["first_forbids"][0]["objects"] == {"c": "cyclist"}
+    assert room["first_forbids"][0]["states"][0]["side_gap"] == {"c": 1.5}
     assert [one["because"] for one in found["only_second"]] == ["in the act on noise"]
     assert found["settings"] == [
         {"kind": "parameter", "name": "least", "first": "2 m", "second": "1.5 m"}

@@ -41,7 +41,7 @@ rules
 ├── kept  inherited from mainland
 ├── changed  overrides island: says
 │   ├── declared by mainland
-│   └── overridden by island: cite, require
+│   └── overridden by island: cite, source, require
 ├── softer  softened by island, because only recommended
 │   └── declared by mainland
 ├── taken_out  dropped by island, because there are no sirens

@@ -195,4 +195,4 @@ def test_bounds_in_seconds_are_those_of_the_trace():
     ],
 )
 def test_numbers_are_shown_so_that_they_can_be_told_from_the_limit(value, shown):
-    assert report._shown(value) == shown
+    assert report.shown(value) == shown

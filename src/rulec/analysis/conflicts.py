@@ -8,12 +8,12 @@ from fractions import Fraction
 
 from rulec.analysis.alphabet import Alphabet, Symbol
 from rulec.analysis.columns import machine_column
-from rulec.analysis.comparison import read_by
 from rulec.analysis.distinct import Side
 from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import Scene
 from rulec.analysis.search import MOST_STATES, MOST_STEPS, Node
 from rulec.analysis.staging import alone, staged
+from rulec.analysis.violation import read_by
 from rulec.automata.machine import Machine
 from rulec.rulebook.model import Variable
 from rulec.runtime.terms import names_in

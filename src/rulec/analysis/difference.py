@@ -8,10 +8,11 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 
 from rulec.analysis.common_words import common_words
-from rulec.analysis.comparison import Comparison, Relation, compare, read_by
+from rulec.analysis.comparison import Comparison, Relation, compare
 from rulec.analysis.distinct import Distinct, at_one_step
 from rulec.analysis.history import Inheritance, ProvisionHistory, ProvisionKind
 from rulec.analysis.trace_table import TraceTable, trace_table
+from rulec.analysis.violation import read_by
 from rulec.automata.compiled import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook
 from rulec.trace import Trace
@@ -99,20 +100,19 @@ class Difference:
     def witnesses(self) -> Iterator[Trace]:
         """The traces that one of them forbids and the other one allows."""
         for pair in self.pairs:
-            for trace in (pair.comparison.first_forbids, pair.comparison.second_forbids):
-                if trace is not None:
-                    yield trace
+            yield from pair.comparison.first_forbids
+            yield from pair.comparison.second_forbids
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
         """What one rulebook's rule forbids and the other's allows: both names, and the states."""
         words = common_words(self.first.vocabulary, self.second.vocabulary)
         names = read_by(pair.machines[0]) | read_by(pair.machines[1])
         one, other = self.first.name, self.second.name
-        for trace, forbids, allows in (
+        for traces, forbids, allows in (
             (pair.comparison.first_forbids, one, other),
             (pair.comparison.second_forbids, other, one),
         ):
-            if trace is not None:
+            for trace in traces:
                 yield forbids, allows, trace_table(trace, names, words.vocabulary)
 
 
@@ -138,6 +138,7 @@ def difference(
     patterns: Sequence[str] = (),
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
+    most: int = 1,
 ) -> Difference:
     """Compare the rules that two rulebooks share by name.
 
@@ -148,6 +149,8 @@ def difference(
         step_s: the step of the traces that rules with bounds in seconds are compared on; else one
             that divides the steps of their examples.
         tell: is told how many rules have been compared.
+        most: how many traces to look for, each for another reason, that one rule forbids and the
+            other allows.
 
     Raises:
         RulecError: if a rule cannot be compiled.
@@ -167,7 +170,7 @@ def difference(
                 ours[name],
                 theirs[name],
                 (one.rule, other.rule),
-                _labelled(compare(one, other), first.name, second.name, name),
+                _labelled(compare(one, other, most), first.name, second.name, name),
             )
         )
         tell(number)
@@ -201,10 +204,12 @@ def _only(
 def _labelled(found: Comparison, first: str, second: str, rule: str) -> Comparison:
     """The comparison with traces that are named for what they show."""
 
-    def named(trace: Trace | None, forbids: str, allows: str) -> Trace | None:
-        if trace is None:
-            return None
-        return replace(trace, id=f"{rule}: {forbids} forbids, {allows} allows")
+    def named(traces: Sequence[Trace], forbids: str, allows: str) -> tuple[Trace, ...]:
+        title = f"{rule}: {forbids} forbids, {allows} allows"
+        return tuple(
+            replace(trace, id=title if number == 1 else f"{title} ({number})")
+            for number, trace in enumerate(traces, 1)
+        )
 
     return replace(
         found,

@@ -159,17 +159,21 @@ def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[
         yield undecided(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
-    if found.second_forbids is None and not softer:
+    if not found.second_forbids and not softer:
         return
-    how = "softer" if found.second_forbids is None else "laxer"
+    how = "laxer" if found.second_forbids else "softer"
     if found.relation == "incomparable":
         how = "neither stricter nor laxer"
-    trace = found.second_forbids
+    notes = [
+        note
+        for trace in found.second_forbids
+        for note in shown(f"`{base.name}` forbids", trace, (own, inherited))
+    ]
     yield Diagnostic(
         "R0806",
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
         at(rule.span),
         help="if the law has it so, nothing is to be done",
-        notes=() if trace is None else shown(f"`{base.name}` forbids", trace, (own, inherited)),
+        notes=tuple(notes),
         severity="warning",
     )

@@ -7,11 +7,11 @@ from math import prod
 
 from rulec.analysis.alphabet import Alphabet
 from rulec.analysis.columns import machine_column
-from rulec.analysis.comparison import violation
 from rulec.analysis.conflicts import share_words
 from rulec.analysis.distinct import Side
 from rulec.analysis.scene import Scene
 from rulec.analysis.search import shortest
+from rulec.analysis.violation import violation
 
 MOST_PREMISES = 6
 MOST_JOINT_STATES = 5_000

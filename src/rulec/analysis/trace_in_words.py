@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rulec.analysis.comparison import read_by
 from rulec.analysis.situation import keys_of
+from rulec.analysis.violation import read_by
 from rulec.automata.compiled import CompiledRule
 from rulec.logic.formula import Atom
 from rulec.logic.printing import number_in_words

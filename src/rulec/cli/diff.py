@@ -43,6 +43,15 @@ if TYPE_CHECKING:
     "[default: one that divides the steps of their examples]",
 )
 @click.option(
+    "--witnesses",
+    "most",
+    type=click.IntRange(1, 100),
+    default=3,
+    show_default=True,
+    metavar="N",
+    help="Show up to N traces for every difference, each for a reason of its own.",
+)
+@click.option(
     "--output-format",
     type=click.Choice(FORMATS),
     default="text",
@@ -64,6 +73,7 @@ def command(
     every: bool,
     patterns: tuple[str, ...],
     step_s: Fraction | None,
+    most: int,
     output_format: str,
     output: str | None,
     witness: str | None,
@@ -71,7 +81,7 @@ def command(
 ) -> int:
     """Say which rules of a first RULEBOOK are stricter or laxer than those of a second, or neither.
 
-    Both are names or paths of sources. For every difference there is a shortest trace that one of
+    Both are names or paths of sources. For every difference there are short traces that one of
     them forbids and the other one allows. With --all there is an overview of many rulebooks.
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
@@ -86,7 +96,7 @@ def command(
     if len(rulebooks) != 2:
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
     first, second = rulebooks
-    found = _difference(first, second, patterns, step_s, at)
+    found = _difference(first, second, patterns, step_s, at, most)
     if witness is not None:
         _write_witnesses(found, witness)
     _put(render(found, output_format), output)
@@ -96,7 +106,12 @@ def command(
 
 
 def _difference(
-    first: str, second: str, patterns: tuple[str, ...], step_s: Fraction | None, at: str
+    first: str,
+    second: str,
+    patterns: tuple[str, ...],
+    step_s: Fraction | None,
+    at: str,
+    most: int,
 ) -> Difference:
     from rulec.report.console import print_diagnostics, progress
     from rulec.settings import search_path
@@ -104,7 +119,7 @@ def _difference(
 
     with progress("comparing", None) as tell:
         return compare_rulebooks(
-            first, second, search_path(), at, patterns, step_s, print_diagnostics, tell
+            first, second, search_path(), at, patterns, step_s, print_diagnostics, tell, most
         )
 
 

@@ -10,7 +10,6 @@ from typing import Any
 from rulec.analysis.difference import Difference, OneSided, RulePair
 from rulec.logic.printing import number_in_words
 from rulec.rulebook.model import Rule, Rulebook
-from rulec.trace import Trace
 from rulec.trace.json_lines import as_record
 
 
@@ -41,8 +40,8 @@ def _pair(pair: RulePair) -> dict[str, Any]:
         "second": _rule(pair.second),
         "common_types": list(found.common) or None,
         "on_common_types": found.on_common,
-        "first_forbids": _trace(found.first_forbids),
-        "second_forbids": _trace(found.second_forbids),
+        "first_forbids": [as_record(trace) for trace in found.first_forbids],
+        "second_forbids": [as_record(trace) for trace in found.second_forbids],
     }
 
 
@@ -57,10 +56,6 @@ def _rule(rule: Rule) -> dict[str, Any]:
         "certainty": rule.certainty,
         "book": rule.book,
     }
-
-
-def _trace(trace: Trace | None) -> dict[str, Any] | None:
-    return None if trace is None else as_record(trace)
 
 
 def _only(rules: Sequence[OneSided]) -> list[dict[str, Any]]:

@@ -13,7 +13,7 @@ from rulec.logic.formula import Quantity
 from rulec.runtime.terms import names_in, variables_of
 from rulec.trace import Value
 
-_EXACT_IN_FLOATS = 1 << 53
+EXACT_IN_FLOATS = 1 << 53
 """Whole numbers up to this size are floats, too, and their decimals are themselves."""
 
 
@@ -37,19 +37,11 @@ def floor_of(threshold: Threshold) -> float:
         found = float(threshold.limit)
     except OverflowError:
         return inf if threshold.limit > 0 else -inf
-    # The nearest float: what is looked for is it, or a few steps away.
-    while found > -inf and _passes(nextafter(found, -inf), threshold):
-        found = nextafter(found, -inf)
-    while not _passes(found, threshold):
-        found = nextafter(found, inf)
-    return found
-
-
-def _passes(value: float, threshold: Threshold) -> bool:
-    if value in (inf, -inf):
-        return value > 0
-    number = Fraction(repr(value))
-    return number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    # The nearest float. The decimals of the others are nearest to those, so they are beyond the
+    # limit on their side of it; that of this one may be on either.
+    number = _decimal(found)
+    passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    return found if passes else nextafter(found, inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +61,7 @@ class Scale:
     def digit(self, value: Value) -> int:
         """The digit of the quantity's value."""
         assert not isinstance(value, str), "check_state has refused it"
-        if isinstance(value, float) or -_EXACT_IN_FLOATS <= value <= _EXACT_IN_FLOATS:
+        if isinstance(value, float) or -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS:
             return bisect_right(self.floors, value)
         return self.read.digit(Fraction(value))
 
