@@ -37,19 +37,11 @@ def floor_of(threshold: Threshold) -> float:
         found = float(threshold.limit)
     except OverflowError:
         return inf if threshold.limit > 0 else -inf
-    # The nearest float: what is looked for is it, or a few steps away.
-    while found > -inf and _passes(nextafter(found, -inf), threshold):
-        found = nextafter(found, -inf)
-    while not _passes(found, threshold):
-        found = nextafter(found, inf)
-    return found
-
-
-def _passes(value: float, threshold: Threshold) -> bool:
-    if value in (inf, -inf):
-        return value > 0
-    number = Fraction(repr(value))
-    return number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    # The nearest float. The decimals of the others are nearest to those, so they are beyond the
+    # limit on their side of it; that of this one may be on either.
+    number = _decimal(found)
+    passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    return found if passes else nextafter(found, inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
