@@ -7,8 +7,7 @@ a state and rule instance (a rule with objects bound), the median and the least 
 States differ from each other, in that every other vehicle has moved on, and were made before.
 Judging the growing trace anew at each state by `verify` is measured beside, on short traces.
 
-PEER is the Python of an environment that has rtamt; it judges a response within three steps, on
-one signal more than it needs, as we do.
+PEER is the Python of an environment that has rtamt; both then judge one rule on two signals.
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +58,9 @@ def main(rounds: int, peer: str | None) -> None:
             n_instances = sum(map(len, bindings(monitor, states[0], objects)))
             label = f"{name}, {n_vehicles} vehicles, {n_instances} instances"
             shown(
-                label, times(lambda: taken(monitor, states, objects), N_STATES, rounds), n_instances
+                label,
+                times(partial(taken, monitor, states, objects), N_STATES, rounds),
+                n_instances,
             )
     rules = rulec.compile_rulebook("esterle2019")
     objects = {"v0": "vehicle"}

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 from typing import Any, TypeAlias
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.logic.printing import number_in_words
+from rulec.rulebook.model import Strength
 from rulec.runtime.checking import check_objects
+from rulec.runtime.instances import HARD
 from rulec.runtime.monitor import Monitor
 from rulec.runtime.numbers import exact
 from rulec.runtime.online.past import NO_PAST, Past
@@ -23,9 +25,13 @@ Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
 
 
 def past_of(
-    graph: TraceGraph, before: Before | None, rulebook: CompiledRulebook, step_s: Fraction
+    graph: TraceGraph,
+    before: Before | None,
+    rulebook: CompiledRulebook,
+    step_s: Fraction,
+    strengths: Collection[Strength] = HARD,
 ) -> Past:
-    """What has been when a graph with this step begins.
+    """What has been when a graph with this step begins, for rules of these strengths.
 
     Its first layer is the state after the last one of what was before.
 
@@ -36,7 +42,7 @@ def past_of(
     if before is None:
         return NO_PAST
     check_objects(graph.objects, rulebook.vocabulary)
-    monitor, place = _monitor(before, rulebook, step_s)
+    monitor, place = _monitor(before, rulebook, step_s, strengths)
     there = {
         name: kind
         for name, kind in graph.objects.items()
@@ -46,8 +52,9 @@ def past_of(
         if there.get(name, kind) != kind:
             raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
     past = monitor.past(there)
-    hard = tuple(one for one in past.violations if one.strength == "hard")
-    return replace(past, violations=hard)
+    return replace(
+        past, violations=tuple(one for one in past.violations if one.strength in strengths)
+    )
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:
@@ -75,8 +82,9 @@ def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:
 
 
 def _monitor(
-    before: Before, rulebook: CompiledRulebook, step_s: Fraction
+    before: Before, rulebook: CompiledRulebook, step_s: Fraction, strengths: Collection[Strength]
 ) -> tuple[Monitor, Place | None]:
+    rules = tuple(rule for rule in rulebook.rules if rule.strength in strengths)
     if isinstance(before, Trace):
         if exact(before.step_s) != step_s:
             raise _no_way(
@@ -84,18 +92,13 @@ def _monitor(
                 f"the scenario's future of {number_in_words(step_s)} s",
                 before.place,
             )
-        return replayed(before, replace(rulebook, rules=_hard(rulebook))), before.place
+        return replayed(before, replace(rulebook, rules=rules)), before.place
     if not isinstance(before, Monitor):
         return Monitor.restore(rulebook, before), None
     known = {rule.name: rule.machine for rule in before.rulebook.rules}
-    if any(known.get(rule.name) != rule.machine for rule in _hard(rulebook)):
+    if any(known.get(rule.name) != rule.machine for rule in rules):
         raise _no_way(f"the past was judged by other rules than those of `{rulebook.name}`", None)
     return before, None
-
-
-def _hard(rulebook: CompiledRulebook) -> tuple[CompiledRule, ...]:
-    """The rules that maneuvers have to keep."""
-    return tuple(rule for rule in rulebook.rules if rule.strength == "hard")
 
 
 def _no_way(message: str, place: Place | None) -> RulecError:
