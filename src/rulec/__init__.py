@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.rulebook.model import Rulebook as Rulebook
     from rulec.runtime.batch.verifying import verify_many as verify_many
+    from rulec.runtime.monitor import Monitor as Monitor
     from rulec.runtime.verdict import Verdict as Verdict
     from rulec.runtime.verify import verify as verify
     from rulec.scenario import Scenario as Scenario
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 _HOME = {
     "CompiledRulebook": "rulec.automata.compiled",
     "Maneuvers": "rulec.maneuvers",
+    "Monitor": "rulec.runtime.monitor",
     "NavigationGraph": "rulec.partition",
     "Rulebook": "rulec.rulebook.model",
     "RulecError": "rulec.diagnostics",

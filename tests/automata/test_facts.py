@@ -106,6 +106,13 @@ def test_facts_are_linked_by_what_they_speak_of():
     assert groups == [formulas[1:3], [formulas[0], formulas[3]]]
 
 
+def test_facts_are_linked_by_way_of_others():
+    """The last one has to do with the first alone, which the second one has joined already."""
+    book = town("fact not (p and fog)", "fact not (fog and ice)", "fact speed <= 50 km/h or p")
+    (group,) = linked(fact_instances((), book.facts, book.vocabulary))
+    assert {one.fact for one in group} == set(book.facts)
+
+
 def test_what_is_known_of_values_that_facts_bring_in():
     """The fact speaks of `near`, the rule of `far`: both are values of one enumeration."""
     book = town("fact near(t) or far(t) or big(t)")
@@ -131,3 +138,9 @@ def test_the_objects_of_a_fact_are_not_those_that_it_counts():
         (Variable("v", "car"),),
         (Variable("c", "car"),),
     ]
+
+
+def test_an_object_of_a_fact_is_of_the_narrowest_type_that_is_needed():
+    for line in ("big(t) implies gap(t) < 5 m", "gap(t) < 5 m implies big(t)"):
+        (fact,) = town(f"fact {line}").facts
+        assert fact.variables == (Variable("t", "car"),)

@@ -4,6 +4,7 @@ They are run in order, in one folder, on the files that the page has written bef
 line that ends in "`NAME`:" is the file NAME; one with a program is followed by what it prints.
 """
 
+import os
 import re
 import shlex
 import subprocess
@@ -45,9 +46,12 @@ def steps(page):
 SESSIONS = {name: tuple(steps(text)) for name, text in PAGES.items()}
 
 
-def printed(kind, what, capsys):
+def printed(kind, what, capsys, monkeypatch):
     if kind == "command":
-        main(shlex.split(what)[1:])
+        what, _, read = what.partition(" < ")
+        with Path(read or os.devnull).open(encoding="utf-8") as stream:
+            monkeypatch.setattr(sys, "stdin", stream)
+            main(shlex.split(what)[1:])
         captured = capsys.readouterr()
         return captured.out + captured.err
     program = [sys.executable, "-c", what]
@@ -70,7 +74,9 @@ def test_what_is_shown_is_what_happens(page, tmp_path, monkeypatch, capsys):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
         else:
-            assert without_times(printed(kind, what, capsys)) == without_times(text), what
+            assert without_times(printed(kind, what, capsys, monkeypatch)) == without_times(text), (
+                what
+            )
 
 
 @pytest.mark.parametrize("page", PAGES)

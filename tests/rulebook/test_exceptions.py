@@ -125,6 +125,38 @@ def test_exceptions_of_a_sequence(phases, exceptions, word, kind, when):
     assert judged(formula, word, kind) == never_holds(phases, exceptions, long, when)
 
 
+@pytest.mark.parametrize(
+    ("sequence", "flat"),
+    [
+        ("p then q then r", True),
+        ("p then (q then r)", True),
+        ("p then onward", True),
+        ("whole", True),
+        ("(p then q) then r", False),
+        ("start then r", False),
+    ],
+)
+def test_a_sequence_in_last_place_goes_on_and_any_other_is_one_phase(sequence, flat):
+    text = f"""rulebook r semantics finite signal {", ".join(NAMES)} default false
+    define onward = q then r
+    define start = p then q
+    define whole = p then onward
+    hard rule r {{ require never ({sequence}) unless s at start }}"""
+    formula = parse_rulebook(text).rules[0].formula
+
+    def kept(*word):
+        return judged(formula, [frozenset(state) for state in word], "finite")
+
+    # Of three phases the one in the middle is guarded, of two the last state of the first one.
+    assert kept("p", "q", "r") != flat
+    assert kept("p", "qs", "r")
+    assert kept("ps", "q", "r") != flat
+    # Where `p then q` is one phase, r follows while it holds: when p ends.
+    assert kept("p", "qr") == flat
+    assert kept("p", "qrs") == flat
+    assert kept("ps", "qr")
+
+
 def named(name):
     return name, lambda state: name in state
 

@@ -72,6 +72,29 @@ def test_a_compiled_rulebook_says_where_the_fact_is_written():
     assert "the fact is in queue.rules, line 6" in found.notes
 
 
+def test_the_state_is_counted_from_the_beginning_of_the_trace():
+    """The two are there together from state 1 on."""
+    trace = Trace("t", 1, CARS, ({}, {}, BOTH), present={"v2": (1, 2)})
+    with pytest.raises(RulecError, match="state 2 cannot be"):
+        verify(trace, COMPILED)
+
+
+def test_the_fact_that_is_named_is_one_that_the_rule_depends_on():
+    """The object is a bus, but the rule is about cars."""
+    book = parse_rulebook(
+        "rulebook a type car type bus is car\n"
+        "signal p(c: car), q(c: car), old(b: bus) default false\n"
+        "fact old(b) or not p(b)\nfact p(c) implies not q(c)\n"
+        "hard rule r (c: car) { require never (p(c) and q(c)) }"
+    )
+    state = {"p": {"v1": True}, "q": {"v1": True}}
+    found = problem(state, objects={"v1": "bus"}, rulebook=compile_rulebook(book))
+    assert found.message == "state 0 cannot be: `p(v1) implies not q(v1)` holds in every state"
+    # What is only known of buses is not known of cars.
+    trace = Trace("t", 1, {"v1": "bus"}, ({"p": {"v1": True}},))
+    assert verify(trace, compile_rulebook(book)).satisfied
+
+
 def test_numbers_beyond_what_can_be():
     found = problem({"speed": {"v2": 121}})
     assert found.message == "state 0 cannot be: `speed(v2) <= 120 km/h` holds in every state"
@@ -94,6 +117,25 @@ def test_facts_that_count_are_asked_of_the_objects_that_are_there():
     assert found.notes == ("here `count c: car (loud(c))` is 2",)
     absent = Trace("t", 1, CARS, ({}, two), present={"v2": (0, 0)})
     verify(absent, COMPILED)
+
+
+def test_facts_that_count_are_about_the_objects_of_each_moment():
+    book = parse_rulebook(
+        "rulebook a type car signal loud(c: car) default false\n"
+        "fact loud(v) implies some c: car (c != v and loud(c))\n"
+        "hard rule r (v: car) { require eventually loud(v) }"
+    )
+    compiled = compile_rulebook(book)
+    two, one = {"loud": {"v1": True, "v2": True}}, {"loud": {"v1": True}}
+
+    def states(*states, **present):
+        return Trace("t", 1, CARS, states, present=present)
+
+    # What is said of a car that is not there does not matter.
+    assert verify(states(two, {"loud": {"v2": True}}, v2=(0, 0)), compiled).satisfied
+    for wrong in (states({}, one), states({}, two, v2=(0, 0)), states({}, one, v1=(1, 1))):
+        with pytest.raises(RulecError, match="state 1 cannot be: `loud\\(v1\\) implies some"):
+            verify(wrong, compiled)
 
 
 def test_facts_that_count_what_no_rule_reads_are_not_asked():

@@ -39,6 +39,11 @@ def test_against_a_search(system):
             assert not all(fits(one, dict(zip((X, Y, Z), point, strict=True))) for one in system)
 
 
+def test_what_speaks_of_no_unknown_holds_or_does_not():
+    for limit, strict, holds in ((0, False, True), (0, True, False), (-1, False, False)):
+        assert (solve([Bounded({}, Fraction(limit), strict)], [X], {}) is not None) is holds
+
+
 def test_what_is_preferred_is_taken_where_it_fits():
     below = Bounded({X: Fraction(1)}, Fraction(50), strict=True)
     assert solve([below], [X], {X: Fraction(13)}) == {X: Fraction(13)}

@@ -96,13 +96,14 @@ def _rule(rule: CompiledRule) -> dict[str, Any]:
         "tree": to_data(rule.formula),
         "machine": {
             **msgspec.to_builtins(replace(rule.machine, reads=())),
-            "reads": [_read(read) for read in rule.machine.reads],
+            "reads": [read_to_data(read) for read in rule.machine.reads],
         },
         "hoa": rule.hoa,
     }
 
 
-def _read(read: Read | NumberRead) -> dict[str, Any]:
+def read_to_data(read: Read | NumberRead) -> dict[str, Any]:
+    """A read as the file has it."""
     match read:
         case Read():
             return {"kind": "state", **msgspec.to_builtins(read)}

@@ -26,6 +26,7 @@ VERBS = {
     "fmt": "Format rulebooks and vocabularies.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
+    "monitor": "Judge a running trace by a rulebook, state by state.",
     "new": "Write a rulebook to start from.",
     "show": "Show a rule in English, as a formula, as an automaton, by examples.",
     "test": "Run the examples of rulebooks.",

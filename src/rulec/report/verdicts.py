@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.diagnostics import RulecError
 from rulec.logic.printing import number_in_words
 from rulec.report import explanation
 from rulec.report.excerpt import visible
@@ -51,15 +52,19 @@ def _as_data(violation: Violation, rule: CompiledRule) -> dict[str, Any]:
 
 def not_judged_as_json(answer: NotJudged) -> str:
     """One line of JSON for a trace that could not be judged; ``trace`` is null if it has no id."""
-    diagnostic = answer.error.diagnostics[0]
+    return _ENCODE({"trace": answer.trace, "error": error_as_data(answer.error)})
+
+
+def error_as_data(error: RulecError) -> dict[str, Any]:
+    """What is wrong with a trace or a state, and where."""
+    diagnostic = error.diagnostics[0]
     place = diagnostic.place
-    details: dict[str, Any] = {
+    return {
         "code": diagnostic.code,
         "message": diagnostic.message,
         "file": place.file if place else None,
         "line": place.line if place else None,
     }
-    return _ENCODE({"trace": answer.trace, "error": details})
 
 
 def as_text(

@@ -10,10 +10,10 @@ from math import inf, nextafter
 
 from rulec.automata.machine import NumberRead, Threshold
 from rulec.logic.formula import Quantity
-from rulec.runtime.terms import variables_of
+from rulec.runtime.terms import names_in, variables_of
 from rulec.trace import Value
 
-_EXACT_IN_FLOATS = 1 << 53
+EXACT_IN_FLOATS = 1 << 53
 """Whole numbers up to this size are floats, too, and their decimals are themselves."""
 
 
@@ -37,38 +37,31 @@ def floor_of(threshold: Threshold) -> float:
         found = float(threshold.limit)
     except OverflowError:
         return inf if threshold.limit > 0 else -inf
-    # The nearest float: what is looked for is it, or a few steps away.
-    while found > -inf and _passes(nextafter(found, -inf), threshold):
-        found = nextafter(found, -inf)
-    while not _passes(found, threshold):
-        found = nextafter(found, inf)
-    return found
-
-
-def _passes(value: float, threshold: Threshold) -> bool:
-    if value in (inf, -inf):
-        return value > 0
-    number = Fraction(repr(value))
-    return number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    # The nearest float. The decimals of the others are nearest to those, so they are beyond the
+    # limit on their side of it; that of this one may be on either.
+    number = _decimal(found)
+    passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    return found if passes else nextafter(found, inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scale:
     """A number that a rule reads, made ready for many states.
 
-    ``variables`` are those that it depends on. ``quantity`` is the quantity that it is, None if it
-    is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
+    ``variables`` and ``names`` are those that it depends on. ``quantity`` is the quantity that it
+    is, None if it is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
     """
 
     read: NumberRead
     variables: tuple[str, ...]
+    names: tuple[str, ...]
     quantity: Quantity | None
     floors: tuple[float, ...]
 
     def digit(self, value: Value) -> int:
         """The digit of the quantity's value."""
         assert not isinstance(value, str), "check_state has refused it"
-        if isinstance(value, float) or -_EXACT_IN_FLOATS <= value <= _EXACT_IN_FLOATS:
+        if isinstance(value, float) or -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS:
             return bisect_right(self.floors, value)
         return self.read.digit(Fraction(value))
 
@@ -77,9 +70,12 @@ class Scale:
 def scale(read: NumberRead) -> Scale:
     """What ``Scale`` says of a read."""
     variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
+    names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
     quantity = None
     if len(read.terms) == 1:
         ((coefficient, term),) = read.terms
         if coefficient == 1 and isinstance(term, Quantity):
             quantity = term
-    return Scale(read, tuple(variables), quantity, tuple(map(floor_of, read.thresholds)))
+    return Scale(
+        read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))
+    )

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.diagnostics.json_words import json_words
 from rulec.trace.lines import lines_as_they_come
+from rulec.trace.mending import way_out
 from rulec.trace.model import State, Trace
 
 LONGEST_LINE_BYTES = 256 << 20
@@ -25,10 +25,6 @@ class _Record(msgspec.Struct, forbid_unknown_fields=True):
     present: dict[str, tuple[int, int]] = {}
 
 
-_UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
-_REFUSED_BYTE = re.compile(r"\(byte ([0-9]+)\)")
-
-
 class _Outline(msgspec.Struct, forbid_unknown_fields=True):
     """The same, its states not yet read."""
 
@@ -39,8 +35,7 @@ class _Outline(msgspec.Struct, forbid_unknown_fields=True):
     present: dict[str, tuple[int, int]] = {}
 
 
-_UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
-_REFUSED_BYTE = re.compile(r"\(byte ([0-9]+)\)")
+_EXAMPLE = 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
 _DECODER = msgspec.json.Decoder(_Record)
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
@@ -101,7 +96,7 @@ def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | Rulec
         return _bad("this is not a trace: it is nested too deep", place)
     except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
         message = f"this is not a trace: {json_words(problem)}"
-        return _bad(message, place, _way_out(str(problem), line))
+        return _bad(message, place, way_out(problem, line, _Record.__struct_fields__, _EXAMPLE))
     return _made(record, tuple(record.states), place)
 
 
@@ -130,23 +125,6 @@ class _StateReader(dict[bytes, State]):
         else:
             self[text] = state
         return state
-
-
-def _way_out(problem: str, line: bytes) -> str:
-    """Help with a line that the decoder refuses in these words."""
-    unknown = _UNKNOWN_FIELD.search(problem)
-    if unknown is not None:
-        near = did_you_mean(unknown[1], _Record.__struct_fields__)
-        if near:
-            return near
-    refused = _REFUSED_BYTE.search(problem)
-    if refused is not None:
-        found = line[int(refused[1]) :]
-        if found.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
-            return "JSON has no `NaN` and no infinity: a value has to be a number"
-        if found.startswith((b"'", b"True", b"False", b"None")):
-            return "in JSON texts stand in double quotes, and it is `true`, `false`, `null`"
-    return 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
 
 
 def _bad(message: str, place: Place, help_text: str = "") -> RulecError:

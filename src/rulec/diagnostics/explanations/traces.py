@@ -23,6 +23,21 @@ hard rule indicate { require always (standing or turning implies indicator) }
 echo '{"states": [{"standing": %s, "turning": true, "indicator": true}]}' > trace.jsonl
 rulec verify trace.jsonl -r signal.rules"""
 
+_SAVED = """\
+cat > first.rules <<.
+rulebook first
+signal lights default false
+hard rule light { require always lights }
+.
+cat > second.rules <<.
+rulebook second
+extends first
+override rule light { require eventually lights }
+.
+echo '{"state": {"lights": true}}' > states.jsonl
+rulec monitor first.rules --save saved.json < states.jsonl > log
+"""
+
 TRACES = {
     "R0501": Explanation(
         "a line is not a trace in JSON",
@@ -104,6 +119,15 @@ TRACES = {
         "rulec verify t.csv -r esterle2019",
         "printf 'trace,step,object,type,position\nt1,0,v1,vehicle,b\n' > t.csv\n"
         "rulec verify t.csv -r esterle2019",
+        "command",
+    ),
+    "R0510": Explanation(
+        "a saved monitor cannot be restored",
+        "What `rulec monitor --save` writes says in which states the automata of the rules are, "
+        "and nothing of the states of the world that led there. So it means something only to the "
+        "very rules that it was saved with; for others a new monitor has to begin.",
+        _SAVED + "rulec monitor second.rules --restore saved.json < states.jsonl",
+        _SAVED + "rulec monitor first.rules --restore saved.json < states.jsonl",
         "command",
     ),
 }

@@ -46,12 +46,25 @@ def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Ite
     Neighbours are joined as long as what comes out has no more than ``most_entries``; a machine
     that is larger by itself stays alone.
     """
+    for start in range(0, len(machines), MOST_VERDICTS):
+        members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
+        everything = _joint(members, [machines[one] for one in members], most_entries)
+        if everything is not None:
+            yield everything
+        else:
+            yield from _one_by_one(members, machines, most_entries)
+
+
+def _one_by_one(
+    members: Sequence[int], machines: Sequence[Spelled], most_entries: int
+) -> Iterator[Joint]:
     found: Joint | None = None
-    for place, one in enumerate(machines):
+    for place in members:
+        one = machines[place]
         more = None
-        if found is not None and len(found.members) < MOST_VERDICTS:
-            members = [machines[member] for member in found.members]
-            more = _joint((*found.members, place), [*members, one], most_entries)
+        if found is not None:
+            together = [*(machines[member] for member in found.members), one]
+            more = _joint((*found.members, place), together, most_entries)
         if more is None:
             if found is not None:
                 yield found

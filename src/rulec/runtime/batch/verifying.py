@@ -7,7 +7,7 @@ an unknown name to a missing value, is left to ``verify``, which says it best.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain, islice
+from itertools import chain
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.facts import counts
@@ -26,8 +26,8 @@ from rulec.runtime.verify import RulebookFor, check_step, judge, made_for
 from rulec.trace import Trace
 from rulec.trace.check import check_frame, check_presence
 
-MOST_TOGETHER = 1 << 14
-"""So many traces are read before they are judged."""
+MOST_STATES = 1 << 18
+"""Traces with so many states together are read before they are judged."""
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
@@ -42,12 +42,18 @@ Answer = Verdict | NotJudged
 def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterator[Answer]:
     """The verdict on each trace, in their order; in place of one that cannot be given, why.
 
-    Traces are read a few thousand at a time, so there may be any number of them. A ``RulecError``
-    in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
+    Traces are read some thousands at a time, fewer if they are long, so there may be any number of
+    them. A ``RulecError`` in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
     """
-    waiting = iter(traces)
-    while chunk := list(islice(waiting, MOST_TOGETHER)):
-        yield from judge_chunk(chunk, rulebook)
+    chunk: list[Trace | RulecError] = []
+    n_states = 0
+    for item in traces:
+        chunk.append(item)
+        n_states += len(item.states) + 1 if isinstance(item, Trace) else 1
+        if n_states >= MOST_STATES:
+            yield from judge_chunk(chunk, rulebook)
+            chunk, n_states = [], 0
+    yield from judge_chunk(chunk, rulebook)
 
 
 def judge_chunk(

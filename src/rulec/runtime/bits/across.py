@@ -112,11 +112,15 @@ class Across:
 
     def _pack(self, column: Array, n_steps: int) -> Words:
         """The bits of a column's first steps; those of traces that are over are 0."""
-        starts = self._layout.starts
+        n_traces, starts = self._layout.n_traces, self._layout.starts
         bits = np.zeros((n_steps, 8 * self._n_words), dtype=np.uint8)
-        for step in range(n_steps):
-            packed = np.packbits(column[starts[step] : starts[step + 1]])
-            bits[step, : len(packed)] = packed
+        if starts[n_steps] == n_steps * n_traces:
+            rows = column[: n_steps * n_traces].reshape(n_steps, n_traces)
+            bits[:, : (n_traces + 7) // 8] = np.packbits(rows, axis=1)
+        else:
+            for step in range(n_steps):
+                packed = np.packbits(column[starts[step] : starts[step + 1]])
+                bits[step, : len(packed)] = packed
         return bits.view(np.uint64)
 
     def _repeat_the_last(self, packed: Words, alive: Words) -> None:

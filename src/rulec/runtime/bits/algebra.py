@@ -81,9 +81,10 @@ class Evaluation(Generic[Plane]):
 
     def plane(self, formula: Formula) -> Plane:
         """The plane of a formula. Its bounds are in steps; ValueError if not."""
-        if formula not in self._known:
-            self._known[formula] = self._evaluated(formula)
-        return self._known[formula]
+        found = self._known.get(formula)
+        if found is None:
+            found = self._known[formula] = self._evaluated(formula)
+        return found
 
     def _evaluated(self, formula: Formula) -> Plane:
         match formula:

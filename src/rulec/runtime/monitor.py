@@ -1,0 +1,150 @@
+"""A trace judged while it runs, state by state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.runtime.checking import check_objects
+from rulec.runtime.letters import NOBODY
+from rulec.runtime.numbers import exact
+from rulec.runtime.online.saved import from_data, step_in, to_data
+from rulec.runtime.online.scene import Scene, made_ready
+from rulec.runtime.online.standing import SoFar, Standing, beginning, onward
+from rulec.runtime.verdict import Violation
+from rulec.runtime.verify import check_step
+from rulec.trace import State
+
+
+class Monitor:
+    """Judges a trace whose states come one after the other.
+
+    A step takes as long after a million states as after one: what has been is known by the states
+    of the rules' machines, one for each binding of a rule to objects that are there.
+
+    Args:
+        rulebook: the rules; they are not compiled here.
+        step_s: seconds from one state to the next; needed only by rules with bounds in seconds. If
+            left out, the step that they were compiled for.
+
+    Raises:
+        RulecError: R0507 if a rule was compiled for another step.
+    """
+
+    def __init__(self, rulebook: CompiledRulebook, step_s: Fraction | float | None = None) -> None:
+        steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
+        self._step_s = exact(step_s) if step_s is not None else steps[0] if steps else None
+        for rule in rulebook.rules:
+            if self._step_s is not None:
+                check_step(rule, self._step_s, "the monitor")
+        self._rulebook = rulebook
+        self._ready = made_ready(rulebook)
+        self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
+        self._now: Standing = beginning(Scene(rulebook, self._ready, NOBODY))
+        self._violations: list[Violation] = []
+
+    @property
+    def rulebook(self) -> CompiledRulebook:
+        """The rules that judge."""
+        return self._rulebook
+
+    @property
+    def step_s(self) -> Fraction | None:
+        """Seconds from one state to the next; None if it makes no difference."""
+        return self._step_s
+
+    @property
+    def so_far(self) -> SoFar:
+        """What the last state has led to; before the first one, the state has the number -1."""
+        return self._now.so_far
+
+    @property
+    def objects(self) -> Mapping[str, str]:
+        """The objects that were there in the last state, with their types."""
+        return dict(self._now.scene.objects)
+
+    @property
+    def violations(self) -> tuple[Violation, ...]:
+        """All that is violated for good, in the order in which it came to that.
+
+        The ``step`` is that of ``verify``: None if the end of a stretch has decided.
+        """
+        return tuple(self._violations[: self._now.n_violations])
+
+    def step(
+        self, state: State, objects: Mapping[str, str] = NOBODY, place: Place | None = None
+    ) -> SoFar:
+        """Take the next state.
+
+        Args:
+            state: as in a trace.
+            objects: those that are there in it, and their types. Who is no longer among them has
+                left; who comes back later begins anew.
+            place: where the state was read, for messages.
+
+        Returns:
+            The verdicts as of this state, and what has changed.
+
+        Raises:
+            RulecError: R0501 to R0505 or R0508 if the state does not fit the rulebook, as in
+                ``verify``. Then the monitor is as if there had been no such state.
+        """
+        now = self._now
+        number = now.so_far.state + 1
+        scene = now.scene
+        if objects != scene.objects:
+            if not isinstance(objects, Mapping):
+                raise _no_object("what is given as objects", "names and types", place)
+            check_objects(objects, self._rulebook.vocabulary, place)
+            scene = Scene(self._rulebook, self._ready, objects)
+        if not isinstance(state, Mapping):
+            raise _no_object(f"state {number}", "names and values", place)
+        after = onward(now, scene, scene.letters(state, number, place))
+        if after.n_violations > now.n_violations:
+            self._note_violations(after, now.n_violations)
+        # All at once: whatever interrupts this, the state has been taken or it has not.
+        self._now = after
+        return after.so_far
+
+    def snapshot(self) -> dict[str, Any]:
+        """Where the monitor stands, for ``restore``: data that JSON can take."""
+        return to_data(self._now, self._rulebook, self._step_s, self.violations)
+
+    @classmethod
+    def restore(
+        cls, rulebook: CompiledRulebook, snapshot: Any, place: Place | None = None
+    ) -> Monitor:
+        """A monitor that goes on where another one stood.
+
+        Args:
+            rulebook: the rules of that monitor, or others whose machines are the same.
+            snapshot: what its ``snapshot`` has returned, or JSON has made of that.
+            place: where it was read, for messages.
+
+        Raises:
+            RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
+        """
+        monitor = cls(rulebook, step_in(snapshot, rulebook, place))
+        monitor._now, monitor._violations = from_data(snapshot, rulebook, monitor._ready, place)
+        return monitor
+
+    def _note_violations(self, after: Standing, n_before: int) -> None:
+        # What an interrupted step has noted was none.
+        del self._violations[n_before:]
+        self._violations += [
+            Violation(
+                one.rule,
+                self._strengths[one.rule],
+                one.binding,
+                None if one.ended else after.so_far.state,
+            )
+            for one in after.so_far.changes
+            if one.verdict == "violated"
+        ]
+
+
+def _no_object(what: str, of: str, place: Place | None) -> RulecError:
+    return RulecError(Diagnostic("R0501", f"{what} is no object of {of}", place))

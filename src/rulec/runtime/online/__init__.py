@@ -1,0 +1,1 @@
+"""What a monitor is made of: machines that take one state after the other, as they come."""
