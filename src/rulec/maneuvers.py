@@ -159,12 +159,10 @@ class Maneuvers:
         return ranks_of(self.rules)
 
     @cached_property
-    def _bound(self) -> list[Instance]:
-        return _instances(self.graph, self.paths, self.rules, EVERY)
-
-    @cached_property
     def _every(self) -> Effects:
-        return effects(self.paths, self._bound)
+        """With soft rules, too. Those of which nothing can be violated are left out already."""
+        soft = _instances(self.graph, self.paths, self.rules, ["soft"])
+        return effects(self.paths, [*self.hard.instances, *soft])
 
     def _ranked(self, place: int, penalty: Penalty, found: Maneuver, members: int) -> Ranked:
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
@@ -173,13 +171,13 @@ class Maneuvers:
             {rank: weight for rank, weight in weights if weight},
             members,
             found,
-            violations(self._bound, found.nodes),
+            violations(self._every.instances, found.nodes),
         )
 
     def _pruning(self, rule: CompiledRule, every: Product | None, alone: Product | None) -> Pruning:
         rejected = alone or every
         example = next(cheapest(rejected)) if rejected else None
-        lost = violations(self._bound, example.nodes) if example else ()
+        lost = violations(self._every.instances, example.nodes) if example else ()
         return Pruning(
             rule,
             every.accepted if every else 0,
