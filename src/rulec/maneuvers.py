@@ -16,7 +16,7 @@ from rulec.rulebook.model import Strength
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
-from rulec.runtime.instances import EVERY, HARD, Instance, instances, violations
+from rulec.runtime.instances import HARD, Instance, instances, violations
 from rulec.runtime.penalties import Penalty, Rank, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
