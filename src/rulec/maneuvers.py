@@ -13,10 +13,12 @@ from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.stuttering import stutter_invariant
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
 from rulec.rulebook.model import Strength
+from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
 from rulec.runtime.instances import EVERY, HARD, Instance, instances, violations
+from rulec.runtime.online.past import Past
 from rulec.runtime.penalties import Penalty, Rank, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
@@ -78,7 +80,8 @@ class Maneuvers:
     """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
 
     ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
-    their vocabulary.
+    their vocabulary. ``after`` is the past, None if there was none. ``violated_before`` are
+    the hard rules that it has violated for good; nothing of that counts against a maneuver.
     """
 
     graph: NavigationGraph
@@ -87,6 +90,8 @@ class Maneuvers:
     traces: int
     hard: Effects
     product: Product
+    after: Before | None = None
+    violated_before: tuple[Violation, ...] | None = None
 
     @property
     def satisfying(self) -> int:
@@ -160,7 +165,8 @@ class Maneuvers:
 
     @cached_property
     def _bound(self) -> list[Instance]:
-        return _instances(self.graph, self.paths, self.rules, EVERY)
+        past = past_of(self.paths, self.after, self.rules, self.graph.step, EVERY)
+        return _instances(self.graph, self.paths, self.rules, EVERY, past)
 
     @cached_property
     def _every(self) -> Effects:
@@ -189,16 +195,23 @@ class Maneuvers:
         )
 
 
-def judged(graph: NavigationGraph, rules: CompiledRulebook) -> Maneuvers:
+def judged(
+    graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
+) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
+
+    ``after`` has led up to the first layer.
 
     Raises:
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
-            rule was compiled for another step.
+            rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
     paths = _in_terms_of(rules.vocabulary, graph.trace_graph())
-    hard = effects(paths, _instances(graph, paths, rules, HARD))
-    return Maneuvers(graph, rules, paths, count_paths(paths), hard, explore(hard))
+    past = past_of(paths, after, rules, graph.step, HARD)
+    hard = effects(paths, _instances(graph, paths, rules, HARD, past))
+    before = None if after is None else past.violations
+    counted = count_paths(paths)
+    return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)
 
 
 def _instances(
@@ -206,9 +219,10 @@ def _instances(
     paths: TraceGraph,
     rules: CompiledRulebook,
     strengths: Collection[Strength],
+    past: Past,
 ) -> list[Instance]:
     try:
-        return instances(paths, rules, graph.step, strengths)
+        return instances(paths, rules, graph.step, strengths, past)
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None

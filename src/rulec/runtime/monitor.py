@@ -11,9 +11,10 @@ from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.runtime.checking import check_objects
 from rulec.runtime.letters import NOBODY
 from rulec.runtime.numbers import exact
+from rulec.runtime.online.past import Past
 from rulec.runtime.online.saved import from_data, step_in, to_data
 from rulec.runtime.online.scene import Scene, made_ready
-from rulec.runtime.online.standing import SoFar, Standing, beginning, onward
+from rulec.runtime.online.standing import SoFar, Standing, beginning, carried_over, onward
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import check_step
 from rulec.trace import State
@@ -108,6 +109,19 @@ class Monitor:
         # All at once: whatever interrupts this, the state has been taken or it has not.
         self._now = after
         return after.so_far
+
+    def past(self, objects: Mapping[str, str]) -> Past:
+        """What has been, as far as it bears on a next state in which these objects are there."""
+        scene = Scene(self._rulebook, self._ready, objects)
+        edges, ended = carried_over(self._now.scene, self._now.edges, scene)
+        states, settled = {}, set()
+        for crowd in scene.crowds:
+            for items, edge in zip(crowd.bindings, edges[crowd.place], strict=True):
+                states[crowd.ready.rule.name, items] = edge.state
+                if edge.verdict == "violated":
+                    settled.add((crowd.ready.rule.name, items))
+        lost = [Violation(one.rule, self._strengths[one.rule], one.binding, None) for one in ended]
+        return Past(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
         """Where the monitor stands, for ``restore``: data that JSON can take."""
