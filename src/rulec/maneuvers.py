@@ -17,7 +17,7 @@ from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
-from rulec.runtime.instances import EVERY, HARD, Instance, instances, violations
+from rulec.runtime.instances import HARD, SOFT, Instance, instances, violations
 from rulec.runtime.online.past import Past
 from rulec.runtime.penalties import Penalty, Rank, Ranks, ranks_of
 from rulec.runtime.places import Places, places
@@ -164,13 +164,11 @@ class Maneuvers:
         return ranks_of(self.rules)
 
     @cached_property
-    def _bound(self) -> list[Instance]:
-        past = past_of(self.paths, self.after, self.rules, self.graph.step, EVERY)
-        return _instances(self.graph, self.paths, self.rules, EVERY, past)
-
-    @cached_property
     def _every(self) -> Effects:
-        return effects(self.paths, self._bound)
+        """With soft rules, too. Those of which nothing can be violated are left out already."""
+        past = past_of(self.paths, self.after, self.rules, self.graph.step, SOFT)
+        soft = _instances(self.graph, self.paths, self.rules, SOFT, past)
+        return effects(self.paths, [*self.hard.instances, *soft])
 
     def _ranked(self, place: int, penalty: Penalty, found: Maneuver, members: int) -> Ranked:
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
@@ -179,13 +177,13 @@ class Maneuvers:
             {rank: weight for rank, weight in weights if weight},
             members,
             found,
-            violations(self._bound, found.nodes),
+            violations(self._every.instances, found.nodes),
         )
 
     def _pruning(self, rule: CompiledRule, every: Product | None, alone: Product | None) -> Pruning:
         rejected = alone or every
         example = next(cheapest(rejected)) if rejected else None
-        lost = violations(self._bound, example.nodes) if example else ()
+        lost = violations(self._every.instances, example.nodes) if example else ()
         return Pruning(
             rule,
             every.accepted if every else 0,

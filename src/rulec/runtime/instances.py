@@ -19,7 +19,8 @@ from rulec.runtime.verify import check_step, run
 from rulec.trace import TraceGraph
 
 HARD: tuple[Strength, ...] = ("hard",)
-EVERY: tuple[Strength, ...] = ("hard", "soft")
+SOFT: tuple[Strength, ...] = ("soft",)
+EVERY = (*HARD, *SOFT)
 
 
 @dataclass(frozen=True, slots=True)
