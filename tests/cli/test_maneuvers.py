@@ -5,7 +5,8 @@ import json
 import pytest
 
 from rulec.cli.main import main
-from rulec.workflow import find_maneuvers
+from rulec.runtime.monitor import Monitor
+from rulec.workflow import compile_rulebook, find_maneuvers
 
 
 def answer(capsys, *arguments):
@@ -203,3 +204,200 @@ def test_the_interface_gives_networkx_and_lazy_maneuvers():
     graph = found.graph.to_networkx()
     assert (graph.number_of_nodes(), graph.number_of_edges()) == (63, 248)
     assert len(found.cheapest(7)) == 7
+
+
+def written(folder, name, *records):
+    path = folder / name
+    path.write_text("".join(f"{json.dumps(one)}\n" for one in records), encoding="utf-8")
+    return str(path)
+
+
+QUEUE = {
+    "step_s": 0.5,
+    "objects": {"o1": "vehicle", "o2": "vehicle"},
+    "states": [{"position": {"o1": "b", "o2": "b"}, "CONGESTED": True}],
+}
+PASSED = {
+    "objects": {"o9": "vehicle"},
+    "present": {"o9": [0, 2]},
+    "states": [{"position": {"o9": place}} for place in "brf"] + [{}],
+}
+
+
+def test_after_a_past(tmp_path, capsys):
+    """R1 rejects 32 maneuvers, but not if traffic was congested when the trace began."""
+    arguments = ["s1", "--step", "0.5", "-r", "esterle2019", "--json"]
+    past = written(tmp_path, "queue.jsonl", QUEUE)
+    assert json.loads(answer(capsys, *arguments)[1])["satisfying"] == 640
+    found = json.loads(answer(capsys, *arguments, "--after", past)[1])
+    assert (found["satisfying"], found["violated_before"]) == (672, [])
+
+
+def test_after_a_monitor_that_was_saved(tmp_path, capsys):
+    rules = compile_rulebook("esterle2019")
+    monitor = Monitor(rules)
+    monitor.step(QUEUE["states"][0], QUEUE["objects"])
+    past = written(tmp_path, "saved.json", monitor.snapshot())
+    status, out, _ = answer(
+        capsys, "s1", "--step", "0.5", "-r", "esterle2019", "--after", past, "--json"
+    )
+    assert (status, json.loads(out)["satisfying"]) == (0, 672)
+
+
+def test_what_the_past_has_violated_is_said_and_not_counted(tmp_path, capsys):
+    past = written(tmp_path, "passed.jsonl", PASSED)
+    status, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert status == 0
+    assert out.splitlines()[3:5] == [
+        "satisfying  83 by esterle2019 (R1, R2, R3)",
+        "violated    R1 for v = o9, before, and not counted any more",
+    ]
+    found = json.loads(answer(capsys, "s2", "-r", "esterle2019", "--after", past, "--json")[1])
+    assert found["violated_before"] == [{"rule": "R1", "binding": {"v": "o9"}, "step": 2}]
+
+
+def test_only_so_many_are_named(tmp_path, capsys):
+    names = [f"x{number}" for number in range(9)]
+    objects = dict.fromkeys(names, "vehicle")
+    states = [{"position": dict.fromkeys(names, place)} for place in "brf"]
+    past = written(tmp_path, "past.jsonl", {"objects": objects, "states": states})
+    _, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert "            and 3 more; --json has them all" in out.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("records", "code"),
+    [([QUEUE], "R0511"), ([PASSED] * 2, "R0511"), ([[]], "R0501"), ([], "R0501")],
+)
+def test_what_is_no_past(tmp_path, capsys, records, code):
+    past = written(tmp_path, "past.jsonl", *records)
+    status, out, err = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert (status, out) == (2, "")
+    assert f"error[{code}]" in err
+    assert "past.jsonl" in err
+
+
+HURRY = """rulebook hurry
+use paper
+priority people > progress
+hard rule wait_behind (v: vehicle) in people weight 2 { cite "1" require always not f(v) }
+hard rule arrive (v: vehicle) in progress weight 0.5 { require eventually f(v) }
+soft rule pull_out_early (v: vehicle) { cite "3" require eventually[<= 1 steps] l(v) }
+"""
+
+
+@pytest.fixture
+def hurry(tmp_path):
+    source = tmp_path / "hurry.rules"
+    source.write_text(HURRY)
+    return str(source)
+
+
+def test_where_nothing_satisfies_the_least_violating_are_shown(hurry, capsys):
+    status, out, err = answer(capsys, "s2", "--horizon", "2", "-r", hurry)
+    assert (status, err) == (1, "")
+    lines = [line.strip() for line in out.splitlines()]
+    assert "Every maneuver violates a hard rule. No other violates less than:" in lines
+    # People come first, so ego stays behind; then pulling out early keeps the soft rule, too.
+    assert "violates hard progress 0.5" in lines
+    assert "hard rule arrive for v = o1: by how it ends" in lines
+    assert sum(line.startswith("violates") for line in lines) == 1
+
+    status, out, _ = answer(capsys, "s2", "--horizon", "2", "-r", hurry, "--json")
+    assert status == 1
+    (best,) = json.loads(out)["least_violating"]
+    assert best["place"] == 1
+    assert best["penalty"] == [{"strength": "hard", "levels": ["progress"], "weight": 0.5}]
+    assert best["violations"] == [
+        {
+            "rule": "arrive",
+            "cite": "",
+            "binding": {"v": "o1"},
+            "lost_s": None,
+            "strength": "hard",
+            "level": "progress",
+            "weight": 0.5,
+        }
+    ]
+    assert best["cells"][1]["signature"]["o1"] == "l"
+
+
+@pytest.mark.parametrize(
+    ("priority", "level", "expected"),
+    [
+        ("people > progress", "in progress", [["arrive"]]),
+        ("progress > people", "in progress", [["wait_behind"]]),
+        ("people = progress", "in progress", [["arrive"]]),  # 0.5 is less than 1
+        # Rules without a level are not comparable to others: neither is better.
+        ("people > progress", "", [["wait_behind"], ["arrive"]]),
+    ],
+)
+def test_levels_decide_which_rule_yields(priority, level, expected, tmp_path, capsys):
+    source = tmp_path / "torn.rules"
+    text = HURRY.replace("people > progress", priority).replace("in progress", level)
+    source.write_text(text)
+    _, out, _ = answer(capsys, "s2", "--horizon", "2", "-r", str(source), "--json")
+    best = json.loads(out)["least_violating"]
+    violated = [[v["rule"] for v in each["violations"] if v["strength"] == "hard"] for each in best]
+    assert sorted(violated, reverse=True) == expected
+
+
+def test_soft_rules_rank_what_satisfies(tmp_path, capsys):
+    source = tmp_path / "wish.rules"
+    source.write_text(
+        "rulebook wish\nuse paper\n"
+        "hard rule A (v: vehicle) { require always not r(v) }\n"
+        "soft rule B (v: vehicle) { require always b(v) }\n"
+        "soft rule C (v: vehicle) weight 2 { require next l(v) }\n"
+    )
+    status, out, _ = answer(capsys, "s2", "-r", str(source), "--rank", "500", "--json")
+    assert status == 0
+    found = json.loads(out)
+    assert "least_violating" not in found
+    ranked = found["ranked"]
+    # Of the maneuvers that are not satisfying, none is better than one that is.
+    assert len(ranked) == found["traces"]
+    kept = [not any(v["strength"] == "hard" for v in one["violations"]) for one in ranked]
+    assert sum(kept) == found["satisfying"]
+    assert kept == sorted(kept, reverse=True)
+    weights = [sum(v["weight"] for v in one["violations"]) for one in ranked]
+    assert weights == sorted(weights)
+    # B and C exclude each other: pulling out at once costs 1, staying behind 2, changing later 3.
+    assert sorted(set(weights)) == [1, 2, 3]
+    assert [one["place"] for one in ranked] == weights
+    for weight in (1, 2, 3):
+        alike = [one for one, mine in zip(ranked, weights, strict=True) if mine == weight]
+        assert [one["cost"] for one in alike] == sorted(one["cost"] for one in alike)
+        assert {one["members"] for one in alike} == {len(alike)}
+
+
+def test_which_rule_prunes_what(hurry, capsys):
+    _, out, _ = answer(capsys, "s2", "--horizon", "2", "-r", hurry, "--why", "--json")
+    rules = {one["rule"]: one for one in json.loads(out)["rules"]}
+    # 7 maneuvers: each passes the vehicle or does not.
+    assert rules["wait_behind"]["violating"] + rules["arrive"]["violating"] == 7
+    for name in ("wait_behind", "arrive"):
+        assert rules[name]["alone"] == rules[name]["violating"] > 0
+        assert [v["rule"] for v in rules[name]["example"]["violations"]] == [name]
+    assert (rules["pull_out_early"]["strength"], rules["pull_out_early"]["alone"]) == ("soft", None)
+    assert rules["wait_behind"]["example"]["violations"][0]["lost_s"] == 2.0
+
+    _, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--why")
+    assert "violated by none: R1, R3" in out
+    (line,) = [line for line in out.splitlines() if line.startswith("R2")]
+    assert line.split()[1:3] == ["56", "56"]  # 139 - 83
+
+
+def test_classes(capsys, tmp_path):
+    _, out, _ = answer(capsys, "s1", "-r", "esterle2019", "--classes", "100", "--json")
+    classes = json.loads(out)["classes"]
+    assert (classes["divided"], classes["counting_steps"]) == (0, [])
+    assert sum(one["members"] for one in classes["representatives"]) == 16
+    assert len(classes["representatives"]) == classes["satisfying"] == classes["total"]
+
+    source = tmp_path / "soon.rules"
+    source.write_text(
+        "rulebook soon\nuse paper\nhard rule A (v: vehicle) { require next next l(v) }\n"
+    )
+    _, out, _ = answer(capsys, "s2", "-r", str(source), "--classes", "0")
+    assert "of these depending on how long one stays: `A` counts steps" in out

@@ -61,3 +61,12 @@ def test_every_field_of_an_answer(arguments, capsys):
     assert main(arguments) == 0
     named = set(re.findall(r"`\"?(\w+)\"?`", PAGE))
     assert fields(json.loads(capsys.readouterr().out)) <= named
+
+
+def test_every_field_of_maneuvers(capsys):
+    """Names of objects and variables are no fields."""
+    asked = ["--list", "1", "--rank", "99", "--why", "--classes", "1"]
+    main(["maneuvers", "s2", "-r", "esterle2019", "--json", *asked])
+    found = fields(json.loads(capsys.readouterr().out)) - {"o1", "p1", "v"}
+    assert {"satisfying", "penalty", "representatives", "envelope"} <= found
+    assert found <= set(re.findall(r"`\"?(\w+)\"?`", PAGE))

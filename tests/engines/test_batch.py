@@ -247,6 +247,7 @@ floats = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from(
 
 @given(st.lists(st.tuples(floats, floats), min_size=1))
 @example([(0.1, 0.6), (0.2, 0.3), (0.3, 0.0), (0.3, 5e-324), (0.3, -5e-324), (1.7e308, 1.7e308)])
+@example([(123456789.3, -370370367.0)])
 @example([(-1.7e308, 1.7e308), (0.30000000000000004, 0.0), (0.29999999999999999, 0.0)])
 def test_sums_are_exact(pairs):
     """0.1 and a third of 0.6 are 0.3, whatever floats make of it."""

@@ -45,10 +45,12 @@ def test_classes_are_counted_by_their_members_verdicts(graph, rulebook):
         counts[tuple(sorted(set(verdicts.values())))] += 1
         if any(verdicts.values()):
             satisfying[word] = [path for path, fine in verdicts.items() if fine]
-    assert count_classes(found) == Classes(counts[True,], counts[False,], counts[False, True])
+    assert count_classes(found, places(graph)) == Classes(
+        counts[True,], counts[False,], counts[False, True]
+    )
     product = explore(found)
     cost = {maneuver.nodes: maneuver for maneuver in cheapest(product)}
-    listed = list(variants(product))
+    listed = list(variants(product, places(graph)))
     assert {one.places: one.members for one in listed} == {
         word: len(members) for word, members in satisfying.items()
     }
@@ -59,23 +61,14 @@ def test_classes_are_counted_by_their_members_verdicts(graph, rulebook):
         assert one.cheapest.nodes in members
         assert one.cheapest == cost[one.cheapest.nodes]
         assert one.cheapest.cost == min(cost[path].cost for path in members)
-    assert list(islice(variants(product), 2)) == listed[:2]
-
-
-def steady(graph):
-    """The same graph, with a place being one state from first to last, and everybody there."""
-    known = {}
-    states = tuple(
-        tuple(known.setdefault(place, state) for place, state in zip(row, layer, strict=True))
-        for row, layer in zip(places(graph), graph.states, strict=True)
-    )
-    return replace(graph, states=states, present={})
+    assert list(islice(variants(product, places(graph)), 2)) == listed[:2]
 
 
 @given(graphs(objects=("car1",)))
 def test_rules_that_do_not_count_steps_divide_no_class(graph):
-    same = steady(graph)
-    assert count_classes(effects(same, instances(same, STUTTERING))).divided == 0
+    graph = replace(graph, present={})
+    found = effects(graph, instances(graph, STUTTERING))
+    assert count_classes(found, places(graph)).divided == 0
 
 
 STAYING, CHANGING = (None, 0), (2, 6)
@@ -109,8 +102,8 @@ def test_lanes_side_by_side_have_a_class_for_every_number_of_changes():
     graph = graph_of(*[TWO_LANES] * 30)
     assert places(graph) == ((0, 1),) * 31
     found = effects(graph, [])
-    assert count_classes(found) == Classes(31, 0, 0)
-    listed = list(variants(explore(found)))
+    assert count_classes(found, places(graph)) == Classes(31, 0, 0)
+    listed = list(variants(explore(found), places(graph)))
     assert [one.places for one in listed] == [
         (0, 1) * (n // 2) + (0,) * (n % 2) for n in range(1, 32)
     ]
@@ -124,12 +117,16 @@ def test_a_rule_that_is_about_where_one_ends_divides_classes_by_place():
         *[TWO_LANES] * 4, states=(({"p": False, "q": False}, {"p": True, "q": False}),) * 5
     )
     never_p = replace(RULES, rules=tuple(one for one in RULES.rules if one.name == "never_p"))
-    assert count_classes(effects(graph, instances(graph, never_p))) == Classes(1, 4, 0)
+    assert count_classes(effects(graph, instances(graph, never_p)), places(graph)) == Classes(
+        1, 4, 0
+    )
 
 
-def test_places_begin_anew_where_cells_fall_apart_or_run_together():
+def test_a_place_is_cells_that_go_on_as_each_other_and_say_the_same():
     splitting = [{0: STAYING, 1: STAYING}]
     joining = [{0: STAYING, 2: CHANGING}, {0: STAYING}]
     graph = graph_of(splitting, joining, [{0: STAYING}, {1: STAYING}, {1: CHANGING}])
-    # 0 falls apart into 1 and 2; these run together into 3, beside 4 and 5; 3 and 4 go on.
-    assert places(graph) == ((0,), (1, 2), (3, 4, 5), (3, 4, 6))
+    assert places(graph) == ((0,), (0, 0), (0, 1, 2), (0, 1, 3))
+    quiet, loud = {"p": False, "q": False}, {"p": True, "q": False}
+    states = ((quiet,), (quiet, loud), (quiet, quiet, quiet), (loud, quiet, quiet))
+    assert places(replace(graph, states=states)) == ((0,), (0, 1), (0, 2, 3), (4, 2, 5))

@@ -1,7 +1,7 @@
 """Whether examples exercise their rule: which verdicts it has, and which of them are shown."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.rulebook.loader import parse_rulebook
@@ -89,6 +89,7 @@ def test_a_chosen_few_need_not_show_everything():
 words = st.lists(st.sampled_from(["p", "q", "p and q", "not p"]), min_size=1, max_size=3)
 
 
+@settings(max_examples=settings().max_examples // 10)  # each starts Spot four times
 @given(st.sampled_from(["p", "eventually q", "p until q", "always (p implies next q)"]), words)
 def test_a_rule_with_an_example_and_its_opposite_is_exercised(formula, states):
     """A formula and its denial: one accepts the word, the other one rejects it."""

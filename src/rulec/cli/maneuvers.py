@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import click
@@ -21,27 +22,72 @@ from rulec.cli.exit_status import ExitStatus
     metavar="N",
     help="List the N cheapest satisfying maneuvers.",
 )
+@click.option(
+    "--rank",
+    "n_ranked",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="List the N best maneuvers: by what they violate, hard rules above soft ones, by levels "
+    "and weights; then by cost.",
+)
+@click.option(
+    "--why",
+    is_flag=True,
+    help="Say for every rule how many maneuvers violate it, how many violate no other hard rule, "
+    "and give an example.",
+)
+@click.option(
+    "--classes",
+    "n_classes",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
+)
+@click.option(
+    "--after",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="What was before: a file with one trace, or a monitor that was saved (.json).",
+)
 @json_option
 @at_option
 def command(
-    scenario: str, rulebook: str, n_listed: int | None, json_output: bool, at: str, **options: Any
+    scenario: str,
+    rulebook: str,
+    n_listed: int | None,
+    n_ranked: int | None,
+    why: bool,
+    n_classes: int | None,
+    after: Path | None,
+    json_output: bool,
+    at: str,
+    **options: Any,
 ) -> int:
     """Count the maneuvers of SCENARIO (a name or a file) that satisfy every hard rule.
+
+    If none does, the least violating ones are shown.
+
+    With --after they go on where a past has ended: its last state comes one step before the
+    scenario begins. What was violated for good by then is said, and not counted against them.
 
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
     from rulec.settings import search_path
-    from rulec.workflow import find_maneuvers, machines
+    from rulec.workflow import find_maneuvers, machines, read_past
 
     begin = time.perf_counter()
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    found = find_maneuvers(scenario, rules, **options)
-    listed = None if n_listed is None else found.cheapest(n_listed)
+    past = None if after is None else read_past(after)
+    found = find_maneuvers(scenario, rules, after=past, **options)
+    answers = report.Answers(
+        listed=None if n_listed is None else found.cheapest(n_listed),
+        best=None if found.satisfying else found.best(),
+        ranked=None if n_ranked is None else found.ranked(n_ranked),
+        prunings=found.prunings() if why else None,
+        classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
+    )
     seconds = time.perf_counter() - begin
-    if json_output:
-        print_result(report.as_json(found, listed, seconds))
-    else:
-        print_result(report.as_text(found, listed, seconds))
+    print_result((report.as_json if json_output else report.as_text)(found, answers, seconds))
     return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED

@@ -45,7 +45,7 @@ def command(
     """
     from rulec.files import written_whole
     from rulec.report.console import print_result, progress
-    from rulec.report.maneuvers import shown_count
+    from rulec.report.counts import shown_count
     from rulec.runtime.product import count_paths
     from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces

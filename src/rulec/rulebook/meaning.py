@@ -170,8 +170,8 @@ def _prefix(node: tree.Prefix, scope: Scope) -> Formula | None:
     bound = bound_of(node, node.bound, scope, number)
     if _out_of_place(node, node.operator, scope) or operand is None or bound is False:
         return None
-    denied = node.operator == "not" and isinstance(node.operand, tree.AtomUse)
-    if denied and isinstance(operand, Constant):
+    written = isinstance(node.operand, tree.Truth)
+    if node.operator == "not" and isinstance(operand, Constant) and not written:
         return negated(operand)
     return Unary(UnaryOperator(node.operator), operand, bound)
 

@@ -14,6 +14,7 @@ from operator import attrgetter
 from rulec.runtime.cheapest import Maneuver, maneuver
 from rulec.runtime.dwelling import Dwelling, dwelling
 from rulec.runtime.effects import Effect, Effects
+from rulec.runtime.places import Places
 from rulec.runtime.product import Joint, Product, explore, kept
 
 REJECTED = "rejected"
@@ -62,9 +63,9 @@ class Variant:
     cheapest: Maneuver
 
 
-def count_classes(effects: Effects) -> Classes:
+def count_classes(effects: Effects, places: Places) -> Classes:
     """The classes of all paths from start to a goal, exactly."""
-    dwell, accepted = _both_verdicts(effects)
+    dwell, accepted = _both_verdicts(effects, places)
     ways: list[dict[frozenset[int], int]] = [{} for _ in effects.nodes]
     if dwell.starts:
         ways[0][dwell.stayed(dwell.starts)] = 1
@@ -82,13 +83,13 @@ def count_classes(effects: Effects) -> Classes:
     return Classes(counts[True, False], counts[False, True], counts[True, True])
 
 
-def variants(product: Product) -> Iterator[Variant]:
+def variants(product: Product, places: Places) -> Iterator[Variant]:
     """The classes with an accepted path, cheapest first; equal costs in the order of places.
 
     Best-first search over words. The least cost of a word's members still to come is known exactly,
     so a word is only ever made longer if a class needs it.
     """
-    dwell = dwelling(product)
+    dwell = dwelling(product, places)
     to_come = _costs_to_come(dwell)
     queue: list[tuple[int, tuple[int, ...], bool, _Ways]] = []
 
@@ -117,7 +118,7 @@ def variants(product: Product) -> Iterator[Variant]:
             offer((*word, place), those)
 
 
-def _both_verdicts(effects: Effects) -> tuple[Dwelling, frozenset[int]]:
+def _both_verdicts(effects: Effects, places: Places) -> tuple[Dwelling, frozenset[int]]:
     """All paths, those that lose a rule included, and which of their ends are accepted."""
 
     def enter(row: Sequence[Effect], memory: Joint | str) -> Joint | str:
@@ -125,7 +126,7 @@ def _both_verdicts(effects: Effects) -> tuple[Dwelling, frozenset[int]]:
         return REJECTED if after is None else after
 
     product = explore(effects, enter)
-    dwell = dwelling(product)
+    dwell = dwelling(product, places)
     last = list(product.counts[-1])
     first = len(dwell.nodes) - len(last)
     accepted = [first + i for i, (_, memory) in enumerate(last) if memory != REJECTED]

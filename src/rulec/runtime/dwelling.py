@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from rulec.runtime.places import places
+from rulec.runtime.places import Places
 from rulec.runtime.product import Product
 
 
@@ -44,12 +44,11 @@ class Dwelling:
         return entered
 
 
-def dwelling(product: Product) -> Dwelling:
+def dwelling(product: Product, places: Places) -> Dwelling:
     """A product's nodes by place."""
-    where = places(product.graph)
     every = [(layer, node) for layer, counts in enumerate(product.counts) for node in counts]
     number = {node: i for i, node in enumerate(every)}
-    place = [where[layer][node] for layer, (node, _) in every]
+    place = [places[layer][node] for layer, (node, _) in every]
     last = len(product.steps)
     steps = [
         [

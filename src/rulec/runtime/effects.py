@@ -156,6 +156,7 @@ def _merged(
     nobody = {len(layer): (0,) * len(layer) for layer in on_the_way}
     merging = _Merging(instance)
     known: dict[object, tuple[Effect, ...]] = {}
+    same: dict[tuple[Effect, ...], tuple[Effect, ...]] = {}
     later: tuple[Effect, ...] = ()
     layers = []
     for layer in reversed(range(len(on_the_way))):
@@ -166,7 +167,8 @@ def _merged(
         rows = steps[layer] if layer < len(steps) else ()
         key = (symbols, id(raw), id(rows), id(later), id(alive))
         if key not in known:
-            known[key] = merging.layer(symbols, raw, rows, later, alive)
+            found = merging.layer(symbols, raw, rows, later, alive)
+            known[key] = same.setdefault(found, found)
         later = known[key]
         layers.append(later)
     layers.reverse()

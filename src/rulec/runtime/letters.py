@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from rulec.automata.compiled import CompiledFact, CompiledRule
@@ -17,6 +17,10 @@ from rulec.vocabulary import Declaration, Vocabulary
 
 NOBODY: Mapping[str, str] = MappingProxyType({})
 ALWAYS_THERE: Mapping[str, tuple[int, int]] = MappingProxyType({})
+
+
+Digits = int | list[int]
+"""What one read contributes to the letter of every state; a number if it is one for all."""
 
 
 class Columns:
@@ -44,7 +48,8 @@ class Columns:
         self._objects = objects
         self._present = present
         self._facts = facts
-        self._known: dict[tuple[object, ...], list[int]] = {}
+        self._known: dict[tuple[object, ...], Digits] = {}
+        self._one: dict[str, bool] = {}
         self._moments: dict[int, Moment] = {}
 
     def moment(self, number: int) -> Moment:
@@ -63,16 +68,25 @@ class Columns:
             RulecError: R0504 if a value is missing that has no default, R0508 if a state cannot be.
         """
         machine = rule.machine
-        numbers, stride = [0] * (last - first + 1), 1
+        same, stride = 0, 1
+        varying: list[int] | None = None
         for read in machine.reads:
             if isinstance(read, Read):
                 items = tuple([objects[variable] for variable in read.variables])
                 digits = self._digits(read, items, first, last, rule.name)
             else:
                 digits = self._counted_off(scale(read), objects, first, last, rule.name)
-            numbers = [n + stride * digit for n, digit in zip(numbers, digits, strict=True)]
+            if isinstance(digits, int):
+                same += stride * digits
+            elif varying is None:
+                varying = [stride * digit for digit in digits]
+            else:
+                varying = [n + stride * digit for n, digit in zip(varying, digits, strict=True)]
             stride *= read.size
-        word = tuple([machine.letters[number] for number in numbers])
+        if varying is None:
+            word = (machine.letters[same],) * (last - first + 1)
+        else:
+            word = tuple([machine.letters[same + number] for number in varying])
         if IMPOSSIBLE in word:
             number = first + word.index(IMPOSSIBLE)
             where = self._where(number)
@@ -82,35 +96,48 @@ class Columns:
 
     def _digits(
         self, read: Read, items: tuple[str, ...], first: int, last: int, rule: str
-    ) -> list[int]:
+    ) -> Digits:
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
         key = (read.name, read.values, items, first, last)
         if key not in self._known:
             declaration = self._vocabulary.declarations[read.name]
-            self._known[key] = [
+            self._known[key] = _digits(
                 read.digit(self._value(read.name, items, number, declaration, rule))
-                for number in range(first, last + 1)
-            ]
+                for number in self._telling((read.name,), first, last)
+            )
         return self._known[key]
 
     def _counted_off(
         self, read: Scale, objects: Mapping[str, str], first: int, last: int, rule: str
-    ) -> list[int]:
+    ) -> Digits:
         """The digits of a number: how many thresholds it passes."""
         items = tuple([objects[variable] for variable in read.variables])
         key = (read, items, first, last)
         if key not in self._known:
-            numbers = range(first, last + 1)
+            numbers = self._telling(read.names, first, last)
             if read.quantity is None:
                 bound = dict(zip(read.variables, items, strict=True))
-                self._known[key] = [self._digit(read, bound, number, rule) for number in numbers]
+                self._known[key] = _digits(self._digit(read, bound, n, rule) for n in numbers)
             else:
                 name = read.quantity.name
                 arguments = tuple([objects[variable] for variable in read.quantity.arguments])
                 declaration = self._vocabulary.declarations[name]
-                values = [self._value(name, arguments, n, declaration, rule) for n in numbers]
-                self._known[key] = [read.digit(value) for value in values]
+                values = (self._value(name, arguments, n, declaration, rule) for n in numbers)
+                self._known[key] = _digits(read.digit(value) for value in values)
         return self._known[key]
+
+    def _telling(self, names: Sequence[str], first: int, last: int) -> range:
+        """Of these states enough to know what all say of some names: one, if it is in all."""
+        if self._present or not all(self._is_one(name) for name in names):
+            return range(first, last + 1)
+        return range(first, first + 1)
+
+    def _is_one(self, name: str) -> bool:
+        """Do all states say the very same of a name, or nothing? As cells do of a whole scene."""
+        if name not in self._one:
+            told = self._states[0].get(name)
+            self._one[name] = all(state.get(name) is told for state in self._states)
+        return self._one[name]
 
     def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
         found = total(read.read.terms, bound, self.moment(number))
@@ -136,6 +163,11 @@ class Columns:
                 help="supply it in every state, or declare a default in the vocabulary",
             )
         )
+
+
+def _digits(column: Iterable[int]) -> Digits:
+    found = list(column)
+    return found if len(set(found)) > 1 else found[0]
 
 
 def present_in(

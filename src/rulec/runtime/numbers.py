@@ -10,7 +10,7 @@ from math import inf, nextafter
 
 from rulec.automata.machine import NumberRead, Threshold
 from rulec.logic.formula import Quantity
-from rulec.runtime.terms import variables_of
+from rulec.runtime.terms import names_in, variables_of
 from rulec.trace import Value
 
 EXACT_IN_FLOATS = 1 << 53
@@ -48,12 +48,13 @@ def floor_of(threshold: Threshold) -> float:
 class Scale:
     """A number that a rule reads, made ready for many states.
 
-    ``variables`` are those that it depends on. ``quantity`` is the quantity that it is, None if it
-    is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
+    ``variables`` and ``names`` are those that it depends on. ``quantity`` is the quantity that it
+    is, None if it is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
     """
 
     read: NumberRead
     variables: tuple[str, ...]
+    names: tuple[str, ...]
     quantity: Quantity | None
     floors: tuple[float, ...]
 
@@ -69,9 +70,12 @@ class Scale:
 def scale(read: NumberRead) -> Scale:
     """What ``Scale`` says of a read."""
     variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
+    names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
     quantity = None
     if len(read.terms) == 1:
         ((coefficient, term),) = read.terms
         if coefficient == 1 and isinstance(term, Quantity):
             quantity = term
-    return Scale(read, tuple(variables), quantity, tuple(map(floor_of, read.thresholds)))
+    return Scale(
+        read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))
+    )

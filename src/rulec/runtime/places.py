@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from itertools import count
-
 from rulec.trace import TraceGraph
 
 Places = tuple[tuple[int, ...], ...]
@@ -14,25 +11,28 @@ Places = tuple[tuple[int, ...], ...]
 def places(graph: TraceGraph) -> Places:
     """The place of every node.
 
-    A node is the same place as one of the layer before if that continues as it alone, and it
-    continues that alone. Where cells fall apart or run together, new places begin.
+    Nodes of consecutive layers are one place if one continues as the other, so that going there is
+    staying, and their states are the same. Places are numbered as they begin.
     """
-    numbers = count()
-    found = [tuple([next(numbers) for _ in graph.states[0]])]
-    for rows, margins, states in zip(
-        graph.successors, graph.margins, graph.states[1:], strict=True
-    ):
-        stays = [
-            [target for target, margin in zip(row, times, strict=True) if margin is None]
-            for row, times in zip(rows, margins, strict=True)
-        ]
-        origins = Counter([target for row in stays for target in row])
-        same = {
-            row[0]: place
-            for row, place in zip(stays, found[-1], strict=True)
-            if len(row) == 1 and origins[row[0]] == 1
-        }
-        found.append(
-            tuple([same[node] if node in same else next(numbers) for node in range(len(states))])
-        )
-    return tuple(found)
+    parents: list[int] = []
+    rows: list[list[int]] = []
+    for states in graph.states:
+        rows.append(list(range(len(parents), len(parents) + len(states))))
+        parents += rows[-1]
+
+    def root(node: int) -> int:
+        while parents[node] != node:
+            parents[node] = parents[parents[node]]
+            node = parents[node]
+        return node
+
+    for layer, (onward, margins) in enumerate(zip(graph.successors, graph.margins, strict=True)):
+        for node, (targets, times) in enumerate(zip(onward, margins, strict=True)):
+            for target, margin in zip(targets, times, strict=True):
+                if margin is None and graph.states[layer][node] == graph.states[layer + 1][target]:
+                    one, other = root(rows[layer][node]), root(rows[layer + 1][target])
+                    parents[max(one, other)] = min(one, other)
+    numbers: dict[int, int] = {}
+    return tuple(
+        tuple([numbers.setdefault(root(node), len(numbers)) for node in row]) for row in rows
+    )

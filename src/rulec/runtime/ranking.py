@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
-from operator import add, gt
+from operator import add, getitem, gt
 
 from rulec.runtime.effects import LOST, SAFE, Effect, Effects
 from rulec.runtime.penalties import Penalty, Ranks
@@ -123,7 +123,7 @@ def _fees(
     ]
 
     def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:
-        after = tuple([effect[state] for effect, state in zip(row, joint, strict=True)])
+        after = tuple(map(getitem, row, joint))
         if LOST not in after:
             return after, ()
         due = [0] * len(ranks.ranks)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from operator import getitem
 
 from rulec.runtime.effects import LOST, SAFE, Effect, Effects
 from rulec.runtime.product import Joint, Product, explore
@@ -15,32 +16,28 @@ Blaming = tuple[Joint, int]
 """The machines' states, and the one rule that has been violated so far, or NOBODY."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rejections:
-    """The paths that a rule rejects, and those that it alone rejects, in products accepting them.
+def violating(effects: Effects) -> dict[str, Product]:
+    """For every rule that some path violates the product in which these are accepted."""
+    rules = _rules(effects)
+    found = {}
+    for number, rule in enumerate(dict.fromkeys(rules)):
+        indices = [i for i, name in enumerate(rules) if name == rule]
+        product = _blaming(effects.of(indices), [number] * len(indices))
+        found[rule] = _blamed(product, number)
+    return {rule: product for rule, product in found.items() if product.ends}
 
-    Where it rejects nothing, or nothing alone, there is none.
-    """
 
-    rule: str
-    every: Product | None
-    alone: Product | None
+def violating_alone(effects: Effects) -> dict[str, Product]:
+    """For every rule that is the only one that some path violates the product of these paths."""
+    rules = _rules(effects)
+    numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
+    product = _blaming(effects, [numbers[rule] for rule in rules])
+    found = {rule: _blamed(product, number) for rule, number in numbers.items()}
+    return {rule: product for rule, product in found.items() if product.ends}
 
 
-def rejections(effects: Effects) -> list[Rejections]:
-    """For every rule that rejects anything what it rejects, in the order of ``instances``."""
-    rules = list(dict.fromkeys(one.rule.name for one in effects.instances))
-    of = [rules.index(one.rule.name) for one in effects.instances]
-    alone = _blaming(effects, of)
-    return [
-        Rejections(
-            rule,
-            _violating(_blaming(effects.of(indices), [number] * len(indices)), number),
-            _violating(alone, number),
-        )
-        for number, rule in enumerate(rules)
-        for indices in [[i for i, one in enumerate(of) if one == number]]
-    ]
+def _rules(effects: Effects) -> list[str]:
+    return [one.rule.name for one in effects.instances]
 
 
 def _blaming(effects: Effects, of: Sequence[int]) -> Product:
@@ -48,7 +45,7 @@ def _blaming(effects: Effects, of: Sequence[int]) -> Product:
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
         joint, blamed = memory
-        after = tuple([effect[state] for effect, state in zip(row, joint, strict=True)])
+        after = tuple(map(getitem, row, joint))
         if LOST not in after:
             return after, blamed
         lost = {rule for state, rule in zip(after, of, strict=True) if state == LOST}
@@ -62,6 +59,5 @@ def _blaming(effects: Effects, of: Sequence[int]) -> Product:
     return explore(effects, enter, (effects.waiting, NOBODY))
 
 
-def _violating(product: Product, rule: int) -> Product | None:
-    ends = frozenset([end for end in product.ends if end[1][1] == rule])
-    return replace(product, ends=ends) if ends else None
+def _blamed(product: Product, rule: int) -> Product:
+    return replace(product, ends=frozenset([end for end in product.ends if end[1][1] == rule]))
