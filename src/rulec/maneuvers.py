@@ -26,21 +26,13 @@ from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.rejections import violating, violating_alone
 from rulec.runtime.terms import names_in
 from rulec.runtime.verdict import Violation
-from rulec.trace import State, TraceGraph, Value
+from rulec.supply import RELATIONS_OF, in_terms_of
+from rulec.trace import TraceGraph
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
-
-RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
-    "paper": ("position",),
-    "fine": ("station", "lateral"),
-}
-"""The relations that only one partition supplies."""
-
-SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
-"""All that partitions supply."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +196,7 @@ def judged(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
-    paths = _in_terms_of(rules.vocabulary, graph.trace_graph())
+    paths = in_terms_of(rules.vocabulary, graph)
     past = past_of(paths, after, rules, graph.step, HARD)
     hard = effects(paths, _instances(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
@@ -224,41 +216,6 @@ def _instances(
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
-
-
-def _in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
-    """Leave out what the partition supplies and the vocabulary has no word for.
-
-    The author of a rulebook has not written these names, unlike those in a file of traces.
-    """
-    if not vocabulary.types:
-        traces = replace(traces, objects={}, present={})
-    return replace(
-        traces,
-        states=tuple(
-            tuple(_state(vocabulary, traces.objects, state) for state in layer)
-            for layer in traces.states
-        ),
-    )
-
-
-def _state(vocabulary: Vocabulary, objects: Mapping[str, str], state: State) -> State:
-    kept: dict[str, Value | Mapping[str, Value]] = {}
-    for name, value in state.items():
-        declaration = vocabulary.declarations.get(name)
-        if name in SUPPLIED and declaration is None:
-            continue
-        if name in SUPPLIED and isinstance(value, Mapping) and declaration is not None:
-            kind = declaration.parameters[0] if declaration.parameters else None
-            value = {
-                item: inner
-                for item, inner in value.items()
-                if objects.get(item) not in vocabulary.types
-                or kind is None
-                or vocabulary.is_subtype(objects[item], kind)
-            }
-        kept[name] = value
-    return kept
 
 
 def partition_for(

@@ -23,7 +23,7 @@ def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
 
 
 def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float], ...]:
-    """From when to when, and how far along and across the road, the middle moved: each time it did."""
+    """Each time the middle moved: from when to when, and how far along and across the road."""
     steps = []
     for k in range(len(motion.times) - 1):
         one, other = motion.boxes[k : k + 2]

@@ -93,8 +93,8 @@ class Trajectory:
 class Footprints:
     """What is occupied at ascending times: bounds that move in straight lines in between.
 
-    None where it is nowhere near the road. Before the first time and after the last one the obstacle
-    is not there. Unlike a trajectory's, its extent may change, as that of a vehicle that turns.
+    None where it is nowhere near the road. Before the first time and after the last one the
+    obstacle is not there. Unlike a trajectory's, its extent may change, as when a vehicle turns.
     """
 
     times: tuple[float, ...]
@@ -108,8 +108,9 @@ Motion = ConstantAcceleration | Trajectory | Footprints
 class Obstacle:
     """Another traffic participant: a rectangle along the road that moves by a prediction.
 
-    ``broader`` are more and more general words for its type, for rulebooks that lack the type's own.
-    ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in degrees from ego's direction, counter-clockwise: 90 is to the left.
+    ``broader`` are more and more general words for its type, for rulebooks that lack the type's.
+    ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in
+    degrees from ego's direction, counter-clockwise: 90 is to the left.
     """
 
     id: str
@@ -164,7 +165,8 @@ class Scenario:
 
     ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
     that every cell of the last layer will do. ``account`` is there if the scene was recorded: then
-    signals that the rulebook does not know are no mistake.
+    signals and types that a rulebook does not know are no mistake, and ``step_s`` is only the
+    longest step that is good.
     """
 
     name: str

@@ -16,9 +16,10 @@ class Choice:
     """Whose maneuvers are sought, from when on, along which road, and what is expected of others.
 
     ``ego``: a planning problem or a participant; None is the first planning problem. ``at_s``: the
-    time of the file that becomes time 0; None is the planning problem's, or the participant's first.
+    time of the file that becomes time 0; None is the planning problem's, the participant's first.
     ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
-    ``prediction``: others move as recorded, or from time 0 on with constant acceleration.
+    ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
+    is ``congested`` below a median speed.
     """
 
     ego: int | None = None

@@ -29,14 +29,14 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
         if "vehicle" in (one.type, *one.broader) and (speed := _speed(one, road)) is not None
     ]
     if len(speeds) < FEWEST:
-        return False, f"it takes {FEWEST} vehicles that go ego's way on its road, here {len(speeds)}"
+        return (
+            False,
+            f"it takes {FEWEST} vehicles that go ego's way on its road, here {len(speeds)}",
+        )
     middle = median(speeds)
     relation = "below" if middle < below_kmh else "not below"
-    return (
-        middle < below_kmh,
-        f"the median speed of {len(speeds)} vehicles is {middle:.1f} km/h, "
-        f"{relation} {below_kmh:g} km/h",
-    )
+    compared = f"{middle:.1f} km/h, {relation} {below_kmh:g} km/h"
+    return middle < below_kmh, f"the median speed of {len(speeds)} vehicles is {compared}"
 
 
 def _speed(obstacle: Obstacle, road: Box) -> float | None:

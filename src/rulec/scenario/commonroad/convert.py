@@ -17,9 +17,12 @@ from rulec.scenario.commonroad.reading import read_recording
 from rulec.scenario.commonroad.recording import Recording
 from rulec.scenario.commonroad.reference_line import reference_line
 from rulec.scenario.commonroad.route import REACH_M, lanelets_at, route
+from rulec.scenario.commonroad.safe_xml import refused
 from rulec.scenario.commonroad.signs import signals_of
 from rulec.scenario.commonroad.traffic import View, obstacles
 from rulec.scenario.model import Account, Ego, Obstacle, Road, Scenario, SignalValue
+
+STEP_S = 0.5
 
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
@@ -29,11 +32,20 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
         RulecError: R0610, R0611 and R0701 as for ``read_recording``, R0612 if what is chosen is not
             in the file.
     """
-    return to_scenario(read_recording(path), choice, str(path))
+    recording = read_recording(path)
+    try:
+        return to_scenario(recording, choice, str(path))
+    except ValueError as reason:
+        raise refused(path, f"its road makes no sense, {reason}", None) from None
 
 
 def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
-    """The scenario that a recording gives, seen from the chosen ego. Raises RulecError R0612."""
+    """The scenario that a recording gives, seen from the chosen ego.
+
+    Raises:
+        RulecError: R0612 if what is chosen is not in it.
+        ValueError: its lanes cannot be laid out along a line.
+    """
     start = start_of(recording, choice, file)
     own = reference_of(recording, choice, start.state, file)
     way = route(recording, own, lanelets_at(recording, start.targets))
@@ -61,6 +73,7 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         Ego(0.0, d),
         found,
         {name: value for name, (value, _) in told.items()},
+        step_s=STEP_S,
         about=f"CommonRoad scenario {recording.name}",
         account=Account(
             own,

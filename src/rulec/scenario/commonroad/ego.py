@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
 from rulec.scenario.commonroad.choice import Choice
-from rulec.scenario.commonroad.recording import Points, Problem, Recording, State
+from rulec.scenario.commonroad.recording import Participant, Points, Problem, Recording, State
 from rulec.scenario.commonroad.route import lanelet_of
+
+_SAME_PLACE_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +32,9 @@ class Start:
 def start_of(recording: Recording, choice: Choice, file: str) -> Start:
     """Where the chosen ego is. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
-    moving = {one.id: one.states for one in recording.participants if one.states and not one.standing}
+    moving = {
+        one.id: one.states for one in recording.participants if one.states and not one.standing
+    }
     if choice.ego is None and not problems:
         message = "the file has no planning problem, which would say where ego is"
         raise unfit(message, f"choose one of its vehicles with --ego: {listed(moving)}", file)
@@ -56,10 +61,19 @@ def _of_problem(
         raise unfit(
             f"planning problem {problem.id} says where ego is at "
             f"{problem.step * recording.step_s:g} s, and at no other time",
-            f"leave out --at-time, or choose a vehicle with --ego: {others}",
+            "leave out --at-time"
+            + (f", or choose a vehicle with --ego: {others}" if others else ""),
             file,
         )
-    return Start(None, problem.step, problem.start, problem.goals)
+    own = (one.id for one in recording.participants if _is_ego(one, problem))
+    return Start(next(own, None), problem.step, problem.start, problem.goals)
+
+
+def _is_ego(one: Participant, problem: Problem) -> bool:
+    """Some files have ego's own recorded drive among the obstacles, starting in its place."""
+    state = one.states.get(problem.step)
+    place = problem.start
+    return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
 def reference_of(recording: Recording, choice: Choice, state: State, file: str) -> int:

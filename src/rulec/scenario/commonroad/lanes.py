@@ -91,83 +91,111 @@ class Lanes:
 def lanes_along(
     recording: Recording, way: Sequence[int], line: ReferenceLine, ego_s: float
 ) -> Lanes:
-    """The lanes beside those of the way, numbered from them, that lead the same way."""
+    """The lanes beside those of the way that lead the same way.
+
+    Raises:
+        ValueError: there is no lane as wide as ``NARROWEST_LANE_M``.
+    """
     lanelets = [recording.lanelets[number] for number in way]
-    ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
-    borders = np.clip(np.nan_to_num(line.coordinates(ends)[:, 0]), 0.0, line.length)
-    borders = np.maximum.accumulate(borders)
-    borders[-1] = line.length
+    borders = _borders(lanelets, line)
     grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
-    pieces = np.clip(
-        np.searchsorted(borders, (grid[:-1] + grid[1:]) / 2, "right") - 1, 0, len(way) - 1
+    strip = _Strip(recording, lanelets, line, borders, grid)
+    right, left = (_bound(strip, lanelets, left=side) for side in (False, True))
+    on_the_right = _side(strip, right, left=False)
+    on_the_left = _side(strip, left, left=True)
+    own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
+    columns = [*reversed(on_the_right), own, *on_the_left]
+    middles = strip.pieces((grid[:-1] + grid[1:]) / 2)
+    there = np.stack(
+        [
+            present[middles] & (np.minimum(width[:-1], width[1:]) >= NARROWEST_LANE_M)
+            for width, present in columns
+        ],
+        axis=1,
     )
-    inner = {left: _bound(lanelets, borders, line, grid, left=left) for left in (True, False)}
-    sides = {left: _side(recording, lanelets, borders, line, grid, inner[left], left=left) for left in (True, False)}
-    width = inner[True] - inner[False]
-    columns = [
-        *(w for w, _ in reversed(sides[False])),
-        (np.maximum(width, _HAIR_M)),
-        *(w for w, _ in sides[True]),
-    ]
-    present = [
-        *(p[pieces] for _, p in reversed(sides[False])),
-        np.ones(len(pieces), dtype=bool),
-        *(p[pieces] for _, p in sides[True]),
-    ]
-    wide = [np.minimum(w[:-1], w[1:]) >= NARROWEST_LANE_M for w in columns]
-    first = inner[False] - sum((w for w, _ in sides[False]), start=np.zeros(len(grid)))
-    bounds = np.cumsum(np.stack((first, *columns), axis=1), axis=1)
-    straight = np.array([np.interp(ego_s, grid, column) for column in bounds.T])
-    there = np.stack([p & w for p, w in zip(present, wide, strict=True)], axis=1)
-    return Lanes(grid, bounds, straight, there)
+    some = np.flatnonzero(there.any(axis=0))
+    if not len(some):
+        raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
+    kept = slice(some[0], some[-1] + 1)
+    widths = np.stack([width for width, _ in columns], axis=1)
+    first = right - widths[:, : len(on_the_right)].sum(axis=1)
+    bounds = np.cumsum(np.column_stack((first, widths)), axis=1)
+    usual = _usual_widths(grid, widths, there, ego_s)
+    straight = np.cumsum((0.0, *usual))
+    straight += float(np.interp(ego_s, grid, right)) - straight[len(on_the_right)]
+    bounded = slice(kept.start, kept.stop + 1)
+    return Lanes(grid, bounds[:, bounded], straight[bounded], there[:, kept])
 
 
-def _side(
-    recording: Recording,
-    lanelets: Sequence[Lanelet],
-    borders: _Values,
-    line: ReferenceLine,
-    grid: _Values,
-    inner: _Values,
-    *,
-    left: bool,
-) -> list[tuple[_Values, NDArray[np.bool_]]]:
+@dataclass(frozen=True, slots=True)
+class _Strip:
+    """What all lanes have in common: the way, where its lanelets meet, places to look at."""
+
+    recording: Recording
+    way: Sequence[Lanelet]
+    line: ReferenceLine
+    borders: _Values
+    grid: _Values
+
+    def pieces(self, s: _Values) -> NDArray[np.intp]:
+        """The numbers of the way's lanelets at places."""
+        return np.clip(np.searchsorted(self.borders, s, "right") - 1, 0, len(self.way) - 1)
+
+
+def _borders(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
+    """Where along the line lanelets begin, and the last one ends."""
+    ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
+    places = np.nan_to_num(line.coordinates(ends)[:, 0])
+    borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
+    borders[-1] = line.length
+    return borders
+
+
+def _usual_widths(
+    grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
+) -> Iterator[float]:
+    """The width of each lane where ego is, or if it is not there what it mostly is elsewhere."""
+    at = int(np.clip(np.searchsorted(grid, ego_s, "right") - 1, 0, len(there) - 1))
+    for width, own in zip(widths.T, there.T, strict=True):
+        if own[at]:
+            yield float(np.interp(ego_s, grid, width))
+        else:
+            yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
+
+
+def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
     """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
-    rows = [beside(recording, lanelet.id, left=left) for lanelet in lanelets]
+    rows = [beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     found = []
     for k in range(max(map(len, rows))):
         present = np.array([len(row) > k for row in rows])
-        own = [recording.lanelets[row[k]] if len(row) > k else None for row in rows]
-        outer = _bound(own, borders, line, grid, left=left)
-        pieces = np.clip(np.searchsorted(borders, grid, "right") - 1, 0, len(rows) - 1)
-        known = present[pieces] | present[np.maximum(pieces - 1, 0)] & np.isin(grid, borders)
+        own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
+        outer = _bound(strip, own, left=left)
+        known = present[strip.pieces(strip.grid)]
         width = np.maximum(outer - inner if left else inner - outer, _HAIR_M)
-        width = np.interp(grid, grid[known], width[known])
+        if known.any():
+            width = np.interp(strip.grid, strip.grid[known], width[known])
         inner = inner + width if left else inner - width
         found.append((width, present))
     return found
 
 
-def _bound(
-    lanelets: Sequence[Lanelet | None],
-    borders: _Values,
-    line: ReferenceLine,
-    grid: _Values,
-    *,
-    left: bool,
-) -> _Values:
+def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
     """The offset of the lanelets' left or right bound at the places of the grid."""
-    found = []
-    for lanelet, (start, end) in zip(lanelets, pairwise(borders), strict=True):
+    found = [np.empty((0, 2))]
+    for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:
             continue
-        places = line.coordinates(dense(lanelet.left if left else lanelet.right, _EVERY_M))
+        bound = dense(lanelet.left if left else lanelet.right, _EVERY_M)
+        places = strip.line.coordinates(bound)
         near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
         found.append(places[near])
     places = np.concatenate(found)
+    if not len(places):
+        raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]
-    return np.interp(grid, places[:, 0], places[:, 1])
+    return np.interp(strip.grid, places[:, 0], places[:, 1])
 
 
 def dense(points: Points, every_m: float) -> Points:

@@ -36,8 +36,8 @@ class Light:
 class Lanelet:
     """A piece of a lane. ``left`` and ``right`` are its bounds in the direction of travel.
 
-    ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are the
-    names of those that hold here; ``lights`` are those that have a programme.
+    ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
+    the names of those that hold here; ``lights`` are those that have a programme.
     """
 
     id: int

@@ -53,7 +53,11 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[int]:
         for lanelet in recording.lanelets.values()
         if is_lane(lanelet) and bool(shapely.intersects(_area(lanelet), points).any())
     }
-    return frozenset(y for x in found for y in (x, *beside(recording, x, left=True), *beside(recording, x, left=False)))
+    return frozenset(
+        y
+        for x in found
+        for y in (x, *beside(recording, x, left=True), *beside(recording, x, left=False))
+    )
 
 
 def beside(recording: Recording, start: int, *, left: bool) -> tuple[int, ...]:
@@ -128,9 +132,7 @@ def _straight_on(
 
 
 def _area(lanelet: Lanelet) -> shapely.Polygon:
-    return shapely.make_valid(
-        shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1])))
-    )
+    return shapely.make_valid(shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1]))))
 
 
 def _length(lanelet: Lanelet) -> float:

@@ -31,12 +31,14 @@ def check_commonroad(path: Path) -> None:
             return
         seen.append(name)
         if name != "commonRoad":
-            raise _refused(
-                path, f"it is XML, but of `{_short(name)}`, not of `commonRoad`", parser.CurrentLineNumber
+            raise refused(
+                path,
+                f"it is XML, but of `{_short(name)}`, not of `commonRoad`",
+                parser.CurrentLineNumber,
             )
         version = attributes.get("commonRoadVersion", "")
         if version not in VERSIONS:
-            raise _refused(
+            raise refused(
                 path,
                 f"its `commonRoadVersion` is `{_short(version)}`",
                 parser.CurrentLineNumber,
@@ -44,9 +46,9 @@ def check_commonroad(path: Path) -> None:
             )
 
     def definition(*_: object) -> None:
-        raise _refused(
+        raise refused(
             path,
-            "it has a `DOCTYPE`, which CommonRoad does not, and which can define entities without end",
+            "it has a `DOCTYPE`, which CommonRoad has not, and which could define anything",
             parser.CurrentLineNumber,
             help_text="take the `<!DOCTYPE …>` out",
         )
@@ -60,17 +62,18 @@ def check_commonroad(path: Path) -> None:
                 size += len(block)
                 if size > LARGEST_BYTES:
                     message = f"it is too large: at most {LARGEST_BYTES:,} bytes are read"
-                    raise _refused(path, message, None)
+                    raise refused(path, message, None)
                 parser.Parse(block, False)
         parser.Parse(b"", True)
     except ExpatError as problem:
         message = f"it is not well-formed XML: {errors.messages[problem.code]}"
-        raise _refused(path, message, problem.lineno) from None
+        raise refused(path, message, problem.lineno) from None
 
 
-def _refused(
+def refused(
     path: Path, why: str, line: int | None, *, expected: str = "", help_text: str = ""
 ) -> RulecError:
+    """Why a file is no CommonRoad scenario (R0610), and on which line that shows, if on one."""
     place = Place(str(path)) if line is None else Place(str(path), line)
     return RulecError(
         Diagnostic(

@@ -27,6 +27,7 @@ GOES_ON_S = 600.0
 """So long after the end of a recording who was there then is taken to go on."""
 
 _FAR_M = 10.0
+_SPREAD, _MORE_M = 2.0, 3.0
 _SPEED_OVER_S = 0.5
 
 
@@ -55,8 +56,15 @@ class View:
         """The bounds of outlines in the scenario; None for those that are not near the road."""
         if not outlines:
             return []
-        places = self.lanes.straightened(self.line.coordinates(np.concatenate(outlines)))
-        starts = np.cumsum([0, *(len(outline) for outline in outlines[:-1])])
+        counts = np.array([len(outline) for outline in outlines])
+        starts = np.append(0, np.cumsum(counts)[:-1])
+        places = np.concatenate(outlines)
+        middles = np.add.reduceat(places, starts) / counts[:, None]
+        away = np.hypot(*(places - np.repeat(middles, counts, axis=0)).T)
+        reach = np.maximum.reduceat(away, starts) * _SPREAD + _MORE_M
+        around = np.repeat(self.line.coordinates(middles)[:, 0], counts)
+        found = self.line.coordinates_near(places, around, np.repeat(reach, counts))
+        places = self.lanes.straightened(np.where(np.isnan(around)[:, None], np.nan, found))
         low = np.minimum.reduceat(places, starts) - (self.ego_s, 0.0)
         high = np.maximum.reduceat(places, starts) - (self.ego_s, 0.0)
         wide = Box(
@@ -65,14 +73,19 @@ class View:
             self.road.d_min - _FAR_M,
             self.road.d_max + _FAR_M,
         )
-        found = (Box(s0, s1, d0, d1) for (s0, d0), (s1, d1) in zip(low.tolist(), high.tolist(), strict=True))
-        return [box if box.overlaps(wide) else None for box in found]
+        boxes = (
+            Box(s0, s1, d0, d1)
+            for (s0, d0), (s1, d1) in zip(low.tolist(), high.tolist(), strict=True)
+        )
+        return [box if box.overlaps(wide) else None for box in boxes]
 
 
 def obstacles(view: View, ego: int | None, prediction: Prediction) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     others = [one for one in view.recording.participants if one.id != ego]
-    since = [[k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0] for one in others]
+    since = [
+        [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0] for one in others
+    ]
     outlines = [one.outlines[k] for one, steps in zip(others, since, strict=True) for k in steps]
     boxes = iter(view.boxes(outlines))
     for one, steps in zip(others, since, strict=True):
@@ -89,7 +102,7 @@ def obstacles(view: View, ego: int | None, prediction: Prediction) -> Iterator[O
             first.d_max - first.d_min,
             motion,
             _walking_direction(view, one) if words[0] == PEDESTRIAN else None,
-            _signals(view, one),
+            _signals(one),
             words[1:],
         )
 
@@ -107,7 +120,7 @@ def _motion(
         if now is None:
             return None
         motion = _constant(view, one, steps[0], now)
-        return motion if one.standing and now.overlaps(view.road) or not one.standing else None
+        return motion if (one.standing and now.overlaps(view.road)) or not one.standing else None
     if not any(box is not None and box.overlaps(view.road) for box in boxes):
         return None
     times = [view.time(step) for step in steps]
@@ -154,7 +167,7 @@ def _walking_direction(view: View, one: Participant) -> float | None:
     return degrees((turn + pi) % (2 * pi) - pi)
 
 
-def _signals(view: View, one: Participant) -> dict[str, SignalValue]:
+def _signals(one: Participant) -> dict[str, SignalValue]:
     """What the file says about a participant for good; what changes is left to the rulebook."""
     signals: dict[str, SignalValue] = {"two_wheeled": one.type in ("motorcycle", "bicycle")}
     if one.type == "parkedVehicle":
