@@ -16,16 +16,16 @@ MOST_NAMED = 6
 
 def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
     """For JSON: lanelet, counts of obstacles, derived signals with their reasons, unknown ones."""
-    signals = found.graph.scenario.signals
+    supplied = found.paths.states[0][0]
     return {
         "reference": account.reference,
         "obstacles": account.recorded,
         "left_out": account.left_out,
         "recorded_until_s": account.until_s,
         "derived": {
-            name: {"value": signals[name], "because": why}
+            name: {"value": supplied[name], "because": why}
             for name, why in account.derived.items()
-            if name in found.rules.vocabulary.declarations
+            if name in supplied
         },
         "unknown": list(assumed(found.rules, found.paths)),
     }

@@ -55,6 +55,10 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         message = f"ego is not beside lanelet {own}, nor the road before and after it"
         raise unfit(message, "choose with --reference a lanelet of the road that ego is on", file)
     lanes = lanes_along(recording, way, line, ego_s)
+    ((_, d),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
+    if not lanes.straight[0] <= d <= lanes.straight[-1]:
+        message = f"ego is beside the road of lanelet {own}, {abs(ego_d):.1f} m from its middle"
+        raise unfit(message, "choose another ego with --ego, or lanelet with --reference", file)
     low, high = max(0.0, ego_s - REACH_M), min(line.length, ego_s + REACH_M)
     bounds = tuple(lanes.straight.tolist())
     road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
@@ -66,7 +70,6 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         **_map_signals(view, way, own, start.step),
     }
     others = sum(one.id != start.participant for one in recording.participants)
-    ((_, d),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
     return Scenario(
         recording.name,
         replace(road, surfaces=crossings(view)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.scenario.commonroad.lanes import dense
+from rulec.scenario.commonroad.reference_line import dense
 from rulec.scenario.commonroad.traffic import View
 from rulec.scenario.model import Stretch
 

@@ -17,7 +17,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.scenario.commonroad.recording import Lanelet, Points, Recording
-from rulec.scenario.commonroad.reference_line import ReferenceLine
+from rulec.scenario.commonroad.reference_line import ReferenceLine, dense
 from rulec.scenario.commonroad.route import beside
 from rulec.scenario.model import MissingLane
 
@@ -196,12 +196,3 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
         raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]
     return np.interp(strip.grid, places[:, 0], places[:, 1])
-
-
-def dense(points: Points, every_m: float) -> Points:
-    """A line of straight pieces with further points, so that no two are farther apart."""
-    parts = [points[:1]]
-    for one, other in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(other - one)) / every_m)))
-        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
-    return np.concatenate(parts)

@@ -4,12 +4,14 @@ The foot of a place is where the place is perpendicular to the line. On a line o
 that leaves gaps at the outside of every bend and overlaps at the inside; so directions are
 interpolated along each piece between those of its ends (Bender, Ziegler, Stiller, "Lanelets:
 Efficient map representation for autonomous driving", IV 2014), and ``s`` and ``d`` vary without
-jumps. Beyond its ends the line goes on straight.
+jumps. Pieces are 5 m long at most, so that a bend is felt no farther from it. Beyond its ends the
+line goes on straight.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy import float64, intp
@@ -21,6 +23,7 @@ BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
 
 _CLOSEST_M = 0.05
+_PIECE_M = 5.0
 _AT_ONCE = 1 << 18
 _HAIR = 1e-9
 _Values = NDArray[float64]
@@ -105,7 +108,7 @@ def reference_line(corners: Points) -> ReferenceLine:
     for corner in corners[1:]:
         if np.hypot(*(corner - kept[-1])) > _CLOSEST_M:
             kept.append(corner)
-    points = np.array(kept)
+    points = dense(np.array(kept), _PIECE_M)
     start, end = points[1] - points[0], points[-1] - points[-2]
     extended = np.concatenate(
         (
@@ -121,6 +124,15 @@ def reference_line(corners: Points) -> ReferenceLine:
     first, last = np.tan(np.append(0.0, -halves)), np.tan(np.append(halves, 0.0))
     arc = np.concatenate(([0.0], np.cumsum(lengths)[:-1])) - BEYOND_M
     return ReferenceLine(arc, extended[:-1], steps / lengths[:, None], lengths, first, last - first)
+
+
+def dense(points: Points, every_m: float) -> Points:
+    """A line of straight pieces with further points, so that no two are farther apart."""
+    parts = [points[:1]]
+    for one, other in pairwise(points):
+        count = max(1, int(np.ceil(np.hypot(*(other - one)) / every_m)))
+        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(parts)
 
 
 def _turn(before: _Values, after: _Values) -> _Values:
