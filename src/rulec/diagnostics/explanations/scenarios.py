@@ -133,9 +133,9 @@ SCENARIOS = {
     ),
     "R0613": Explanation(
         "a choice for recorded scenes was made for another scenario",
-        "`--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose from "
-        "what a CommonRoad scenario has recorded. A built-in scenario, or one in TOML, says itself "
-        "where ego and the road are and how others move.",
+        "What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
+        "from is what a CommonRoad scenario has recorded. A built-in scenario, or one in TOML, "
+        "says itself where ego and the road are and how others move.",
         "rulec maneuvers s1 -r esterle2019 --ego 2",
         "rulec maneuvers s1 -r esterle2019",
         "command",
