@@ -141,13 +141,12 @@ class Columns:
         """Of these states enough to know what all say of some names: one, if it is in all."""
         if self._present or not all(self._is_one(name) for name in names):
             return range(first, last + 1)
-        return range(first, first + 1)
+        return range(first, last + 1)[:1]
 
     def _is_one(self, name: str) -> bool:
         """Do all states say the very same of a name, or nothing? As cells do of a whole scene."""
         if name not in self._one:
-            told = self._states[0].get(name)
-            self._one[name] = all(state.get(name) is told for state in self._states)
+            self._one[name] = len({id(state.get(name)) for state in self._states}) <= 1
         return self._one[name]
 
     def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
@@ -178,7 +177,7 @@ class Columns:
 
 def _digits(column: Iterable[int]) -> Digits:
     found = list(column)
-    return found if len(set(found)) > 1 else found[0]
+    return found[0] if len(set(found)) == 1 else found
 
 
 def present_in(
