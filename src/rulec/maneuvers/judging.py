@@ -25,6 +25,7 @@ from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
 from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.rejections import violating, violating_alone
+from rulec.runtime.terms import names_in
 from rulec.runtime.verdict import Violation
 from rulec.trace import TraceGraph
 
@@ -54,6 +55,16 @@ class Maneuvers:
     def satisfying(self) -> int:
         """How many keep every hard rule."""
         return self.product.accepted
+
+    @property
+    def by_default(self) -> tuple[str, ...]:
+        """What rules read and the scenario does not supply, so that it has its default all along.
+
+        In the order of the vocabulary.
+        """
+        supplied = {name for layer in self.paths.states for state in layer for name in state}
+        read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
+        return tuple(name for name in self.rules.vocabulary.declarations if name in read - supplied)
 
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
