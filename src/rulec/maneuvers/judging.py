@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
 
 
+MOST_BEST = 100
+"""Levels that are not comparable can leave any number of maneuvers that none is better than."""
+
+
 @dataclass(frozen=True)
 class Maneuvers:
     """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
@@ -70,16 +74,16 @@ class Maneuvers:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
         return list(islice(cheapest(self.product), n))
 
-    def best(self) -> list[Ranked]:
+    def best(self, n: int = MOST_BEST) -> list[Ranked]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
 
-        There are several if levels are not comparable. If there are satisfying maneuvers, these
-        are satisfying and violate soft rules least. Raises RulecError as ``judged`` does, for soft
-        rules too.
+        There are several if levels are not comparable; of many, the first ``n``. If there are
+        satisfying maneuvers, these are satisfying and violate soft rules least. Raises RulecError
+        as ``judged`` does, for soft rules too.
         """
         return [
             self._ranked(1, penalty, next(cheapest(product)), product.accepted)
-            for penalty in front(self._every, self._ranks)
+            for penalty in islice(front(self._every, self._ranks), n)
             for product in [with_penalty(self._every, self._ranks, penalty)]
         ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -33,30 +33,37 @@ def in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
     """
     if not vocabulary.types:
         traces = replace(traces, objects={}, present={})
+    strangers = {name: _strangers(vocabulary, name, traces.objects) for name in SUPPLIED}
     return replace(
         traces,
         states=tuple(
-            tuple(_state(vocabulary, traces.objects, state) for state in layer)
+            tuple([_state(vocabulary, strangers, state) for state in layer])
             for layer in traces.states
         ),
     )
 
 
-def _state(vocabulary: Vocabulary, objects: Mapping[str, str], state: State) -> State:
+def _strangers(vocabulary: Vocabulary, name: str, objects: Mapping[str, str]) -> Set[str]:
+    """The objects that a relation is not about, of types that the vocabulary knows."""
+    declaration = vocabulary.declarations.get(name)
+    if declaration is None or not declaration.parameters:
+        return frozenset()
+    about = declaration.parameters[0]
+    return {
+        item
+        for item, kind in objects.items()
+        if kind in vocabulary.types and not vocabulary.is_subtype(kind, about)
+    }
+
+
+def _state(vocabulary: Vocabulary, strangers: Mapping[str, Set[str]], state: State) -> State:
     kept: dict[str, Value | Mapping[str, Value]] = {}
     for name, value in state.items():
-        declaration = vocabulary.declarations.get(name)
-        if name in SUPPLIED and declaration is None:
+        if name in SUPPLIED and name not in vocabulary.declarations:
             continue
-        if name in SUPPLIED and isinstance(value, Mapping) and declaration is not None:
-            kind = declaration.parameters[0] if declaration.parameters else None
-            value = {
-                item: inner
-                for item, inner in value.items()
-                if objects.get(item) not in vocabulary.types
-                or kind is None
-                or vocabulary.is_subtype(objects[item], kind)
-            }
+        left_out = strangers.get(name)
+        if left_out and isinstance(value, Mapping):
+            value = {item: inner for item, inner in value.items() if item not in left_out}
         kept[name] = value
     return kept
 
