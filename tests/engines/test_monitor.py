@@ -206,6 +206,19 @@ def answer(monitor, state, objects):
 
 
 @given(rulebooks(), journeys())
+def test_what_it_has_learnt_can_be_forgotten_at_any_time(rulebook, journey):
+    rules = compile_here(rulebook)
+    one, other = Monitor(rules), Monitor(rules)
+    for state, objects in journey:
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr("rulec.runtime.monitor.MOST_LEARNED", 0)
+            patched.setattr("rulec.runtime.online.reading.MOST", 1)
+            forgetful = answer(one, state, objects)
+        assert forgetful == answer(other, state, objects)
+    assert one.snapshot() == other.snapshot()
+
+
+@given(rulebooks(), journeys())
 def test_changes_tell_every_verdict(rulebook, journey):
     """Who begins from `holds so far` and notes the changes knows what is the case."""
     rules = compile_here(rulebook)
