@@ -30,7 +30,7 @@ def test_text(capsys):
 
 
 def test_what_the_scenario_does_not_say_is_named(tmp_path, capsys):
-    signals = "signal p, q, idle default false\nquantity speed in m/s default 3\n"
+    signals = "signal p, q, unread default false\nquantity speed in m/s default 3\n"
     rules = (
         "hard rule a { require always (p or not q or speed > 2 m/s) }\n"
         "soft rule b { require always surface_is_usual }\n"
@@ -39,7 +39,7 @@ def test_what_the_scenario_does_not_say_is_named(tmp_path, capsys):
     book = tmp_path / "book.rules"
     book.write_text(f"rulebook book\nuse paper\n{signals}{rules}", encoding="utf-8")
     _, out, _ = answer(capsys, "s2", "--rulebook", str(book), "--json")
-    # Nobody asks for idle or CONGESTED, and the scenario has surfaces.
+    # Nobody asks for `unread` or CONGESTED, and the scenario has surfaces.
     assert json.loads(out)["by_default"] == ["p", "q", "speed"]
     _, out, _ = answer(capsys, "s2", "--rulebook", str(book))
     assert "by default  p, q, speed: the scenario does not say" in out.splitlines()
