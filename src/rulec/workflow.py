@@ -8,15 +8,15 @@ The command line and ``import rulec`` are thin layers over these functions.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rulec.automata import compiled_file
 from rulec.automata.compiled import CompiledRulebook
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import opened
 from rulec.logic.timing import speaks_of_seconds
 from rulec.maneuvers import Maneuvers, judged, partition_for
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
     from rulec.rulebook.loader import Loaded
     from rulec.rulebook.model import Rulebook
+    from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
 
@@ -234,6 +235,17 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
             yield from chunk
 
 
+def read_past(path: Path) -> Before:
+    """The one trace of a file, or a saved monitor's snapshot (.json). Raises RulecError."""
+    from rulec.runtime.before import only_trace
+    from rulec.runtime.online.file import read_saved
+
+    if path.suffix == ".json":
+        saved: Mapping[str, Any] = read_saved(path)
+        return saved
+    return only_trace(read_traces(path), Place(str(path)))
+
+
 def navigation_graph(
     scenario: str | Path | Scenario,
     *,
@@ -261,10 +273,13 @@ def find_maneuvers(
     adjacency: AdjacencyName = "touch",
     step_s: float | None = None,
     horizon_s: float | None = None,
+    after: Before | None = None,
 ) -> Maneuvers:
     """Algorithm 1 of the paper, counting instead of enumerating.
 
-    ``partition``: the one whose relations the rulebook reads, unless given. Raises RulecError.
+    ``partition``: the one whose relations the rulebook reads, unless given. ``after``: what was
+    before, up to one step before the scenario begins: a trace, a ``Monitor`` that has taken one, or
+    its snapshot. Raises RulecError.
     """
     rules = machines(rulebook)
     source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
@@ -275,4 +290,5 @@ def find_maneuvers(
         step_s=step_s,
         horizon_s=horizon_s,
     )
-    return judged(graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step))
+    compiled = rules if isinstance(rules, CompiledRulebook) else rules(graph.step)
+    return judged(graph, compiled, after)

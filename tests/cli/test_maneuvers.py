@@ -5,7 +5,8 @@ import json
 import pytest
 
 from rulec.cli.main import main
-from rulec.workflow import find_maneuvers
+from rulec.runtime.monitor import Monitor
+from rulec.workflow import compile_rulebook, find_maneuvers
 
 
 def answer(capsys, *arguments):
@@ -18,13 +19,30 @@ def test_text(capsys):
     status, out, err = answer(capsys, "s2", "--rulebook", "esterle2019")
     assert (status, err) == (0, "")
     lines = out.splitlines()
-    assert lines[:4] == [
+    assert lines[:5] == [
         "scenario    s2: 4 s in steps of 1 s, partition paper, adjacency touch",
         "graph       35 nodes, 124 edges",
         "maneuvers   139",
         "satisfying  83 by esterle2019 (R1, R2, R3)",
+        "by default  CONGESTED: the scenario does not say",
     ]
-    assert len(lines) == 5
+    assert len(lines) == 6
+
+
+def test_what_the_scenario_does_not_say_is_named(tmp_path, capsys):
+    signals = "signal p, q, unread default false\nquantity speed in m/s default 3\n"
+    rules = (
+        "hard rule a { require always (p or not q or speed > 2 m/s) }\n"
+        "soft rule b { require always surface_is_usual }\n"
+        "define surface_is_usual = not R_pc\n"
+    )
+    book = tmp_path / "book.rules"
+    book.write_text(f"rulebook book\nuse paper\n{signals}{rules}", encoding="utf-8")
+    _, out, _ = answer(capsys, "s2", "--rulebook", str(book), "--json")
+    # Nobody asks for `unread` or CONGESTED, and the scenario has surfaces.
+    assert json.loads(out)["by_default"] == ["p", "q", "speed"]
+    _, out, _ = answer(capsys, "s2", "--rulebook", str(book))
+    assert "by default  p, q, speed: the scenario does not say" in out.splitlines()
 
 
 def test_the_list_is_sorted_and_complete(capsys):
@@ -203,6 +221,77 @@ def test_the_interface_gives_networkx_and_lazy_maneuvers():
     graph = found.graph.to_networkx()
     assert (graph.number_of_nodes(), graph.number_of_edges()) == (63, 248)
     assert len(found.cheapest(7)) == 7
+
+
+def written(folder, name, *records):
+    path = folder / name
+    path.write_text("".join(f"{json.dumps(one)}\n" for one in records), encoding="utf-8")
+    return str(path)
+
+
+QUEUE = {
+    "step_s": 0.5,
+    "objects": {"o1": "vehicle", "o2": "vehicle"},
+    "states": [{"position": {"o1": "b", "o2": "b"}, "CONGESTED": True}],
+}
+PASSED = {
+    "objects": {"o9": "vehicle"},
+    "present": {"o9": [0, 2]},
+    "states": [{"position": {"o9": place}} for place in "brf"] + [{}],
+}
+
+
+def test_after_a_past(tmp_path, capsys):
+    """R1 rejects 32 maneuvers, but not if traffic was congested when the trace began."""
+    arguments = ["s1", "--step", "0.5", "-r", "esterle2019", "--json"]
+    past = written(tmp_path, "queue.jsonl", QUEUE)
+    assert json.loads(answer(capsys, *arguments)[1])["satisfying"] == 640
+    found = json.loads(answer(capsys, *arguments, "--after", past)[1])
+    assert (found["satisfying"], found["violated_before"]) == (672, [])
+
+
+def test_after_a_monitor_that_was_saved(tmp_path, capsys):
+    rules = compile_rulebook("esterle2019")
+    monitor = Monitor(rules)
+    monitor.step(QUEUE["states"][0], QUEUE["objects"])
+    past = written(tmp_path, "saved.json", monitor.snapshot())
+    status, out, _ = answer(
+        capsys, "s1", "--step", "0.5", "-r", "esterle2019", "--after", past, "--json"
+    )
+    assert (status, json.loads(out)["satisfying"]) == (0, 672)
+
+
+def test_what_the_past_has_violated_is_said_and_not_counted(tmp_path, capsys):
+    past = written(tmp_path, "passed.jsonl", PASSED)
+    status, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert status == 0
+    assert out.splitlines()[3:5] == [
+        "satisfying  83 by esterle2019 (R1, R2, R3)",
+        "violated    R1 for v = o9, before, and not counted any more",
+    ]
+    found = json.loads(answer(capsys, "s2", "-r", "esterle2019", "--after", past, "--json")[1])
+    assert found["violated_before"] == [{"rule": "R1", "binding": {"v": "o9"}, "step": 2}]
+
+
+def test_only_so_many_are_named(tmp_path, capsys):
+    names = [f"x{number}" for number in range(9)]
+    objects = dict.fromkeys(names, "vehicle")
+    states = [{"position": dict.fromkeys(names, place)} for place in "brf"]
+    past = written(tmp_path, "past.jsonl", {"objects": objects, "states": states})
+    _, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert "            and 3 more; --json has them all" in out.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("records", "code"),
+    [([QUEUE], "R0511"), ([PASSED] * 2, "R0511"), ([[]], "R0501"), ([], "R0501")],
+)
+def test_what_is_no_past(tmp_path, capsys, records, code):
+    past = written(tmp_path, "past.jsonl", *records)
+    status, out, err = answer(capsys, "s2", "-r", "esterle2019", "--after", past)
+    assert (status, out) == (2, "")
+    assert f"error[{code}]" in err
+    assert "past.jsonl" in err
 
 
 HURRY = """rulebook hurry

@@ -7,6 +7,7 @@ import pytest
 from books import compile_here, rule
 from hypothesis import given
 from hypothesis import strategies as st
+from journeys import as_trace
 from recorded import OBJECTS, rulebooks, states
 from words import VOCABULARY, formulas, letters, words
 
@@ -103,31 +104,6 @@ def journeys(draw, odd=False):
         objects = {name: OBJECTS[name] for name in names}
         found.append((draw(states(objects, odd)), objects))
     return found
-
-
-def as_trace(journey):
-    """The trace in which each stay of an object has a name of its own, such as ``a 2``."""
-    objects, present, renamed, stays = {}, {}, [], {}
-    before = {}
-    for number, (state, there) in enumerate(journey):
-        names = {}
-        for name, kind in there.items():
-            if name not in before:
-                stays[name] = stays.get(name, -1) + 1
-            names[name] = f"{name} {stays[name]}"
-            objects[names[name]] = kind
-            first, _ = present.get(names[name], (number, number))
-            present[names[name]] = (first, number)
-        before = there
-        renamed.append(
-            {
-                key: {names.get(name, name): inner for name, inner in value.items()}
-                if isinstance(value, dict)
-                else value
-                for key, value in state.items()
-            }
-        )
-    return Trace("t", 1.0, objects, tuple(renamed), present)
 
 
 def listed(violations):
@@ -227,6 +203,19 @@ def answer(monitor, state, objects):
         return monitor.step(state, objects)
     except RulecError as refused:
         return refused.diagnostics
+
+
+@given(rulebooks(), journeys())
+def test_what_it_has_learnt_can_be_forgotten_at_any_time(rulebook, journey):
+    rules = compile_here(rulebook)
+    one, other = Monitor(rules), Monitor(rules)
+    for state, objects in journey:
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr("rulec.runtime.monitor.MOST_LEARNED", 0)
+            patched.setattr("rulec.runtime.online.reading.MOST", 1)
+            forgetful = answer(one, state, objects)
+        assert forgetful == answer(other, state, objects)
+    assert one.snapshot() == other.snapshot()
 
 
 @given(rulebooks(), journeys())

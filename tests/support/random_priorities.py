@@ -7,20 +7,22 @@ from books import P, Q, always, book, both, eventually, far, implies, near, no, 
 from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
+from rulec.logic.formula import Unary, UnaryOperator
 
 LEVELS = ("a", "b", "c")
 
 
-RULES = compile_rulebook(
-    book(
-        rule("never_near_then_far", always(no(both(near("x"), eventually(far("x"))))), "x: car"),
-        rule("no_two_near", always(no(both(near("x"), near("y")))), "x: thing", "y: thing"),
-        rule("p_is_answered", always(implies(P, eventually(Q)))),
-        rule("never_far", always(no(far("x"))), "x: car"),
-        rule("never_p", always(no(P))),
-        rule("ends_in_q", eventually(always(Q))),
-    )
+_BOOK = book(
+    rule("never_near_then_far", always(no(both(near("x"), eventually(far("x"))))), "x: car"),
+    rule("no_two_near", always(no(both(near("x"), near("y")))), "x: thing", "y: thing"),
+    rule("p_is_answered", always(implies(P, eventually(Q)))),
+    rule("never_far", always(no(far("x"))), "x: car"),
+    rule("never_p", always(no(P))),
+    rule("ends_in_q", eventually(always(Q))),
+    rule("p_goes_on", always(implies(P, Unary(UnaryOperator.NEXT, P)))),
 )
+RULES = compile_rulebook(_BOOK)
+FINITE = compile_rulebook(replace(_BOOK, semantics="finite"))
 
 
 def closed(pairs):
@@ -43,9 +45,10 @@ PAIRS = [(one, other) for one in LEVELS for other in LEVELS if one != other]
 @st.composite
 def rulebooks(draw, strengths=("hard", "soft")):
     """Any of the rules with any strength, level and weight, and any pre-order of the levels."""
-    rules = draw(st.lists(st.sampled_from(RULES.rules), unique_by=lambda one: one.name))
+    compiled = draw(st.sampled_from([RULES, FINITE]))
+    rules = draw(st.lists(st.sampled_from(compiled.rules), unique_by=lambda one: one.name))
     return replace(
-        RULES,
+        compiled,
         rules=tuple(
             replace(
                 one,

@@ -12,6 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
+from rulec.report.formats import FORMATS
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -164,6 +165,29 @@ def at_option(function: Decorated) -> Decorated:
         "out.  [default: that of the rulebook's `law` line, else today]",
     )
     return option(function)
+
+
+def findings_options(function: Decorated) -> Decorated:
+    """``--output-format`` of findings, and ``--fail-on``: which of them make the exit status 1."""
+    for decorate in (
+        click.option(
+            "--fail-on",
+            type=click.Choice(["error", "warning"]),
+            default="error",
+            show_default=True,
+            help="What makes the exit status 1.",
+        ),
+        click.option(
+            "--output-format",
+            type=click.Choice(FORMATS),
+            default="full",
+            show_default=True,
+            help="Text with the lines in question, a line each, JSON, GitHub annotations, "
+            "SARIF 2.1.0.",
+        ),
+    ):
+        function = decorate(function)
+    return function
 
 
 def json_option(function: Decorated) -> Decorated:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import click
@@ -42,6 +43,12 @@ from rulec.cli.exit_status import ExitStatus
     metavar="N",
     help="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
 )
+@click.option(
+    "--after",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="What was before: a file with one trace, or a monitor that was saved (.json).",
+)
 @json_option
 @at_option
 def command(
@@ -51,6 +58,7 @@ def command(
     n_ranked: int | None,
     why: bool,
     n_classes: int | None,
+    after: Path | None,
     json_output: bool,
     at: str,
     **options: Any,
@@ -59,16 +67,20 @@ def command(
 
     If none does, the least violating ones are shown.
 
+    With --after they go on where a past has ended: its last state comes one step before the
+    scenario begins. What was violated for good by then is said, and not counted against them.
+
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
     from rulec.settings import search_path
-    from rulec.workflow import find_maneuvers, machines
+    from rulec.workflow import find_maneuvers, machines, read_past
 
     begin = time.perf_counter()
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    found = find_maneuvers(scenario, rules, **options)
+    past = None if after is None else read_past(after)
+    found = find_maneuvers(scenario, rules, after=past, **options)
     answers = report.Answers(
         listed=None if n_listed is None else found.cheapest(n_listed),
         best=None if found.satisfying else found.best(),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,17 @@ from rulec.maneuvers import Maneuvers, Pruning, Ranked
 from rulec.partition import NavigationGraph
 from rulec.report import prunings, ranked_maneuvers, variants
 from rulec.report.counts import shown_count
+from rulec.report.excerpt import visible
 from rulec.report.maneuver_lines import as_data, cell_lines, in_a_line
 from rulec.runtime.cheapest import Maneuver
 from rulec.runtime.classes import Classes, Variant
+from rulec.runtime.verdict import Violation
+
+MOST_VIOLATIONS = 6
+"""So many of the past's are named in text; JSON has them all."""
+
+MOST_DEFAULTS = 4
+"""So many of what has its default are named in text; JSON has them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +54,14 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
         "edges": graph.edges,
         "traces": found.traces,
         "satisfying": found.satisfying,
+        "by_default": list(found.by_default),
         "seconds": round(seconds, 6),
     }
+    if found.violated_before is not None:
+        data["violated_before"] = [
+            {"rule": one.rule, "binding": dict(one.binding), "step": one.step}
+            for one in found.violated_before
+        ]
     if answers.best is not None:
         data["least_violating"] = [ranked_maneuvers.as_data(found, one) for one in answers.best]
     if answers.listed is not None:
@@ -73,6 +87,8 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(found.traces)}",
         f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
+        *_violated_before(found.violated_before or ()),
+        *_by_default(found.by_default),
     ]
     if answers.classes is not None:
         lines += variants.count_lines(found, answers.classes[0])
@@ -88,6 +104,25 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     if answers.classes is not None:
         lines += variants.blocks(found, answers.classes[1])
     return "\n".join(lines)
+
+
+def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
+    """A line for each rule that the past has violated, which no maneuver can mend."""
+    for one in violations[:MOST_VIOLATIONS]:
+        where = ", ".join(f"{name} = {item}" for name, item in one.binding.items())
+        about = f" for {where}" if where else ""
+        yield visible(f"violated    {one.rule}{about}, before, and not counted any more")
+    if len(violations) > MOST_VIOLATIONS:
+        yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
+
+
+def _by_default(names: Sequence[str]) -> Iterator[str]:
+    """A line for what nobody has said, so that it was taken to be as usual."""
+    if not names:
+        return
+    shown = ", ".join(names[:MOST_DEFAULTS])
+    more = f" and {len(names) - MOST_DEFAULTS:,} more" if len(names) > MOST_DEFAULTS else ""
+    yield visible(f"by default  {shown}{more}: the scenario does not say")
 
 
 def _horizon_s(graph: NavigationGraph) -> float:

@@ -13,12 +13,14 @@ from rulec.runtime.checking import check_objects, check_state
 from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns, present_in
 from rulec.runtime.numbers import exact
+from rulec.runtime.online.past import NO_PAST, Past
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import check_step, run
 from rulec.trace import TraceGraph
 
 HARD: tuple[Strength, ...] = ("hard",)
-EVERY: tuple[Strength, ...] = ("hard", "soft")
+SOFT: tuple[Strength, ...] = ("soft",)
+EVERY = (*HARD, *SOFT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +52,13 @@ def instances(
     rulebook: CompiledRulebook,
     step_s: Fraction | None = None,
     strengths: Collection[Strength] = HARD,
+    past: Past = NO_PAST,
 ) -> list[Instance]:
     """Every rule of these strengths with every binding of its variables to the graph's objects.
 
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
-    of a rule that every node is the same to are one instance.
+    of a rule that every node is the same to are one instance. Those that were settled in the
+    ``past`` are left out, the others go on where they stood.
 
     Raises:
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if one of
@@ -83,14 +87,21 @@ def instances(
         check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
     found: list[Instance] = []
     for rule in rules:
-        alike: dict[tuple[int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
+        alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
             letters = tuple(
                 columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
                 for layer in range(binding.first, binding.last + 1)
             )
-            alike.setdefault((binding.first, letters), []).append(binding)
-        found += [Instance(rule, tuple(bound), letters) for (_, letters), bound in alike.items()]
+            about = (rule.name, tuple(binding.objects.values()))
+            stays = binding.first == 0
+            if not (stays and about in past.settled):
+                start = past.states.get(about, 0) if stays else 0
+                alike.setdefault((binding.first, start, letters), []).append(binding)
+        found += [
+            Instance(rule, tuple(bound), letters, start)
+            for (_, start, letters), bound in alike.items()
+        ]
     return found
 
 
@@ -100,7 +111,7 @@ def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violati
     for one in rules:
         path = nodes[one.first : one.last + 1]
         word = [row[node] for row, node in zip(one.letters, path, strict=True)]
-        accepted, lost = run(one.rule.machine, word)
+        accepted, lost = run(one.rule.machine, word, one.start)
         if not accepted:
             layer = None if lost is None else one.first + lost
             found += [

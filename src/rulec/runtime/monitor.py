@@ -11,9 +11,11 @@ from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.runtime.checking import check_objects
 from rulec.runtime.letters import NOBODY
 from rulec.runtime.numbers import exact
+from rulec.runtime.online.past import Past
 from rulec.runtime.online.saved import from_data, step_in, to_data
-from rulec.runtime.online.scene import Scene, made_ready
-from rulec.runtime.online.standing import SoFar, Standing, beginning, onward
+from rulec.runtime.online.scene import Scene
+from rulec.runtime.online.standing import SoFar, Standing, beginning, carried_over, onward
+from rulec.runtime.online.team import MOST_LEARNED, teams_of
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import check_step
 from rulec.trace import State
@@ -41,9 +43,9 @@ class Monitor:
             if self._step_s is not None:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
-        self._ready = made_ready(rulebook)
+        self._teams = teams_of(rulebook)
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        self._now: Standing = beginning(Scene(rulebook, self._ready, NOBODY))
+        self._now: Standing = beginning(Scene(rulebook, self._teams, NOBODY))
         self._violations: list[Violation] = []
 
     @property
@@ -99,8 +101,11 @@ class Monitor:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)
-            scene = Scene(self._rulebook, self._ready, objects)
-        if not isinstance(state, Mapping):
+            scene = Scene(self._rulebook, self._teams, objects)
+        elif self._teams.learned.n > MOST_LEARNED:
+            self._teams = self._teams.forgetful()
+            scene = Scene(self._rulebook, self._teams, objects)
+        if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
         after = onward(now, scene, scene.letters(state, number, place))
         if after.n_violations > now.n_violations:
@@ -108,6 +113,19 @@ class Monitor:
         # All at once: whatever interrupts this, the state has been taken or it has not.
         self._now = after
         return after.so_far
+
+    def past(self, objects: Mapping[str, str]) -> Past:
+        """What has been, as far as it bears on a next state in which these objects are there."""
+        scene = Scene(self._rulebook, self._teams, objects)
+        edges, ended = carried_over(self._now.scene, self._now.nodes, scene)
+        states, settled = {}, set()
+        for crowd in scene.crowds:
+            for items, edge in zip(crowd.bindings, edges[crowd.ready.rule.name], strict=True):
+                states[crowd.ready.rule.name, items] = edge.state
+                if edge.verdict == "violated":
+                    settled.add((crowd.ready.rule.name, items))
+        lost = [Violation(one.rule, self._strengths[one.rule], one.binding, None) for one in ended]
+        return Past(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
         """Where the monitor stands, for ``restore``: data that JSON can take."""
@@ -128,7 +146,7 @@ class Monitor:
             RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
         monitor = cls(rulebook, step_in(snapshot, rulebook, place))
-        monitor._now, monitor._violations = from_data(snapshot, rulebook, monitor._ready, place)
+        monitor._now, monitor._violations = from_data(snapshot, rulebook, monitor._teams, place)
         return monitor
 
     def _note_violations(self, after: Standing, n_before: int) -> None:

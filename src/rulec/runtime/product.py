@@ -6,11 +6,13 @@ futures. So paths are counted per node and state, layer by layer.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from operator import getitem
 from typing import Any
 
 from rulec.runtime.effects import LOST, Effect, Effects
+from rulec.runtime.ways import Step
 from rulec.trace import TraceGraph
 
 Joint = tuple[int, ...]
@@ -60,7 +62,7 @@ def count_paths(graph: TraceGraph) -> int:
 
 def kept(effects: Sequence[Effect], joint: Joint) -> Joint | None:
     """The joint state after a node with these effects; None if a rule is lost there."""
-    after = tuple([effect[state] for effect, state in zip(effects, joint, strict=True)])
+    after = tuple(map(getitem, effects, joint))
     return None if LOST in after else after
 
 
@@ -74,31 +76,61 @@ def explore(effects: Effects, enter: Enter = kept, start: Memory | None = None) 
     first = effects.nodes[0][graph.start] if effects.starts else None
     memory = None if first is None else enter(first, effects.waiting if start is None else start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
-    steps: list[dict[ProductNode, list[tuple[ProductNode, int]]]] = []
-    # Where nothing changes from layer to layer, nor do the ways on from a product node.
-    ways: dict[tuple[int, int], dict[ProductNode, list[tuple[ProductNode, int]]]] = {}
-    entered: dict[int, dict[ProductNode, Memory | None]] = {}
+    steps = []
+    # Where nothing changes from layer to layer, nor do the ways on from there.
+    known: dict[object, _Ways] = {}
     for rows, nodes in zip(effects.steps, effects.nodes[1:], strict=True):
-        known = ways.setdefault((id(rows), id(nodes)), {})
-        inside = entered.setdefault(id(nodes), {})
-        following: dict[ProductNode, int] = {}
-        onward: dict[ProductNode, list[tuple[ProductNode, int]]] = {}
-        for origin, count in counts[-1].items():
-            reached = known.get(origin)
-            if reached is None:
-                node, memory = origin
-                reached = known[origin] = []
-                for target, cost in rows[node]:
-                    key = (target, memory)
-                    if key in inside:
-                        after = inside[key]
-                    else:
-                        after = inside[key] = enter(nodes[target], memory)
-                    if after is not None:
-                        reached.append(((target, after), cost))
-            for step, _ in reached:
-                following[step] = following.get(step, 0) + count
-            onward[origin] = reached
-        counts.append(following)
-        steps.append(onward)
+        key = (id(rows), id(nodes), tuple(counts[-1]))
+        if key not in known:
+            known[key] = _ways(counts[-1], rows, nodes, enter)
+        ways = known[key]
+        totals = [0] * len(ways.targets)
+        for count, indices in zip(counts[-1].values(), ways.into, strict=True):
+            for index in indices:
+                totals[index] += count
+        counts.append(dict(zip(ways.targets, totals, strict=True)))
+        steps.append(ways.steps)
     return Product(graph, tuple(counts), tuple(steps), frozenset(counts[-1]))
+
+
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """From one layer's product nodes to the next one's: ``into`` are the targets' indices."""
+
+    targets: list[ProductNode]
+    into: list[list[int]]
+    steps: dict[ProductNode, list[tuple[ProductNode, int]]]
+
+
+def _ways(
+    origins: Iterable[ProductNode],
+    rows: Sequence[Sequence[Step]],
+    nodes: Sequence[Sequence[Effect]],
+    enter: Enter,
+) -> _Ways:
+    index_of: dict[ProductNode, int] = {}
+    targets: list[ProductNode] = []
+    entered: dict[Memory, dict[int, int | None]] = {}
+    every = []
+    steps = {}
+    for origin in origins:
+        node, memory = origin
+        known = entered.setdefault(memory, {})
+        into: list[int] = []
+        reached: list[tuple[ProductNode, int]] = []
+        for target, cost in rows[node]:
+            if target not in known:
+                after = enter(nodes[target], memory)
+                known[target] = None
+                if after is not None:
+                    step = (target, after)
+                    known[target] = index_of.setdefault(step, len(targets))
+                    if len(index_of) > len(targets):
+                        targets.append(step)
+            at = known[target]
+            if at is not None:
+                into.append(at)
+                reached.append((targets[at], cost))
+        every.append(into)
+        steps[origin] = reached
+    return _Ways(targets, every, steps)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
-from operator import add, gt
+from operator import add, getitem, gt
 
 from rulec.runtime.effects import LOST, SAFE, Effect, Effects
 from rulec.runtime.penalties import Penalty, Ranks
@@ -25,8 +25,8 @@ Place = tuple[int, int, Joint]
 """A layer, a node in it, and the machines' states behind it."""
 
 
-def front(effects: Effects, ranks: Ranks) -> list[Penalty]:
-    """The penalties than which no path has a lower one, in the order of ``ranks``."""
+def front(effects: Effects, ranks: Ranks) -> Iterator[Penalty]:
+    """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
     found: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
@@ -39,8 +39,8 @@ def front(effects: Effects, ranks: Ranks) -> list[Penalty]:
         return True
 
     for penalty in _ascending(effects, ranks, worth):
-        found.append(penalty)  # noqa: PERF402 - `worth` looks at what has been found
-    return found
+        found.append(penalty)
+        yield penalty
 
 
 def ranked(effects: Effects, ranks: Ranks) -> Iterator[tuple[int, Penalty]]:
@@ -123,7 +123,7 @@ def _fees(
     ]
 
     def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:
-        after = tuple([effect[state] for effect, state in zip(row, joint, strict=True)])
+        after = tuple(map(getitem, row, joint))
         if LOST not in after:
             return after, ()
         due = [0] * len(ranks.ranks)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from operator import getitem
 
 from rulec.runtime.effects import LOST, SAFE, Effect, Effects
 from rulec.runtime.product import Joint, Product, explore
@@ -44,7 +45,7 @@ def _blaming(effects: Effects, of: Sequence[int]) -> Product:
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
         joint, blamed = memory
-        after = tuple([effect[state] for effect, state in zip(row, joint, strict=True)])
+        after = tuple(map(getitem, row, joint))
         if LOST not in after:
             return after, blamed
         lost = {rule for state, rule in zip(after, of, strict=True) if state == LOST}

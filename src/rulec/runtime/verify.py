@@ -130,15 +130,15 @@ def judge(
         return NotJudged(item.id, error)
 
 
-def run(machine: Machine, word: Sequence[int]) -> tuple[bool, int | None]:
-    """Run a machine over a non-empty word of letter classes.
+def run(machine: Machine, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
+    """Run a machine over a non-empty word of letter classes, from a state.
 
     Returns:
         Whether it accepts, and the index of the letter with which it was lost, however the word
         goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
     """
     following, dead = machine.following, machine.dead
-    state = before = 0
+    state = before = start
     for index, symbol in enumerate(word):
         before, state = state, following[state][symbol]
         # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.

@@ -23,6 +23,12 @@ hard rule indicate { require always (standing or turning implies indicator) }
 echo '{"states": [{"standing": %s, "turning": true, "indicator": true}]}' > trace.jsonl
 rulec verify trace.jsonl -r signal.rules"""
 
+_FIRST_HALF = """\
+cat > past.jsonl <<.
+{"step_s": 0.5, "states": [{"surface": "R_cw"}, {"surface": "R_cw"}]}
+.
+"""
+
 _SAVED = """\
 cat > first.rules <<.
 rulebook first
@@ -128,6 +134,15 @@ TRACES = {
         "very rules that it was saved with; for others a new monitor has to begin.",
         _SAVED + "rulec monitor second.rules --restore saved.json < states.jsonl",
         _SAVED + "rulec monitor first.rules --restore saved.json < states.jsonl",
+        "command",
+    ),
+    "R0511": Explanation(
+        "a past does not lead up to a scenario",
+        "With `--after` the maneuvers of a scenario go on where a trace has ended: the first layer "
+        "is the state after its last one. So there is one such trace, its states are as far apart "
+        "as the layers, and who is in both is of the same type in both.",
+        _FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl",
+        _FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl --step 0.5",
         "command",
     ),
 }

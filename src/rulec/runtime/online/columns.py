@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.automata.machine import NumberRead
 from rulec.logic.one_state import Unknown, total
 from rulec.runtime.moment import Moment, value_in
+from rulec.runtime.online.inputs import Input
 from rulec.vocabulary import Vocabulary
 
 Items: TypeAlias = tuple[str, ...]
@@ -18,44 +18,30 @@ Fetch: TypeAlias = Callable[[Mapping[str, Any]], Sequence[Any]]
 class OneStateColumns:
     """Collects what is to be fetched while these objects are there, and fetches it.
 
-    A column has the values of one thing for several objects; what is not said is None there. What
-    is about no objects has a value instead of a column.
+    A column has the values of an input for several bindings; what is not said is None there.
     """
 
     def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
         self._vocabulary = vocabulary
         self._objects = objects
-        self._values: dict[str, Any] = {}
-        self._columns: dict[object, Fetch] = {}
+        self._places: dict[object, int] = {}
+        self._columns: list[Fetch] = []
 
-    def value_of(self, name: str) -> int:
-        """Where the value of a declaration will stand."""
-        self._values[name] = self._vocabulary.declarations[name].default
-        return list(self._values).index(name)
+    def column_of(self, one: Input, bindings: Sequence[Items]) -> int:
+        """Where the column of an input will stand, with its values for these bindings."""
+        items = tuple([tuple([binding[place] for place in one.places]) for binding in bindings])
+        key = (one.name or one, items)
+        if key not in self._places:
+            self._places[key] = len(self._columns)
+            if one.name is None:
+                self._columns.append(self._summed(one, items))
+            else:
+                self._columns.append(self._declared(one.name, items))
+        return self._places[key]
 
-    def column_of(self, name: str, items: Sequence[Items]) -> int:
-        """Where the column of a declaration will stand, with its values for these objects."""
-        key = (name, tuple(items))
-        if key not in self._columns:
-            self._columns[key] = self._declared(name, items)
-        return list(self._columns).index(key)
-
-    def column_of_sum(
-        self, read: NumberRead, variables: Sequence[str], items: Sequence[Items]
-    ) -> int:
-        """Where the column of a count or a sum will stand, with these objects for the variables."""
-        key = (read, tuple(variables), tuple(items))
-        if key not in self._columns:
-            self._columns[key] = self._summed(read, variables, items)
-        return list(self._columns).index(key)
-
-    def fetched(self, state: Mapping[str, Any]) -> tuple[list[Any], list[Sequence[Any]]]:
-        """The values and the columns of a state. Raises LookupError where a sum lacks a value."""
-        get = state.get
-        return (
-            [get(name, default) for name, default in self._values.items()],
-            [fetch(state) for fetch in self._columns.values()],
-        )
+    def fetched(self, state: Mapping[str, Any]) -> list[Sequence[Any]]:
+        """The columns of a state. Raises LookupError where a sum lacks a value."""
+        return [fetch(state) for fetch in self._columns]
 
     def _declared(self, name: str, items: Sequence[Items]) -> Fetch:
         declaration = self._vocabulary.declarations[name]
@@ -77,13 +63,15 @@ class OneStateColumns:
 
         return fetch
 
-    def _summed(self, read: NumberRead, variables: Sequence[str], items: Sequence[Items]) -> Fetch:
-        bound = [dict(zip(variables, one, strict=True)) for one in items]
+    def _summed(self, one: Input, items: Sequence[Items]) -> Fetch:
+        assert one.number is not None
+        terms = one.number.terms
+        bound = [dict(zip(one.variables, each, strict=True)) for each in items]
 
         def fetch(state: Mapping[str, Any]) -> Sequence[Any]:
             moment = Moment(state, self._objects, self._vocabulary)
-            found = [total(read.terms, one, moment) for one in bound]
-            if any(isinstance(one, Unknown) for one in found):
+            found = [total(terms, each, moment) for each in bound]
+            if any(isinstance(each, Unknown) for each in found):
                 raise LookupError
             return found
 

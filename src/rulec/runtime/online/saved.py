@@ -15,9 +15,10 @@ from rulec.automata.compiled_file import read_to_data
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.diagnostics.json_words import json_words
 from rulec.runtime.checking import check_objects
-from rulec.runtime.online.prefix import Prefix
-from rulec.runtime.online.scene import Ready, Scene
-from rulec.runtime.online.standing import Edges, Standing, beginning, standing_at
+from rulec.runtime.online.prefix import Edge, Prefix
+from rulec.runtime.online.scene import Scene
+from rulec.runtime.online.standing import Standing, beginning, standing_at
+from rulec.runtime.online.team import Ready, Teams
 from rulec.runtime.verdict import Violation
 
 FORMAT = "rulec monitor"
@@ -78,7 +79,7 @@ def to_data(
                 "rule": crowd.ready.rule.name,
                 "bindings": [
                     {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
-                    for items, edge in zip(crowd.bindings, now.edges[crowd.place], strict=True)
+                    for items, edge in zip(crowd.bindings, crowd.edges(now.nodes), strict=True)
                 ],
             }
             for crowd in now.scene.crowds
@@ -117,7 +118,7 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: Place | None) -> Fract
 
 
 def from_data(
-    data: Any, rulebook: CompiledRulebook, ready: Sequence[Ready], place: Place | None
+    data: Any, rulebook: CompiledRulebook, teams: Teams, place: Place | None
 ) -> tuple[Standing, list[Violation]]:
     """Where a monitor with these rules stood, and what was violated for good by then.
 
@@ -127,11 +128,11 @@ def from_data(
     saved, _ = _checked(data, rulebook, place)
     try:
         check_objects(saved.objects, rulebook.vocabulary)
-        scene = Scene(rulebook, ready, saved.objects)
+        scene = Scene(rulebook, teams, saved.objects)
         if saved.states == 0 and not saved.objects and not saved.violations:
             return beginning(scene), []
         edges = _edges(saved, scene)
-        violations = [_violation(one, saved.states, ready) for one in saved.violations]
+        violations = [_violation(one, saved.states, teams.rules) for one in saved.violations]
     except (LookupError, ValueError, RulecError):
         raise _refused("this saved monitor is damaged", place) from None
     lost = {one.rule for one in violations}
@@ -168,15 +169,16 @@ def _checked(
     return saved, step_s
 
 
-def _edges(saved: _Saved, scene: Scene) -> Edges:
+def _edges(saved: _Saved, scene: Scene) -> dict[str, list[Edge]]:
     """Raises LookupError or ValueError unless each binding stands somewhere, and no other does."""
-    edges: Edges = []
+    edges: dict[str, list[Edge]] = {}
     for crowd, rule in zip(scene.crowds, saved.rules, strict=True):
         known = {one.objects: one for one in rule.bindings}
         if rule.rule != crowd.ready.rule.name or len(rule.bindings) != len(crowd.bindings):
             raise ValueError
         stood = [known[items] for items in crowd.bindings]
-        edges += [crowd.ready.links.edges[one.state, one.verdict] for one in stood]
+        links = crowd.ready.links.edges
+        edges[rule.rule] = [links[one.state, one.verdict] for one in stood]
     return edges
 
 

@@ -1,0 +1,78 @@
+"""What rules read of a state, each thing once, and what it adds to the number of a letter."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import repeat
+from typing import Any, TypeAlias
+
+from rulec.automata.compiled import CompiledRule
+from rulec.automata.machine import NumberRead, Read
+from rulec.runtime.numbers import EXACT_IN_FLOATS, Scale, scale
+from rulec.vocabulary import Enumeration, Vocabulary
+
+Weigh: TypeAlias = Callable[[Any], int]
+"""From the digit of an input its weight in the number of a letter; LookupError if there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """Something that is read about variables, given by their places among the rule's variables.
+
+    ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
+    are. A number's digit is how many thresholds it passes; that of anything else is its value.
+    """
+
+    name: str | None
+    places: tuple[int, ...]
+    number: NumberRead | None = None
+    variables: tuple[str, ...] = ()
+
+    @property
+    def digits(self) -> Callable[[Sequence[Any]], Iterable[Any]] | None:
+        """From values that have passed ``check_state`` their digits; None if these are the same.
+
+        Raises a TypeError where a value is missing.
+        """
+        if self.number is None:
+            return None
+        if self.name is None:
+            return partial(map, self.number.digit)
+        return partial(_digits, scale(self.number))
+
+
+def _digits(about: Scale, values: Sequence[Any]) -> Iterable[int]:
+    if min(values) >= -EXACT_IN_FLOATS and max(values) <= EXACT_IN_FLOATS:
+        return map(bisect_right, repeat(about.floors), values)
+    return map(about.digit, values)
+
+
+def inputs_of(rule: CompiledRule, vocabulary: Vocabulary) -> list[tuple[Input, Weigh]]:
+    """What a rule reads, and what each digit weighs for it."""
+    places = {variable.name: place for place, variable in enumerate(rule.variables)}
+    found: list[tuple[Input, Weigh]] = []
+    stride = 1
+    for read in rule.machine.reads:
+        if isinstance(read, Read):
+            about = tuple([places[variable] for variable in read.variables])
+            declaration = vocabulary.declarations[read.name]
+            values: Sequence[bool | str] = (
+                declaration.values if isinstance(declaration, Enumeration) else (False, True)
+            )
+            weights = {value: stride * read.digit(value) for value in values}
+            found.append((Input(read.name, about), weights.__getitem__))
+        else:
+            about_it = scale(read)
+            if about_it.quantity is None:
+                names = about_it.variables
+                input_ = Input(None, tuple([places[one] for one in names]), read, names)
+            else:
+                names = about_it.quantity.arguments
+                about = tuple([places[one] for one in names])
+                input_ = Input(about_it.quantity.name, about, read)
+            found.append((input_, stride.__mul__))
+        stride *= read.size
+    return found

@@ -1,0 +1,28 @@
+"""States, each with the objects that are there, as one trace."""
+
+from rulec.trace import Trace
+
+
+def as_trace(journey):
+    """The trace in which each stay of an object has a name of its own, such as ``a 2``."""
+    objects, present, renamed, stays = {}, {}, [], {}
+    before = {}
+    for number, (state, there) in enumerate(journey):
+        names = {}
+        for name, kind in there.items():
+            if name not in before:
+                stays[name] = stays.get(name, -1) + 1
+            names[name] = f"{name} {stays[name]}"
+            objects[names[name]] = kind
+            first, _ = present.get(names[name], (number, number))
+            present[names[name]] = (first, number)
+        before = there
+        renamed.append(
+            {
+                key: {names.get(name, name): inner for name, inner in value.items()}
+                if isinstance(value, dict)
+                else value
+                for key, value in state.items()
+            }
+        )
+    return Trace("t", 1.0, objects, tuple(renamed), present)
