@@ -1,20 +1,19 @@
 """How long it takes to count, to search and to rank without enumerating.
 
-    .venv/bin/python tests/benchmarks/graph.py [ROUNDS]
-
-Processor time, the median of so many rounds; what takes long is done once. First scenario S2 at
-0.5 s with rules R1 to R3, compared with judging its 75,441 maneuvers one by one; then a hundred
-transitions; then fifty vehicles on six lanes with every rule of a national rulebook, and with rules
-that no maneuver can satisfy.
+First scenario S2 at 0.5 s with rules R1 to R3, compared with judging its 75,441 maneuvers one by
+one; then a hundred transitions; then fifty vehicles on six lanes with every rule of a national
+rulebook, and with rules that no maneuver can satisfy. What takes long is done once.
 """
 
 from __future__ import annotations
 
-import statistics
-import sys
-import time
+from collections.abc import Iterator
 from fractions import Fraction
 from itertools import islice
+
+from figure import Result
+from program import run
+from timing import Timed, in_turns, once, processor_time
 
 import rulec
 from rulec.automata.compiled import CompiledRulebook
@@ -37,34 +36,70 @@ soft rule ahead (v: vehicle) in progress weight 0.5 { require eventually in_fron
 """
 
 
-def main(rounds: int) -> None:
-    """Print the figures of so many rounds."""
+def measure(rounds: int) -> Iterator[Result]:
+    """From small to large."""
     rules = rulec.compile_rulebook("esterle2019")
-    small(rules, rounds)
-    print("a hundred transitions")
-    found = judged(rulec.navigation_graph("s2", step_s=0.5, horizon_s=50), rules)
-    shown("  effects on machines", lambda: effects(found.paths, found.hard.instances), rounds)
-    shown("  both counts", lambda: counts(found), rounds)
+    yield small(rules, rounds)
+    yield hundred(rules, rounds)
     for name in ("de", "gb", "vienna"):
-        crowd(name, rulec.compile_rulebook(name, step_s=Fraction(1, 4)))
-    crowd("rules that cannot be kept", rulec.compile_rulebook(parse_rulebook(CROWDED)))
+        yield crowd(name, rulec.compile_rulebook(name, step_s=Fraction(1, 4)))
+    yield crowd("rules that cannot be kept", rulec.compile_rulebook(parse_rulebook(CROWDED)))
 
 
-def small(rules: CompiledRulebook, rounds: int) -> None:
+def small(rules: CompiledRulebook, rounds: int) -> Result:
     """Scenario S2, counted and enumerated."""
     found = judged(rulec.navigation_graph("s2", step_s=0.5), rules)
-    print(f"S2 at 0.5 s: {found.traces:,} maneuvers, {found.satisfying:,} satisfying")
     bound = instances(found.paths, rules)
-    shown("  cells read as letters", lambda: instances(found.paths, rules), rounds)
-    shown("  effects on machines", lambda: effects(found.paths, bound), rounds)
-    shown("  both counts", lambda: counts(found), rounds)
-    shown("  the 100 cheapest", lambda: list(islice(cheapest(found.product), 100)), rounds)
-    shown("  which rule prunes what", found.prunings, rounds)
-    shown("  classes", found.classes, rounds)
-    shown(
-        "  every maneuver judged by itself",
-        lambda: sum(not violations(bound, nodes) for nodes in paths(found.paths)),
-        1,
+    one_by_one = once(
+        in_ms(lambda: sum(not violations(bound, nodes) for nodes in paths(found.paths)))
+    )
+    tasks = {
+        "both counts": lambda: counts(found),
+        "the 100 cheapest satisfying": lambda: list(islice(cheapest(found.product), 100)),
+        "before: cells read as letters": lambda: instances(found.paths, rules),
+        "before: effects on machines": lambda: effects(found.paths, bound),
+        "which rule prunes what": found.prunings,
+        "classes": found.classes,
+    }
+    wanted = {"both counts": 0.15, "the 100 cheapest satisfying": 2}
+    taken = in_turns({name: in_ms(work) for name, work in tasks.items()}, rounds)
+    name = "both counts"
+    against = taken[name].against(one_by_one, "one by one", name, "ms", wanted.pop(name))
+    return Result(
+        "Counting without enumerating",
+        f"S2 at 0.5 s with esterle2019: {found.traces:,} maneuvers, {found.satisfying:,} "
+        "satisfying",
+        [
+            against,
+            *(
+                one.figure(other, "ms", wanted.get(other))
+                for other, one in taken.items()
+                if other != name
+            ),
+            one_by_one.figure("every maneuver judged one by one, once", "ms"),
+        ],
+    )
+
+
+def hundred(rules: CompiledRulebook, rounds: int) -> Result:
+    """The same over a hundred transitions."""
+    found = judged(rulec.navigation_graph("s2", step_s=0.5, horizon_s=50), rules)
+    taken = in_turns(
+        {
+            "both counts": in_ms(lambda: counts(found)),
+            "before: effects on machines": in_ms(
+                lambda: effects(found.paths, found.hard.instances)
+            ),
+        },
+        rounds,
+    )
+    return Result(
+        "A hundred transitions",
+        f"S2 for 50 s at 0.5 s with esterle2019: a count of {len(str(found.traces))} digits",
+        [
+            one.figure(name, "ms", 5 if name == "both counts" else None)
+            for name, one in taken.items()
+        ],
     )
 
 
@@ -73,21 +108,35 @@ def counts(found: Maneuvers) -> tuple[int, int]:
     return count_paths(found.paths), explore(found.hard).accepted
 
 
-def crowd(name: str, rules: CompiledRulebook) -> None:
+def crowd(name: str, rules: CompiledRulebook) -> Result:
     """Everything that can be asked about fifty vehicles."""
     graph = rulec.navigation_graph(fifty_vehicles(), partition=partition_for(rules, None))
-    print(f"{name}: {len(rules.rules)} rules, 50 vehicles, {graph.nodes:,} nodes")
-    begin = time.process_time()
-    found = judged(graph, rules)
-    print(f"  judged {(time.process_time() - begin) * 1e3:31,.1f} ms", end=": ")
-    print(f"{found.satisfying:,} of {found.traces:,} satisfying")
+    kept: list[Maneuvers] = []
+    judging = once(in_ms(lambda: kept.append(judged(graph, rules))))
+    (found,) = kept
     # What soft rules need besides is worked out when it is first asked for.
-    shown("  soft rules, too", lambda: found._every, 1)
-    shown("  the 100 cheapest", lambda: found.cheapest(100), 1)
-    shown("  the best", found.best, 1)
-    shown("  the 100 best", lambda: found.ranked(100), 1)
-    shown("  which rule prunes what", found.prunings, 1)
-    shown("  classes", found.classes, 1)
+    tasks = {
+        "soft rules, too": lambda: found._every,
+        "the 100 cheapest": lambda: found.cheapest(100),
+        "the best": found.best,
+        "the 100 best": lambda: found.ranked(100),
+        "which rule prunes what": found.prunings,
+        "classes": found.classes,
+    }
+    return Result(
+        f"Fifty vehicles: {name}",
+        f"six lanes, 4 s at 0.25 s, {len(rules.rules)} rules, {graph.nodes:,} nodes; "
+        f"{found.satisfying:,} of {found.traces:,} maneuvers satisfy; measured once",
+        [
+            judging.figure("judged and counted", "ms"),
+            *(once(in_ms(work)).figure(task, "ms") for task, work in tasks.items()),
+        ],
+    )
+
+
+def in_ms(work) -> Timed:
+    """Milliseconds of processor time."""
+    return processor_time(work, 1e6)
 
 
 def fifty_vehicles() -> Scenario:
@@ -108,15 +157,5 @@ def fifty_vehicles() -> Scenario:
     return Scenario("crowd", road, Ego(30.0, 7.0), tuple(vehicles), horizon_s=4.0, step_s=0.25)
 
 
-def shown(name: str, work, rounds: int) -> None:
-    """Print how long a piece of work takes."""
-    taken = []
-    for _ in range(rounds):
-        begin = time.process_time()
-        work()
-        taken.append(time.process_time() - begin)
-    print(f"{name:36}{statistics.median(taken) * 1e3:12,.3f} ms", flush=True)
-
-
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 30)
+    run(measure, rounds=30)

@@ -1,26 +1,20 @@
 """How long a state of a running trace takes a monitor, encoding and checking it included.
 
-    .venv/bin/python tests/benchmarks/online.py [ROUNDS] [PEER]
-
-A line for each rulebook and number of vehicles: nanoseconds of processor time for a state, and for
-a state and rule instance (a rule with objects bound), the median and the least of so many rounds.
 States differ from each other, in that every other vehicle has moved on, and were made before.
 Judging the growing trace anew at each state by `verify` is measured beside, on short traces.
-
-PEER is the Python of an environment that has rtamt; both then judge one rule on two signals.
 """
 
 from __future__ import annotations
 
 import random
-import statistics
-import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from typing import Any
+
+from figure import Figure, Result
+from peer import peers
+from program import run
+from timing import in_turns, processor_time
 
 import rulec
 from rulec.rulebook.loader import parse_rulebook
@@ -28,6 +22,8 @@ from rulec.runtime.monitor import Monitor
 
 N_STATES = 300
 N_PREFIXES = 30
+VEHICLES = (1, 4, 16, 52)
+PROGRAMS = {"rtamt": "rtamt_online", "reelay": "reelay_online"}
 PLACES = {
     "esterle2019": [{"position": place} for place in "bbblllff"],
     "vienna": [
@@ -42,36 +38,71 @@ PLACES = {
     ],
 }
 RESPONSE = "always (p implies once[<= 3 steps] q)"
+WANTED_NS = 150
 
-Run = Callable[[], object]
 
-
-def main(rounds: int, peer: str | None) -> None:
-    """Print the figures of so many rounds."""
-    print(f"{'':34}{'ns a state':>20}{'ns an instance':>20}")
+def measure(rounds: int) -> Iterator[Result]:
+    """Rulebooks and vehicles, then other libraries."""
     for name, places in PLACES.items():
-        rules = rulec.compile_rulebook(name)
-        for n_vehicles in (1, 4, 16, 52):
-            objects = {f"v{number}": "vehicle" for number in range(n_vehicles)}
-            states = list(drive(places, list(objects), N_STATES))
-            monitor = Monitor(rules)
-            n_instances = sum(map(len, bindings(monitor, states[0], objects)))
-            label = f"{name}, {n_vehicles} vehicles, {n_instances} instances"
-            shown(
-                label,
-                times(partial(taken, monitor, states, objects), N_STATES, rounds),
-                n_instances,
+        yield driven(name, places, rounds)
+    yield prefixes(rounds)
+    yield compared(rounds)
+
+
+def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
+    """More and more vehicles."""
+    rules = rulec.compile_rulebook(name)
+    tasks, n_instances = {}, {}
+    for n_vehicles in VEHICLES:
+        objects = {f"v{number}": "vehicle" for number in range(n_vehicles)}
+        states = list(drive(places, list(objects), N_STATES))
+        monitor = Monitor(rules)
+        label = f"{n_vehicles} vehicle{'s' if n_vehicles > 1 else ''}"
+        n_instances[label] = sum(map(len, bindings(monitor, states[0], objects)))
+        work = partial(taken_in, monitor, states, objects)
+        tasks[label] = processor_time(work, N_STATES * n_instances[label])
+    return Result(
+        f"Online: {name}",
+        f"{N_STATES} states of a drive, {len(rules.rules)} rules; per state and rule instance, "
+        "which is a rule with objects bound",
+        [
+            one.figure(
+                f"{label}, {n_instances[label]} instances "
+                f"({one.median * n_instances[label] / 1e3:.1f} µs a state)",
+                "ns",
+                WANTED_NS,
             )
+            for label, one in in_turns(tasks, rounds).items()
+        ],
+    )
+
+
+def prefixes(rounds: int) -> Result:
+    """A monitor, and the growing trace judged anew."""
     rules = rulec.compile_rulebook("esterle2019")
     objects = {"v0": "vehicle"}
     states = list(drive(PLACES["esterle2019"], ["v0"], N_PREFIXES))
-    prefixes = [
+    traces = [
         rulec.Trace("t", 1.0, objects, tuple(states[:number]))
         for number in range(1, N_PREFIXES + 1)
     ]
-    anew = times(lambda: [rulec.verify(one, rules) for one in prefixes], N_PREFIXES, rounds)
-    shown(f"verify of {N_PREFIXES} prefixes, 1 vehicle", anew, 2)
-    compared(rounds, peer)
+    monitor = Monitor(rules)
+    again = "verify"
+    taken = in_turns(
+        {
+            "a monitor": processor_time(partial(taken_in, monitor, states, objects), N_PREFIXES),
+            again: processor_time(lambda: [rulec.verify(x, rules) for x in traces], N_PREFIXES),
+        },
+        rounds,
+    )
+    return Result(
+        "Online, or anew",
+        f"{N_PREFIXES} states, one vehicle, esterle2019; per state",
+        [
+            taken["a monitor"].against(taken[again], again, "a monitor", "ns"),
+            taken[again].figure("verify of the trace so far", "ns"),
+        ],
+    )
 
 
 def drive(places: list[dict[str, Any]], names: list[str], n_states: int) -> Iterator[Any]:
@@ -93,45 +124,41 @@ def bindings(monitor: Monitor, state: Any, objects: Any) -> Iterator[list[Any]]:
         yield one["bindings"]
 
 
-def taken(monitor: Monitor, states: list[Any], objects: Any) -> None:
+def taken_in(monitor: Monitor, states: list[Any], objects: Any) -> None:
     """All states, one after the other."""
     step = monitor.step
     for state in states:
         step(state, objects)
 
 
-def times(run: Run, work: int, rounds: int) -> list[float]:
-    """Nanoseconds of processor time for a unit of work, in each round."""
-    run()
-    found = []
-    for _ in range(rounds):
-        start = time.process_time_ns()
-        run()
-        found.append((time.process_time_ns() - start) / work)
-    return found
-
-
-def shown(label: str, found: list[float], n_instances: int) -> None:
-    """A line: median and least."""
-    middle, least = statistics.median(found), min(found)
-    share = f"{middle / n_instances:.0f} ({least / n_instances:.0f})"
-    print(f"{label:34}{f'{middle:.0f} ({least:.0f})':>20}{share:>20}")
-
-
-def compared(rounds: int, peer: str | None) -> None:
-    """One rule on the world alone, by us and by another program."""
+def compared(rounds: int) -> Result:
+    """One rule on the world alone, by rulec and by other libraries."""
     text = f"rulebook r signal p, q default false hard rule r {{ require {RESPONSE} }}"
     monitor = Monitor(rulec.compile_rulebook(parse_rulebook(text)))
     chance = random.Random(5)
-    states = [{"p": chance.random() < 0.3, "q": True} for _ in range(N_STATES)]
-    shown("one rule on two signals", times(lambda: taken(monitor, states, {}), N_STATES, rounds), 1)
-    if peer is not None:
-        program = Path(__file__).with_name("rtamt_online.py")
-        answer = subprocess.run(
-            [peer, program, str(rounds), str(N_STATES)], capture_output=True, text=True, check=True
-        )
-        shown("the same by rtamt", [float(one) for one in answer.stdout.split()], 1)
+    # Whenever p is true, q has been within three steps: so the rule stays undecided.
+    states = [{"p": chance.random() < 0.3, "q": n % 3 == 0} for n in range(N_STATES)]
+    ours = "rulec"
+    with peers(states, PROGRAMS) as (there, missing):
+        answers = {name: peer.round()[1] for name, peer in there.items()}
+        taken_in(monitor, states, {})
+        answers[ours] = not monitor.violations
+        if not all(answers.values()):
+            raise RuntimeError(f"not all say that the rule holds: {answers}")
+        tasks = {ours: processor_time(partial(taken_in, monitor, states, {}), N_STATES)}
+        tasks |= {name: peer.timed(N_STATES) for name, peer in there.items()}
+        taken = in_turns(tasks, rounds)
+    mine = taken.pop(ours)
+    figures: list[Figure] = [
+        mine.against(one, name, "a monitor", "ns") for name, one in taken.items()
+    ] or [mine.figure("a monitor", "ns")]
+    return Result(
+        "Online: other libraries",
+        f"`{RESPONSE}` on {N_STATES} states of two signals; per state",
+        figures + [one.figure(name, "ns") for name, one in taken.items()],
+        missing,
+    )
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 15, sys.argv[2] if len(sys.argv) > 2 else None)
+    run(measure, rounds=15)

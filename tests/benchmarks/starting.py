@@ -1,9 +1,7 @@
-"""How long whole processes take: `rulec check` on the largest rulebook, and the least there is.
+"""How long whole processes take, from their start to their end: the least there is, and commands.
 
-    .venv/bin/python tests/benchmarks/starting.py [RUNS]
-
-Every process is started anew, in turns, so that a busy moment of the machine meets all of them; a
-line each with the median and the fastest, in milliseconds.
+Processes start in turns, by the launcher if its environment runs this. Processor time counts,
+theirs and that of the processes that they start; how long one waits is said beside it.
 """
 
 from __future__ import annotations
@@ -14,36 +12,62 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
+
+from figure import Result, number
+from program import run
+from timing import children_ms, in_turns
 
 from rulec.rulebook.finding import available_rulebooks, find_rulebook
 from rulec.rulebook.loader import diagnose
 
-CHECK = [sys.executable, "-m", "rulec", "check"]
+ROOT = Path(__file__).resolve().parents[2]
+LAUNCHED = Path(sys.prefix) == ROOT / ".venv"
+RULEC = [str(ROOT / "rulec")] if LAUNCHED else [sys.executable, "-m", "rulec"]
+BARE = "python -c pass"
+MANEUVERS = "maneuvers s2 --step 0.5 --rulebook esterle2019"
 
 
-def main(runs: int) -> None:
-    """Print the times of so many runs."""
+def measure(rounds: int) -> Iterator[Result]:
+    """Bare Python, then commands."""
     name, files, size = largest()
-    print(f"largest rulebook: {name}, {size:,} bytes in {files} files with all it builds upon")
-    commands = {
-        "python -c pass": [sys.executable, "-c", "pass"],
-        "rulec --version": [sys.executable, "-m", "rulec", "--version"],
-        f"rulec check {name}": [*CHECK, name],
-        f"rulec check {name} --no-cache": [*CHECK, name, "--no-cache"],
+    wanted = {
+        "--version": 60,
+        MANEUVERS: 450,
+        f"check {name}": 150,
+        f"check {name} --no-cache": None,
     }
+    commands = {BARE: [sys.executable, "-c", "pass"]}
+    commands |= {command: [*RULEC, *command.split()] for command in wanted}
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "RULEC_CACHE_DIR": cache}
-        times: dict[str, list[float]] = {label: [] for label in commands}
-        for turn in range(runs + 1):
-            for label, command in commands.items():
-                taken = timed(command, environment)
-                if turn:  # the first run fills the cache, and those of Python and the disk
-                    times[label].append(taken)
-    width = max(map(len, times))
-    for label, taken_all in times.items():
-        middle, least = statistics.median(taken_all), min(taken_all)
-        print(f"{label:{width}}  median {middle:6.1f} ms  fastest {least:6.1f} ms")
+        waited: dict[str, list[float]] = {label: [] for label in commands}
+        taken = in_turns(
+            {
+                label: lambda label=label: process(commands[label], environment, waited[label])
+                for label in commands
+            },
+            rounds,
+        )
+    figures = [
+        taken[command].figure(f"rulec {command}", "ms", most) for command, most in wanted.items()
+    ]
+    yield Result(
+        "Whole processes",
+        "each started anew, after a first run that has filled the cache; the largest rulebook is "
+        f"{name}, {size:,} bytes in {files} files with all it builds upon",
+        [*figures, taken[BARE].figure(BARE, "ms")],
+        [
+            "From start to end one waits, in the same rounds, "
+            + ", ".join(
+                f"{number(statistics.median(times[1:]))} ms for "
+                + (f"`{label}`" if label == BARE else f"`rulec {label}`")
+                for label, times in waited.items()
+            )
+            + "."
+        ],
+    )
 
 
 def largest() -> tuple[str, int, int]:
@@ -58,12 +82,13 @@ def largest() -> tuple[str, int, int]:
     return name, sizes[name][1], sizes[name][0]
 
 
-def timed(command: list[str], environment: dict[str, str]) -> float:
-    """Milliseconds of a process, from its start to its end."""
-    start = time.perf_counter()
+def process(command: list[str], environment: dict[str, str], waited: list[float]) -> float:
+    """Milliseconds of processor time of a process; how long it took goes into ``waited``."""
+    start, before = time.perf_counter(), children_ms()
     subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
-    return (time.perf_counter() - start) * 1000
+    waited.append((time.perf_counter() - start) * 1e3)
+    return children_ms() - before
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    run(measure, rounds=15)

@@ -134,7 +134,7 @@ def test_csv(capsys):
 def test_a_page(capsys):
     command = ["diff", "./new.rules", "./old.rules", "--output-format", "html", "-o", "page.html"]
     assert main(command) == 1
-    assert capsys.readouterr().err == "wrote page.html\n"
+    assert capsys.readouterr().out == "wrote page.html\n"
     seen = []
 
     class Headings(HTMLParser):

@@ -19,13 +19,30 @@ def test_text(capsys):
     status, out, err = answer(capsys, "s2", "--rulebook", "esterle2019")
     assert (status, err) == (0, "")
     lines = out.splitlines()
-    assert lines[:4] == [
+    assert lines[:5] == [
         "scenario    s2: 4 s in steps of 1 s, partition paper, adjacency touch",
         "graph       35 nodes, 124 edges",
         "maneuvers   139",
         "satisfying  83 by esterle2019 (R1, R2, R3)",
+        "by default  CONGESTED: the scenario does not say",
     ]
-    assert len(lines) == 5
+    assert len(lines) == 6
+
+
+def test_what_the_scenario_does_not_say_is_named(tmp_path, capsys):
+    signals = "signal p, q, unread default false\nquantity speed in m/s default 3\n"
+    rules = (
+        "hard rule a { require always (p or not q or speed > 2 m/s) }\n"
+        "soft rule b { require always surface_is_usual }\n"
+        "define surface_is_usual = not R_pc\n"
+    )
+    book = tmp_path / "book.rules"
+    book.write_text(f"rulebook book\nuse paper\n{signals}{rules}", encoding="utf-8")
+    _, out, _ = answer(capsys, "s2", "--rulebook", str(book), "--json")
+    # Nobody asks for `unread` or CONGESTED, and the scenario has surfaces.
+    assert json.loads(out)["by_default"] == ["p", "q", "speed"]
+    _, out, _ = answer(capsys, "s2", "--rulebook", str(book))
+    assert "by default  p, q, speed: the scenario does not say" in out.splitlines()
 
 
 def test_the_list_is_sorted_and_complete(capsys):
@@ -320,6 +337,20 @@ def test_where_nothing_satisfies_the_least_violating_are_shown(hurry, capsys):
         }
     ]
     assert best["cells"][1]["signature"]["o1"] == "l"
+
+
+def test_a_soft_rule_that_cannot_be_judged_takes_no_answer_away(tmp_path, capsys):
+    source = tmp_path / "blind.rules"
+    source.write_text(HURRY + "signal foggy\nsoft rule lights { require always not foggy }\n")
+    status, out, err = answer(capsys, "s2", "--horizon", "2", "-r", str(source), "--json")
+    assert status == 1
+    assert json.loads(out)["satisfying"] == 0
+    assert "least_violating" not in json.loads(out)
+    assert "does not say the `foggy`, which rule `lights` needs" in err
+    # Asked for, they are needed.
+    status, out, err = answer(capsys, "s2", "-r", str(source), "--rank", "1")
+    assert (status, out) == (2, "")
+    assert "R0504" in err
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from hypothesis import example, given
 from past_in_spot import in_spot, spot_automaton
 from words import VOCABULARY, formulas, letters, words
 
-from rulec.automata.compiled import CompiledRule
+from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.letters import count_letters, reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
@@ -21,7 +21,9 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.semantics import holds
+from rulec.rulebook.model import Variable
 from rulec.runtime.letters import Columns
+from rulec.runtime.monitor import Monitor
 from rulec.runtime.verify import run
 
 
@@ -52,6 +54,15 @@ def by_table(formula, word):
     return run(machine, classes(machine, word))[0]
 
 
+def by_monitor(formula, word):
+    """State by state; what it says behind the last one is what is so if the word ends there."""
+    variables = (Variable("x", "thing"),)
+    rule = CompiledRule("rule", "hard", variables, "", "", Constant(True), machine_of(formula), "")
+    monitor = Monitor(CompiledRulebook("book", VOCABULARY, (rule,), "", "", "", (), "", ""))
+    found = [monitor.step(state, {"car1": "car"}) for state in word]
+    return found[-1].verdict in ("satisfied", "holds so far")
+
+
 def by_spot(formula, word):
     return spot_membership(spot_automaton(formula), formula, letters(word))
 
@@ -63,7 +74,7 @@ def by_hoa(formula, word):
     return spot_membership(spot.automaton(text), formula, letters(word))
 
 
-ENGINES = {"table": by_table, "Spot": by_spot, "HOA file": by_hoa}
+ENGINES = {"table": by_table, "monitor": by_monitor, "Spot": by_spot, "HOA file": by_hoa}
 
 P, NEAR, FAR = Atom("p"), Atom("place", ("x",), "near"), Atom("place", ("x",), "far")
 GFP = Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.EVENTUALLY, P))

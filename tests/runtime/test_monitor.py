@@ -185,6 +185,23 @@ def test_a_state_that_cannot_be_is_refused(state):
     assert judge.so_far.state == 0
 
 
+@pytest.mark.parametrize(
+    ("fact", "verdict"),
+    [("", "holds so far"), ("fact not (standing(c) and turning(c))", "satisfied")],
+)
+def test_only_what_can_be_may_follow(fact, verdict):
+    judge = Monitor(
+        compile_rulebook(
+            parse_rulebook(
+                "rulebook facts type car signal standing(c: car), turning(c: car) default false "
+                f"{fact} hard rule either (c: car) "
+                "{ require always not (standing(c) and turning(c)) }"
+            )
+        )
+    )
+    assert judge.step({"turning": {"a": True}}, CAR).verdict == verdict
+
+
 TIMED = parse_rulebook(
     "rulebook timed signal p default false "
     "hard rule soon { require always (p implies eventually[<= 1 s] not p) }"
@@ -302,3 +319,14 @@ def test_whose_rules_it_was_saved_with_is_said():
         Monitor.restore(other, saved())
     with pytest.raises(RulecError, match="rulebook `test`, not of `esterle2019`"):
         Monitor.restore(rulec.compile_rulebook("esterle2019"), saved())
+
+
+def test_nothing_is_kept_of_the_past_but_where_machines_stand():
+    """A snapshot is all that a monitor knows; in time it counts states and no more."""
+    judge, sizes = monitor(NEVER_FAR, COMES_NEAR, ANSWERED), []
+    cycle = [{"a": "near"}, {"a": "gone", "b": "near"}, {"b": "near"}]
+    for _ in range(50):
+        verdicts(judge, *cycle)
+        sizes.append({**judge.snapshot(), "states": 0})
+    assert sizes[0] == sizes[-1]
+    assert judge.so_far.state == 149

@@ -125,3 +125,23 @@ def test_counts_beyond_any_machine_number():
     assert count_paths(graph) == 2 ** (n - 1)
     # Of these only the one without any p has nothing that would have to be answered.
     assert explore(effects(graph, instances(graph, RULES))).accepted == 1
+
+
+def test_a_layer_may_be_empty():
+    """Where the road has ended there is nothing to be, and no path."""
+    state = {"place": {"car1": "near"}, "p": True, "q": True}
+    graph = TraceGraph(
+        1.0,
+        {"car1": "car"},
+        {},
+        states=((state,), ()),
+        successors=(((),),),
+        weights=(((),),),
+        margins=(((),),),
+        cost_unit=Fraction(1),
+        start=0,
+        goals=(),
+    )
+    explored = explore(effects(graph, instances(graph, RULES)))
+    assert explored.accepted == 0
+    assert list(cheapest(explored)) == []

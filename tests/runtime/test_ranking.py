@@ -76,7 +76,7 @@ def test_the_front_is_what_nothing_is_better_than(graph, rulebook):
         )
     )
     found, ranks = searched(graph, rulebook)
-    penalties = front(found, ranks)
+    penalties = list(front(found, ranks))
     assert len(set(penalties)) == len(penalties)
     products = [with_penalty(found, ranks, one) for one in penalties]
     assert sorted(m.nodes for product in products for m in cheapest(product)) == best

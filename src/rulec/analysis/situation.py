@@ -12,6 +12,7 @@ from rulec.automata.machine import NumberRead, Read
 from rulec.logic.formula import Count, Quantity, Term
 from rulec.runtime.linear import Bounded, solve
 from rulec.runtime.numbers import exact
+from rulec.runtime.witness import bounds_of
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
@@ -90,18 +91,6 @@ def numbers_for(
     whole: frozenset[Term] = frozenset(counts)
     found = solve([*system, *natural], order, preferred, whole)
     return solve(system, order, preferred, whole) if found is None else found
-
-
-def bounds_of(read: NumberRead, digit: int) -> Iterator[Bounded]:
-    """What a digit says of the sum that is read."""
-    terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
-    if digit > 0:
-        passed = read.thresholds[digit - 1]
-        below = {term: -coefficient for term, coefficient in terms.items()}
-        yield Bounded(below, -passed.limit, strict=not passed.inclusive)
-    if digit < len(read.thresholds):
-        ahead = read.thresholds[digit]
-        yield Bounded(terms, ahead.limit, strict=ahead.inclusive)
 
 
 def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+from rulec.cli.arguments import at_option, complete_rulebooks, findings_options, only_sources
 from rulec.cli.exit_status import ExitStatus
-from rulec.report.formats import FORMATS
 
 if TYPE_CHECKING:
     from rulec.diagnostics import Diagnostic, RulecError
@@ -19,20 +18,7 @@ if TYPE_CHECKING:
 @click.argument(
     "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
 )
-@click.option(
-    "--output-format",
-    type=click.Choice(FORMATS),
-    default="full",
-    show_default=True,
-    help="Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
-)
-@click.option(
-    "--fail-on",
-    type=click.Choice(["error", "warning"]),
-    default="error",
-    show_default=True,
-    help="What makes the exit status 1.",
-)
+@findings_options
 @at_option
 def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: str) -> int:
     """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.

@@ -12,6 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
+from rulec.report.formats import FORMATS
 
 if TYPE_CHECKING:
     from rulec.scenario import Choice
@@ -169,6 +170,29 @@ def at_option(function: Decorated) -> Decorated:
     return option(function)
 
 
+def findings_options(function: Decorated) -> Decorated:
+    """``--output-format`` of findings, and ``--fail-on``: which of them make the exit status 1."""
+    for decorate in (
+        click.option(
+            "--fail-on",
+            type=click.Choice(["error", "warning"]),
+            default="error",
+            show_default=True,
+            help="What makes the exit status 1.",
+        ),
+        click.option(
+            "--output-format",
+            type=click.Choice(FORMATS),
+            default="full",
+            show_default=True,
+            help="Text with the lines in question, a line each, JSON, GitHub annotations, "
+            "SARIF 2.1.0.",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
 def json_option(function: Decorated) -> Decorated:
     """``--json``: output for machines."""
     return click.option("--json", "json_output", is_flag=True, help="Print JSON.")(function)
@@ -184,7 +208,7 @@ def traces_format_option(function: Decorated) -> Decorated:
     )(function)
 
 
-def scene_options(function: Decorated) -> Decorated:
+def _scene_options(function: Decorated) -> Decorated:
     """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
     for decorate in (
         click.option(
@@ -231,14 +255,18 @@ def scene_options(function: Decorated) -> Decorated:
 
 
 def chosen(options: dict[str, Any]) -> Choice:
-    """The choice that ``scene_options`` say, taken out of all options."""
+    """The choice that ``graph_options`` say, taken out of all options."""
     from rulec.scenario.commonroad.choice import Choice
 
     return Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
 
 
 def graph_options(function: Decorated) -> Decorated:
-    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency."""
+    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
+
+    Also what can be chosen about a recorded scene, which ``chosen`` takes out again.
+    """
+    function = _scene_options(function)
     for decorate in (
         click.option(
             "--adjacency",

@@ -6,29 +6,15 @@ import sys
 
 import click
 
-from rulec.cli.arguments import at_option, complete_sources
+from rulec.cli.arguments import at_option, complete_sources, findings_options
 from rulec.cli.exit_status import ExitStatus
-from rulec.report.formats import FORMATS
 
 
 @click.command()
 @click.argument(
     "sources", nargs=-1, required=True, metavar="FILE|NAME...", shell_complete=complete_sources
 )
-@click.option(
-    "--output-format",
-    type=click.Choice(FORMATS),
-    default="full",
-    show_default=True,
-    help="Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
-)
-@click.option(
-    "--fail-on",
-    type=click.Choice(["error", "warning"]),
-    default="error",
-    show_default=True,
-    help="What makes the exit status 1.",
-)
+@findings_options
 @click.option(
     "--no-cache",
     is_flag=True,

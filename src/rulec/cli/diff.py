@@ -86,6 +86,7 @@ def command(
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
+    from rulec.report.console import put_result
     from rulec.report.differences import render
 
     only_sources(rulebooks, "be compared")
@@ -99,7 +100,7 @@ def command(
     found = _difference(first, second, patterns, step_s, at, most)
     if witness is not None:
         _write_witnesses(found, witness)
-    _put(render(found, output_format), output)
+    put_result(render(found, output_format), output)
     if not found.is_complete:
         return ExitStatus.NOT_ANSWERED
     return ExitStatus.OK if found.is_none else ExitStatus.FOUND
@@ -132,7 +133,7 @@ def _all(
     at: str,
 ) -> int:
     from rulec.analysis.matrix import steps
-    from rulec.report.console import print_aside, progress
+    from rulec.report.console import print_aside, progress, put_result
     from rulec.report.matrix import render
     from rulec.workflow import compare_all
 
@@ -146,7 +147,7 @@ def _all(
         found = compare_all(books, patterns, step_s, tell)
     if alone:
         print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
-    _put(render(found, output_format), output)
+    put_result(render(found, output_format), output)
     if failed or not found.is_complete:
         return ExitStatus.NOT_ANSWERED
     return ExitStatus.OK if found.is_uniform else ExitStatus.FOUND
@@ -189,18 +190,6 @@ def _alone(books: list[Rulebook]) -> list[str]:
         for name, rules in named.items()
         if not any(rules & others for other, others in named.items() if other != name)
     ]
-
-
-def _put(text: str, output: str | None) -> None:
-    from rulec.files import written_whole
-    from rulec.report.console import print_aside, print_result
-
-    if output is None:
-        print_result(text)
-        return
-    with written_whole(Path(output)) as stream:
-        stream.write(f"{click.unstyle(text)}\n".encode())
-    print_aside(f"wrote {output}")
 
 
 def _write_witnesses(found: Difference, file: str) -> None:

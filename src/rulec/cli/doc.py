@@ -32,9 +32,8 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
     It has every rule with its provision, in plain English, as a formula and by its examples; what
     was changed of inherited rules and what was left out; values, definitions, words and an index.
     """
-    from rulec.files import written_whole
     from rulec.report.book_page import CONTENTS, as_markdown, title_of
-    from rulec.report.console import print_diagnostics, print_result
+    from rulec.report.console import print_diagnostics, put_result
     from rulec.report.html_page import as_html
     from rulec.settings import search_path
     from rulec.workflow import read_with_inheritance
@@ -47,9 +46,4 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
     text = as_markdown(loaded, inherited)
     if output_format == "html":
         text = as_html(text, title_of(loaded.rulebook), CONTENTS)
-    if output is None:
-        print_result(text)
-        return
-    with written_whole(Path(output)) as stream:
-        stream.write(f"{text}\n".encode())
-    print_result(f"wrote {output}")
+    put_result(text, output)

@@ -22,6 +22,7 @@ VERBS = {
     "completion": "Print the script that completes rulec's commands in a shell.",
     "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
     "doc": "Write a rulebook as a document for lawyers.",
+    "draw": "Draw scenes over time, navigation graphs and traces.",
     "explain": "Explain a code of a message.",
     "fmt": "Format rulebooks and vocabularies.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",

@@ -57,6 +57,7 @@ def command(
     rule is shown in brief, a rulebook's only one in full.
     """
     from rulec.report import rule_page
+    from rulec.report.console import put_result
 
     if output is not None and automaton_format is None and not json_output:
         automaton_format = SUFFIXES.get(Path(output).suffix)
@@ -83,7 +84,7 @@ def command(
     else:
         name = f"{book.name} {page.rule.name}"
         text = _automaton(page.automaton, automaton_format, name, width)
-    _put(text, output)
+    put_result(text, output)
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
@@ -164,15 +165,3 @@ def _width(output: str | None) -> int:
     if output is not None or not sys.stdout.isatty():
         return WIDTH
     return max(40, shutil.get_terminal_size((WIDTH, 24)).columns)
-
-
-def _put(text: str, output: str | None) -> None:
-    from rulec.files import written_whole
-    from rulec.report.console import print_result
-
-    if output is None:
-        print_result(text)
-        return
-    with written_whole(Path(output)) as stream:
-        stream.write(f"{click.unstyle(text)}\n".encode())
-    print_result(f"wrote {output}")

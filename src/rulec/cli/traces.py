@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import chosen, graph_options, scene_options, traces_format_option
+from rulec.cli.arguments import chosen, graph_options, traces_format_option
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -21,7 +21,6 @@ MOST_TRACES = 10_000_000
 
 @click.command()
 @graph_options
-@scene_options
 @click.option(
     "-o",
     "--output",

@@ -7,12 +7,14 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 import click
 
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.files import written_whole
 from rulec.report.diagnostics import render_diagnostics
 
 if TYPE_CHECKING:
@@ -33,6 +35,19 @@ def print_result(text: str) -> None:
         _bar.show(text)
     else:
         click.echo(text, color=wants_color(sys.stdout))
+
+
+def put_result(text: str, output: str | None) -> None:
+    """The whole answer: into a file, without colour, if there is one, and to standard output else.
+
+    Raises RulecError R0702.
+    """
+    if output is None:
+        print_result(text)
+        return
+    with written_whole(Path(output)) as stream:
+        stream.write(f"{click.unstyle(text)}\n".encode())
+    print_result(f"wrote {output}")
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:

@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from rulec.partition import Cell, Envelope, NavigationGraph, envelope
+from rulec.report.excerpt import visible
 from rulec.runtime.cheapest import Maneuver
 
 MOST_NAMED = 6
@@ -82,7 +83,7 @@ def _label(cell: Cell, objects: Collection[str] | None = None) -> str:
     if objects is not None:
         signature = {name: signature[name] for name in objects if name in signature}
     named = [
-        f"{relation if isinstance(relation, str) else ' '.join(relation)}({name})"
+        f"{relation if isinstance(relation, str) else ' '.join(relation)}({visible(name)})"
         for name, relation in list(signature.items())[:MOST_NAMED]
     ]
     if len(signature) > MOST_NAMED:

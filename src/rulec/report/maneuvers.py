@@ -22,12 +22,16 @@ from rulec.runtime.verdict import Violation
 MOST_VIOLATIONS = 6
 """So many of the past's are named in text; JSON has them all."""
 
+MOST_DEFAULTS = 4
+"""So many of what has its default are named in text; JSON has them all."""
+
 
 @dataclass(frozen=True, slots=True)
 class Answers:
     """What was asked for beside the counts; None is what was not.
 
-    ``best`` are the least violating maneuvers, where none satisfies every hard rule.
+    ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
+    longer list of them in ``ranked``.
     """
 
     listed: Sequence[Maneuver] | None = None
@@ -51,6 +55,7 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
         "edges": graph.edges,
         "traces": found.traces,
         "satisfying": found.satisfying,
+        "by_default": list(found.by_default),
         "seconds": round(seconds, 6),
     }
     if graph.scenario.account is not None:
@@ -87,13 +92,14 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
         f"maneuvers   {shown_count(found.traces)}",
         f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
         *_violated_before(found.violated_before or ()),
+        *_by_default(found.by_default),
     ]
     if answers.classes is not None:
         lines += variants.count_lines(found, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += ["", f"{number}. {in_a_line(maneuver)}", *cell_lines(graph, maneuver)]
-    if answers.best and answers.ranked is None:
+    if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
         lines += ranked_maneuvers.blocks(found, answers.best)
     lines += ranked_maneuvers.blocks(found, answers.ranked or ())
@@ -117,6 +123,15 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
         yield visible(f"violated    {one.rule}{about}, before, and not counted any more")
     if len(violations) > MOST_VIOLATIONS:
         yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
+
+
+def _by_default(names: Sequence[str]) -> Iterator[str]:
+    """A line for what nobody has said, so that it was taken to be as usual."""
+    if not names:
+        return
+    shown = ", ".join(names[:MOST_DEFAULTS])
+    more = f" and {len(names) - MOST_DEFAULTS:,} more" if len(names) > MOST_DEFAULTS else ""
+    yield visible(f"by default  {shown}{more}: the scenario does not say")
 
 
 def _horizon_s(graph: NavigationGraph) -> float:

@@ -11,6 +11,7 @@ from rulec.logic.printing import number_in_words
 from rulec.maneuvers import Maneuvers, Ranked
 from rulec.report import maneuver_lines
 from rulec.report.counts import shown_count
+from rulec.report.excerpt import visible
 from rulec.runtime.penalties import Rank
 from rulec.runtime.verdict import Violation
 
@@ -68,7 +69,7 @@ def violation_line(found: Maneuvers, violation: Violation) -> str:
     """Which rule, of which article, for whom, and since when."""
     rule = next(one for one in found.rules.rules if one.name == violation.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
-    objects = ", ".join(f"{name} = {value}" for name, value in violation.binding.items())
+    objects = ", ".join(f"{name} = {visible(value)}" for name, value in violation.binding.items())
     bound = f" for {objects}" if objects else ""
     return f"{rule.strength} rule {rule.name}{cite}{bound}: {when_lost(found, violation)}"
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from rulec.maneuvers import Maneuvers
+from rulec.maneuvers.recorded import assumed
 from rulec.report.excerpt import visible
 from rulec.scenario import Account
-from rulec.supply import assumed
 
 MOST_NAMED = 6
 """So many unknown names fit on a line of text; JSON has them all."""

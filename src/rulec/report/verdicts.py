@@ -85,7 +85,7 @@ def as_text(
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
     for number, violation in enumerate(shown):
-        line = _violation(violation, rules[violation.rule], rulebook.name)
+        line = in_a_line(violation, rules[violation.rule], rulebook.name)
         lines.append(f"  {visible(line)}")
         if number < len(explained):
             lines.append(explanation.as_text(explained[number]))
@@ -94,7 +94,8 @@ def as_text(
     return "\n".join(lines)
 
 
-def _violation(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
+def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
+    """Which rule is violated for whom and when; ``rulebook`` is the name of the one that judged."""
     where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
     when = (
         "not fulfilled when the trace ends"

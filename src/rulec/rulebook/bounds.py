@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Literal
 
 from rulec.logic.formula import Bound
-from rulec.rulebook import meaning_messages as say
+from rulec.rulebook import bound_messages as say
 from rulec.rulebook.numbers import Number
 from rulec.rulebook.numerals import exact_value
 from rulec.rulebook.scope import Scope

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from rulec.rulebook import meaning_messages as say
+from rulec.rulebook import provision_messages as say
 from rulec.rulebook.scope import SIDES, Anything, BoundVariable, Call, Scope
 from rulec.syntax import tree
 

@@ -18,6 +18,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.printing import term_in_words
 from rulec.rulebook import meaning_messages as say
+from rulec.rulebook import provision_messages
 from rulec.rulebook.bounds import bound_of
 from rulec.rulebook.counts import aggregate
 from rulec.rulebook.definitions import put_in
@@ -135,7 +136,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     if relation is None and name in scope.variables:
         scope.used.add(name)
         if node.arguments:
-            scope.report(say.object_as_relation(node, scope))
+            scope.report(provision_messages.object_as_relation(node, scope))
             return None
         return Object(scope.variables[name].actual)
     if isinstance(relation, Anything):
@@ -148,7 +149,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         name = relation
     kind = scope.provisions.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
-        scope.report(say.takes_no_object(node, kind, scope))
+        scope.report(provision_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
         return Constant(scope.provisions.options[name])

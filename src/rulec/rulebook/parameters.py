@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rulec.rulebook import meaning_messages as say
+from rulec.rulebook import provision_messages as say
 from rulec.rulebook.numbers import Number
 from rulec.rulebook.overlay import Value, never_in_force
 from rulec.rulebook.provisions import in_force

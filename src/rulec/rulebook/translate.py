@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
-from rulec.rulebook import meaning_messages as say
+from rulec.rulebook import exception_messages as say
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import Declared
 from rulec.rulebook.examples import example_of

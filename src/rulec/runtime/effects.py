@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from rulec.automata.machine import Machine
 from rulec.runtime.instances import Instance
+from rulec.runtime.ways import Step, on_the_way_in, steps_in
 from rulec.trace import TraceGraph
 
 SAFE = -1
@@ -23,9 +24,6 @@ LOST = -2
 
 Effect = tuple[int, ...]
 """For each state of a machine, and last for SAFE: the state after a node, SAFE or LOST."""
-
-Step = tuple[int, int]
-"""A follower in the next layer, and the cost of going there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +71,8 @@ class Effects:
 
 def effects(graph: TraceGraph, instances: Sequence[Instance]) -> Effects:
     """What every node on a way from the graph's start to a goal does to every instance."""
-    on_the_way = _on_the_way(graph)
-    steps = _steps(graph, on_the_way)
+    on_the_way = on_the_way_in(graph)
+    steps = steps_in(graph, on_the_way)
     found = [
         (instance, layers)
         for instance in instances
@@ -92,41 +90,6 @@ def effects(graph: TraceGraph, instances: Sequence[Instance]) -> Effects:
         nodes.append(known[key])
     bound = tuple([instance for instance, _ in found])
     return Effects(graph, bound, tuple(on_the_way), steps, tuple(nodes))
-
-
-def _on_the_way(graph: TraceGraph) -> list[tuple[bool, ...]]:
-    """For every layer and node: does a path from start to a goal lead through it?"""
-    from_start = [{graph.start}]
-    for successors in graph.successors:
-        from_start.append({target for node in from_start[-1] for target in successors[node]})
-    ahead = set(graph.goals)
-    found = []
-    for layer in reversed(range(len(graph.states))):
-        if layer < len(graph.successors):
-            rows = graph.successors[layer]
-            ahead = {node for node in from_start[layer] if not ahead.isdisjoint(rows[node])}
-        ahead &= from_start[layer]
-        found.append(tuple([node in ahead for node in range(len(graph.states[layer]))]))
-    same = {layer: layer for layer in found}
-    return [same[layer] for layer in reversed(found)]
-
-
-def _steps(
-    graph: TraceGraph, on_the_way: Sequence[Sequence[bool]]
-) -> tuple[tuple[tuple[Step, ...], ...], ...]:
-    """The followers of every node of every layer but the last, with their costs."""
-    same: dict[object, tuple[tuple[Step, ...], ...]] = {}
-    found = []
-    for layer, (rows, costs) in enumerate(zip(graph.successors, graph.weights, strict=True)):
-        ahead = on_the_way[layer + 1]
-        steps = tuple(
-            [
-                tuple([step for step in zip(row, cost, strict=True) if ahead[step[0]]])
-                for row, cost in zip(rows, costs, strict=True)
-            ]
-        )
-        found.append(same.setdefault(steps, steps))
-    return tuple(found)
 
 
 def _can_be_lost(instance: Instance) -> bool:

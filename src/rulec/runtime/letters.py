@@ -48,6 +48,7 @@ class Columns:
         self._objects = objects
         self._present = present
         self._facts = facts
+        self._values: dict[tuple[object, ...], list[Value]] = {}
         self._known: dict[tuple[object, ...], Digits] = {}
         self._one: dict[str, bool] = {}
         self._moments: dict[int, Moment] = {}
@@ -100,12 +101,23 @@ class Columns:
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
         key = (read.name, read.values, items, first, last)
         if key not in self._known:
-            declaration = self._vocabulary.declarations[read.name]
-            self._known[key] = _digits(
-                read.digit(self._value(read.name, items, number, declaration, rule))
-                for number in self._telling((read.name,), first, last)
-            )
+            values = self._told(read.name, items, first, last, rule)
+            digits = {value: read.digit(value) for value in set(values)}
+            self._known[key] = _digits([digits[value] for value in values])
         return self._known[key]
+
+    def _told(
+        self, name: str, items: tuple[str, ...], first: int, last: int, rule: str
+    ) -> list[Value]:
+        """What states say of a name; one value for all, if they say the very same."""
+        key = (name, items, first, last)
+        if key not in self._values:
+            declaration = self._vocabulary.declarations[name]
+            self._values[key] = [
+                self._value(name, items, number, declaration, rule)
+                for number in self._telling((name,), first, last)
+            ]
+        return self._values[key]
 
     def _counted_off(
         self, read: Scale, objects: Mapping[str, str], first: int, last: int, rule: str
@@ -114,15 +126,14 @@ class Columns:
         items = tuple([objects[variable] for variable in read.variables])
         key = (read, items, first, last)
         if key not in self._known:
-            numbers = self._telling(read.names, first, last)
             if read.quantity is None:
+                numbers = self._telling(read.names, first, last)
                 bound = dict(zip(read.variables, items, strict=True))
                 self._known[key] = _digits(self._digit(read, bound, n, rule) for n in numbers)
             else:
                 name = read.quantity.name
                 arguments = tuple([objects[variable] for variable in read.quantity.arguments])
-                declaration = self._vocabulary.declarations[name]
-                values = (self._value(name, arguments, n, declaration, rule) for n in numbers)
+                values = self._told(name, arguments, first, last, rule)
                 self._known[key] = _digits(read.digit(value) for value in values)
         return self._known[key]
 
@@ -130,13 +141,12 @@ class Columns:
         """Of these states enough to know what all say of some names: one, if it is in all."""
         if self._present or not all(self._is_one(name) for name in names):
             return range(first, last + 1)
-        return range(first, first + 1)
+        return range(first, last + 1)[:1]
 
     def _is_one(self, name: str) -> bool:
         """Do all states say the very same of a name, or nothing? As cells do of a whole scene."""
         if name not in self._one:
-            told = self._states[0].get(name)
-            self._one[name] = all(state.get(name) is told for state in self._states)
+            self._one[name] = len({id(state.get(name)) for state in self._states}) <= 1
         return self._one[name]
 
     def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
@@ -167,7 +177,7 @@ class Columns:
 
 def _digits(column: Iterable[int]) -> Digits:
     found = list(column)
-    return found if len(set(found)) > 1 else found[0]
+    return found[0] if len(set(found)) == 1 else found
 
 
 def present_in(

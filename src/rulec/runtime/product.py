@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from operator import getitem
 from typing import Any
 
-from rulec.runtime.effects import LOST, Effect, Effects, Step
+from rulec.runtime.effects import LOST, Effect, Effects
+from rulec.runtime.ways import Step
 from rulec.trace import TraceGraph
 
 Joint = tuple[int, ...]

@@ -25,8 +25,8 @@ Place = tuple[int, int, Joint]
 """A layer, a node in it, and the machines' states behind it."""
 
 
-def front(effects: Effects, ranks: Ranks) -> list[Penalty]:
-    """The penalties than which no path has a lower one, in the order of ``ranks``."""
+def front(effects: Effects, ranks: Ranks) -> Iterator[Penalty]:
+    """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
     found: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
@@ -39,8 +39,8 @@ def front(effects: Effects, ranks: Ranks) -> list[Penalty]:
         return True
 
     for penalty in _ascending(effects, ranks, worth):
-        found.append(penalty)  # noqa: PERF402 - `worth` looks at what has been found
-    return found
+        found.append(penalty)
+        yield penalty
 
 
 def ranked(effects: Effects, ranks: Ranks) -> Iterator[tuple[int, Penalty]]:

@@ -133,7 +133,7 @@ class Witnesses:
         terms = list(dict.fromkeys(term for read, _ in numbers for _, term in read.terms))
         counts = [term for term in terms if isinstance(term, Count)]
         quantities = [term for term in terms if isinstance(term, Quantity)]
-        system = [one for read, digit in numbers for one in _bounds(read, digit)]
+        system = [one for read, digit in numbers for one in bounds_of(read, digit)]
         system += [
             Bounded({count: Fraction(-1)}, Fraction(-self._at_least(count, facts)))
             for count in counts
@@ -165,7 +165,7 @@ def _distance(one: tuple[int, ...], other: tuple[int, ...]) -> int:
     return sum(a != b for a, b in zip(one, other, strict=True))
 
 
-def _bounds(read: NumberRead, digit: int) -> Iterator[Bounded]:
+def bounds_of(read: NumberRead, digit: int) -> Iterator[Bounded]:
     """What a digit says of the sum that is read."""
     terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
     if digit > 0:

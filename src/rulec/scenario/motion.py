@@ -20,13 +20,15 @@ from rulec.scenario.model import (
 Facing = Literal["along", "left", "against", "right"]
 
 
-def span(motion: ConstantAcceleration | Trajectory) -> tuple[float, float]:
+def span(motion: Motion) -> tuple[float, float]:
     """First and last time (s) at which the obstacle is there."""
     match motion:
         case ConstantAcceleration():
             return 0.0, inf
         case Trajectory(points):
             return points[0][0], points[-1][0]
+        case Footprints(times):
+            return times[0], times[-1]
 
 
 def position_at(motion: ConstantAcceleration | Trajectory, time: float) -> tuple[float, float]:

@@ -54,4 +54,13 @@ FILES = {
         "echo '{\"states\": [{}]}' | rulec verify - --format jsonl -r esterle2019",
         "command",
     ),
+    "R0707": Explanation(
+        "a picture cannot be written as PNG",
+        "It takes the package `matplotlib`, which is installed on request: `pip install "
+        "'rulec[pictures]'`. And a picture with very many layers is longer than a PNG can "
+        "sensibly be. SVG and HTML have neither limit.",
+        "rulec draw scene s1 --step 0.01 -o s1.png",
+        "rulec draw scene s1 --step 0.01 -o s1.html",
+        "command",
+    ),
 }

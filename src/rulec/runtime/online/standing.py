@@ -98,7 +98,7 @@ def onward(now: Standing, scene: Scene, letters: Letters) -> Standing:
         edges, changes = carried_over(now.scene, now.nodes, scene)
         before = nodes_at(scene, edges)
         after = [node[letter] for node, letter in zip(before, letters, strict=True)]
-    if scene is not now.scene or _verdicts(before) != _verdicts(after):
+    if scene is not now.scene or _differ(before, after):
         changes += _changes(scene, before, after)
         lost = {rule for rule, verdict in last.rules.items() if verdict == "violated"}
         lost.update(one.rule for one in changes if one.verdict == "violated")
@@ -133,8 +133,12 @@ def carried_over(
     return entered, ended
 
 
-def _verdicts(nodes: Sequence[Node]) -> list[tuple[Prefix, ...]]:
-    return [node.verdicts for node in nodes]
+def _differ(before: Sequence[Node], after: Sequence[Node]) -> bool:
+    """Has any binding another verdict than before?"""
+    for old, new in zip(before, after, strict=True):
+        if old is not new and old.verdicts != new.verdicts:
+            return True
+    return False
 
 
 def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:

@@ -1,17 +1,19 @@
-"""Where partition and rules meet: a navigation graph judged by a compiled rulebook."""
+"""The maneuvers of a graph, judged by a rulebook, and what can be asked of them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.stuttering import stutter_invariant
-from rulec.diagnostics import Diagnostic, Place, RulecError, named
+from rulec.diagnostics import Place, RulecError
+from rulec.maneuvers.answers import Pruning, Ranked
+from rulec.maneuvers.recorded import fitted
+from rulec.maneuvers.terms import in_terms_of
 from rulec.rulebook.model import Strength
 from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
@@ -19,52 +21,21 @@ from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
 from rulec.runtime.instances import HARD, SOFT, Instance, instances, violations
 from rulec.runtime.online.past import Past
-from rulec.runtime.penalties import Penalty, Rank, Ranks, ranks_of
+from rulec.runtime.penalties import Penalty, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
 from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.rejections import violating, violating_alone
 from rulec.runtime.terms import names_in
 from rulec.runtime.verdict import Violation
-from rulec.supply import RELATIONS_OF, in_terms_of
 from rulec.trace import TraceGraph
-from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph, PartitionName
-    from rulec.rulebook.model import Rulebook
+    from rulec.partition import NavigationGraph
 
 
-@dataclass(frozen=True, slots=True)
-class Ranked:
-    """A maneuver beside others by what it violates: see ``docs/ranking.md``.
-
-    ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
-    ``penalty`` are the weights of what it violates, summed up by rank, ranks without any left out.
-    So many ``members`` have this penalty; of them this is one of the cheapest.
-    """
-
-    place: int
-    penalty: Mapping[Rank, Fraction]
-    members: int
-    maneuver: Maneuver
-    violations: tuple[Violation, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Pruning:
-    """How many maneuvers violate a rule, and how many of them keep every other hard rule.
-
-    The latter is None for a soft rule: it rejects nothing. The example is one of the cheapest of
-    the latter, if there are any, else of the former; None if there are none of these either. The
-    violations are those of the rule by the example.
-    """
-
-    rule: CompiledRule
-    violating: int
-    alone: int | None
-    example: Maneuver | None
-    violations: tuple[Violation, ...]
+MOST_BEST = 100
+"""Levels that are not comparable can leave any number of maneuvers that none is better than."""
 
 
 @dataclass(frozen=True)
@@ -90,20 +61,30 @@ class Maneuvers:
         """How many keep every hard rule."""
         return self.product.accepted
 
+    @property
+    def by_default(self) -> tuple[str, ...]:
+        """What rules read and the scenario does not supply, so that it has its default all along.
+
+        In the order of the vocabulary.
+        """
+        supplied = {name for layer in self.paths.states for state in layer for name in state}
+        read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
+        return tuple(name for name in self.rules.vocabulary.declarations if name in read - supplied)
+
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
         return list(islice(cheapest(self.product), n))
 
-    def best(self) -> list[Ranked]:
+    def best(self, n: int = MOST_BEST) -> list[Ranked]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
 
-        There are several if levels are not comparable. If there are satisfying maneuvers, these
-        are satisfying and violate soft rules least. Raises RulecError as ``judged`` does, for soft
-        rules too.
+        There are several if levels are not comparable; of many, the first ``n``. If there are
+        satisfying maneuvers, these are satisfying and violate soft rules least. Raises RulecError
+        as ``judged`` does, for soft rules too.
         """
         return [
             self._ranked(1, penalty, next(cheapest(product)), product.accepted)
-            for penalty in front(self._every, self._ranks)
+            for penalty in islice(front(self._every, self._ranks), n)
             for product in [with_penalty(self._every, self._ranks, penalty)]
         ]
 
@@ -196,7 +177,7 @@ def judged(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
-    paths = in_terms_of(rules.vocabulary, graph)
+    paths = in_terms_of(rules.vocabulary, fitted(rules.vocabulary, graph))
     past = past_of(paths, after, rules, graph.step, HARD)
     hard = effects(paths, _instances(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
@@ -216,44 +197,3 @@ def _instances(
     except RulecError as error:
         place = Place(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
-
-
-def partition_for(
-    rules: Rulebook | CompiledRulebook, wanted: PartitionName | None
-) -> PartitionName:
-    """The wanted partition, or the one that the rules need.
-
-    Raises:
-        RulecError: R0405 if the rules need another one, or two.
-    """
-    read = {name for rule in rules.rules for name in names_in(rule.formula)}
-    needed = {
-        name: [relation for relation in relations if relation in read]
-        for name, relations in RELATIONS_OF.items()
-        if read.intersection(relations)
-    }
-    if len(needed) > 1:
-        raise _no_partition(
-            f"rulebook `{rules.name}` reads {named(needed['paper'])} and {named(needed['fine'])}, "
-            "which no one partition supplies",
-            "say it with `station` and `lateral` alone: they tell apart all that `position` does",
-        )
-    for name, relations in needed.items():
-        if wanted not in (None, name):
-            raise _no_partition(
-                f"rulebook `{rules.name}` reads {named(relations)}, which the partition "
-                f"`{wanted}` does not supply",
-                f"use the partition `{name}`, or leave the choice to the rulebook",
-            )
-        return name
-    return wanted or _spoken_of(rules.vocabulary)
-
-
-def _spoken_of(vocabulary: Vocabulary) -> PartitionName:
-    """The partition whose relations a vocabulary declares, for rules that read none of them."""
-    declared = {name for name in vocabulary.declarations if name in RELATIONS_OF["fine"]}
-    return "fine" if declared else "paper"
-
-
-def _no_partition(message: str, way_out: str) -> RulecError:
-    return RulecError(Diagnostic("R0405", message, help=way_out))

@@ -1,0 +1,48 @@
+"""What styles and words in a picture mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+
+from rulec.report.automaton_drawing import CHARACTER, text_width
+from rulec.report.pictures.marks import LINE_HEIGHT, Area, Line, Mark, Picture, Words, rectangle
+from rulec.report.pictures.styles import STYLES
+
+_SWATCH = 26.0
+_GAP = 22.0
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A style and what it stands for."""
+
+    style: str
+    words: str
+
+
+def legend(entries: Sequence[Entry], words: Sequence[str], width: float, margin: float) -> Picture:
+    """Swatches with their words, in as many lines as it takes, then lines of words."""
+    marks: list[Mark] = []
+    x, y = margin, LINE_HEIGHT
+    for entry in entries:
+        needed = _SWATCH + 6 + text_width([entry.words])
+        if x > margin and x + needed > width - margin:
+            x, y = margin, y + LINE_HEIGHT + 2
+        marks.append(_swatch(entry.style, x, y))
+        marks.append(Words(entry.words, (x + _SWATCH + 6, y)))
+        x += needed + _GAP
+    if entries:
+        y += LINE_HEIGHT + 4
+    for text in words:
+        for line in wrap(text, int((width - 2 * margin) / CHARACTER)):
+            marks.append(Words(line, (margin, y), style="faint"))
+            y += LINE_HEIGHT
+    return Picture("", width, y + 2, tuple(marks))
+
+
+def _swatch(style: str, x: float, y: float) -> Mark:
+    if STYLES[style].fill or style == "goal":
+        return Area((rectangle(x, y - 6, x + _SWATCH, y + 6),), style)
+    return Line(((x, y), (x + _SWATCH, y)), style)

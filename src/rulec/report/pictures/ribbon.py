@@ -1,0 +1,140 @@
+"""A trace as a ribbon: what it says about whom, row by row over time, and where it is violated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby, permutations
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.report.explanation import shown
+from rulec.runtime.moment import value_in
+from rulec.runtime.terms import names_in
+from rulec.runtime.verdict import Verdict, Violation
+from rulec.trace import Trace, Value
+from rulec.vocabulary import Declaration, Enumeration, Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """The states from ``first`` to ``last``, both included, in which a value is the same.
+
+    ``value`` is None where nothing is said, or who it is about is not there.
+    """
+
+    first: int
+    last: int
+    value: Value | None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One thing that rules read, such as ``position(v1)``, over a whole trace.
+
+    ``values`` are those that there can be, in the vocabulary's order; none for a quantity.
+    """
+
+    name: str
+    objects: tuple[str, ...]
+    unit: str
+    values: tuple[Value, ...]
+    runs: tuple[Run, ...]
+
+    @property
+    def title(self) -> str:
+        """As a rule would say it."""
+        about = f"({', '.join(self.objects)})" if self.objects else ""
+        return f"{self.name}{about}" + (f" in {self.unit}" if self.unit else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Ribbon:
+    """The rows of a trace and what it violates."""
+
+    trace: Trace
+    rows: tuple[Row, ...]
+    violations: tuple[Violation, ...]
+
+    def decisive(self, violation: Violation) -> int:
+        """The state with which a rule is beyond saving; behind the last if the end decides."""
+        return len(self.trace.states) if violation.step is None else violation.step
+
+
+def ribbon(trace: Trace, rules: CompiledRulebook, verdict: Verdict) -> Ribbon:
+    """The rows that the rules read: first what is about nobody, then object by object, then pairs.
+
+    A row in which nothing is ever said is left out.
+    """
+    read = dict.fromkeys(name for rule in rules.rules for name in names_in(rule.formula))
+    rows = [
+        row
+        for objects in _choices(trace)
+        for name in read
+        for row in [_row(trace, rules, name, objects)]
+        if row is not None and any(run.value is not None for run in row.runs)
+    ]
+    return Ribbon(trace, tuple(rows), verdict.violations)
+
+
+def _choices(trace: Trace) -> Iterator[tuple[str, ...]]:
+    yield ()
+    yield from ((name,) for name in trace.objects)
+    yield from permutations(trace.objects, 2)
+
+
+def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]) -> Row | None:
+    vocabulary = rules.vocabulary
+    declaration = vocabulary.declarations[name]
+    if len(declaration.parameters) != len(objects) or not all(
+        vocabulary.is_subtype(trace.objects[item], kind)
+        for item, kind in zip(objects, declaration.parameters, strict=True)
+    ):
+        return None
+    # A pair of whom no state speaks has only defaults; there are many such.
+    if len(objects) > 1 and not any(_said(trace, number, name, objects) for number in _all(trace)):
+        return None
+    values = [_value(trace, number, name, objects, declaration) for number in _all(trace)]
+    unit = declaration.unit if isinstance(declaration, Quantity) else ""
+    return Row(name, objects, unit, _possible(declaration), tuple(_runs(values)))
+
+
+def _all(trace: Trace) -> range:
+    return range(len(trace.states))
+
+
+def _said(trace: Trace, number: int, name: str, objects: Sequence[str]) -> bool:
+    value = trace.states[number].get(name)
+    for item in objects:
+        value = value.get(item) if hasattr(value, "get") else None  # type: ignore[union-attr]
+    return value is not None
+
+
+def _value(
+    trace: Trace, number: int, name: str, objects: Sequence[str], declaration: Declaration
+) -> Value | None:
+    whole = (0, len(trace.states) - 1)
+    for item in objects:
+        first, last = trace.present.get(item, whole)
+        if not first <= number <= last:
+            return None
+    return value_in(trace.states[number], name, objects, declaration)
+
+
+def _runs(values: Sequence[Value | None]) -> Iterator[Run]:
+    at = 0
+    for value, same in groupby(values):
+        first, at = at, at + sum(1 for _ in same)
+        yield Run(first, at - 1, value)
+
+
+def _possible(declaration: Declaration) -> tuple[Value, ...]:
+    if isinstance(declaration, Enumeration):
+        return declaration.values
+    return () if isinstance(declaration, Quantity) else (False, True)
+
+
+def in_words(value: Value) -> str:
+    """A value in a row."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return shown(value)

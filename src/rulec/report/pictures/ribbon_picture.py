@@ -1,0 +1,146 @@
+"""A ribbon laid out: rows of values over time, violations at the state that decides them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from textwrap import wrap
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.report.automaton_drawing import CHARACTER, text_width
+from rulec.report.pictures.marks import (
+    LINE_HEIGHT,
+    Area,
+    Line,
+    Mark,
+    Picture,
+    Words,
+    rectangle,
+)
+from rulec.report.pictures.placing import Placing
+from rulec.report.pictures.ribbon import Ribbon, Row, in_words
+from rulec.report.pictures.scale import ticks
+from rulec.report.verdicts import MOST_VIOLATIONS, in_a_line
+
+WIDTH = 900.0
+MARGIN = 14.0
+WIDEST_TITLE = 34
+
+_ROW = 24.0
+_COLOURS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Where a state begins, from left to right; states are ``step_s`` apart."""
+
+    left: float
+    states: int
+    step_s: float
+
+    def x(self, state: float) -> float:
+        return self.left + (WIDTH - MARGIN - self.left) * state / self.states
+
+
+def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
+    """The picture, with the violations in words below it."""
+    trace = found.trace
+    titles = [_cut(row.title) for row in found.rows]
+    axis = _Axis(MARGIN + text_width(titles) + 10, len(trace.states), trace.step_s)
+    number = len(found.violations)
+    marks: list[Mark] = []
+    flags, top = _flags(found, axis, 4)
+    y = top
+    for row, text in zip(found.rows, titles, strict=True):
+        marks.append(Words(text, (axis.left - 10, y + _ROW / 2), "end"))
+        marks += _curve(row, axis, y) if not row.values else _segments(row, axis, y)
+        y += _ROW
+    for state in sorted({found.decisive(one) for one in found.violations}):
+        x = axis.x(state)
+        marks.append(Line(((x, top - 5), (x, y + 4)), "violation"))
+    marks += [*flags, *_times(axis, y)]
+    y += 2 * LINE_HEIGHT + 8
+    columns = int((WIDTH - 2 * MARGIN) / CHARACTER)
+    by_name = {rule.name: rule for rule in rules.rules}
+    for n, violation in enumerate(found.violations[:MOST_VIOLATIONS], 1):
+        rule = by_name[violation.rule]
+        when = "" if violation.step is None else f", at {violation.step * trace.step_s:g} s"
+        told = f"{in_a_line(violation, rule, rules.name)}{when}"
+        marks.append(Words(str(n), (MARGIN, y), style="strong"))
+        for style, text in (("ink", told), ("faint", rule.says)):
+            for line in wrap(text, columns - 4):
+                marks.append(Words(line, (MARGIN + 4 * CHARACTER, y), style=style))
+                y += LINE_HEIGHT
+        y += 4
+    if number > MOST_VIOLATIONS:
+        marks.append(Words(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint"))
+        y += LINE_HEIGHT
+    return Picture(trace.id, WIDTH, y, tuple(marks))
+
+
+def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[Words], float]:
+    """The violations' numbers above their states; and where the rows begin, below them."""
+    numbered = sorted((found.decisive(one), n) for n, one in enumerate(found.violations, 1))
+    flags: list[Words] = []
+    placing = Placing()
+    deepest = top
+    for state, group in groupby(numbered, key=lambda one: one[0]):
+        numbers = [n for _, n in group]
+        text = ", ".join(map(str, numbers[:4])) + (" …" if len(numbers) > 4 else "")
+        half = text_width([text]) / 2
+        x = min(max(axis.x(state), MARGIN + half), WIDTH - MARGIN - half)
+        for level in range(6):
+            words = Words(text, (x, top + level * LINE_HEIGHT + 8), "middle", "strong")
+            if placing.take(words):
+                flags.append(words)
+                deepest = max(deepest, words.at[1])
+                break
+    return flags, deepest + LINE_HEIGHT
+
+
+def _segments(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+    for run in row.runs:
+        if run.value is None:
+            continue
+        left, right = axis.x(run.first), axis.x(run.last + 1)
+        text = in_words(run.value)
+        shape = rectangle(left, y + 2, right, y + _ROW - 2)
+        style = f"value{row.values.index(run.value) % _COLOURS}"
+        yield Area((shape,), style, f"{row.title}: {text}, {_when(run.first, run.last, axis)}")
+        if text_width([text]) + 6 <= right - left:
+            yield Words(text, ((left + right) / 2, y + _ROW / 2), "middle")
+
+
+def _curve(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+    """A quantity between its extremes, which the tip tells."""
+    numbers = [float(run.value) for run in row.runs if run.value is not None]
+    low, high = min(numbers), max(numbers)
+    scale = (_ROW - 8) / (high - low) if high > low else 0.0
+    for there, group in groupby(row.runs, key=lambda run: run.value is not None):
+        if not there:
+            continue
+        points = [
+            (axis.x(state), y + _ROW - 4 - (float(run.value or 0) - low) * scale)
+            for run in group
+            for state in (run.first, run.last + 1)
+        ]
+        yield Line(tuple(points), "curve", f"{row.title}: {low:g} to {high:g}")
+
+
+def _when(first: int, last: int, axis: _Axis) -> str:
+    return f"{first * axis.step_s:g} s to {(last + 1) * axis.step_s:g} s"
+
+
+def _times(axis: _Axis, y: float) -> Iterator[Mark]:
+    end = axis.states * axis.step_s
+    yield Line(((axis.x(0), y + 2), (axis.x(axis.states), y + 2)), "axis")
+    for time in ticks(0, end, 10):
+        x = axis.x(time / axis.step_s)
+        yield Line(((x, y + 2), (x, y + 6)), "axis")
+        text = f"{time:g} s" if time == 0 else f"{time:g}"
+        yield Words(text, (min(x, WIDTH - text_width([text]) / 2), y + 14), "middle", "faint")
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= WIDEST_TITLE else f"{text[: WIDEST_TITLE - 1]}…"

@@ -1,0 +1,131 @@
+"""How marks look, on light and on dark ground.
+
+The two colours that tell verdicts apart are blue and vermilion of Okabe and Ito's palette (Color
+Universal Design, 2008), lightened for dark ground; dashes repeat what they say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """Names of colours, the width of the line in px, and its dashes (on, off) in px.
+
+    A halo keeps words apart from what they stand on.
+    """
+
+    fill: str = ""
+    stroke: str = ""
+    width: float = 1.0
+    dash: tuple[float, ...] = ()
+    bold: bool = False
+    halo: bool = False
+
+
+STYLES: Mapping[str, Style] = MappingProxyType(
+    {
+        "ground": Style("ground"),
+        "ink": Style("ink"),
+        "strong": Style("ink", bold=True),
+        "faint": Style("faint"),
+        "name": Style("ink", "ground", 3, halo=True),
+        "axis": Style(stroke="faint"),
+        "lane": Style(stroke="faint", width=0.8, dash=(7, 7)),
+        "taken": Style("taken"),
+        "cell": Style("cell", "faint"),
+        "crossing": Style("crossing", "faint"),
+        "chosen": Style("chosen", "satisfying", 3),
+        "swept": Style("swept", "rejected", 1, (3, 2)),
+        "body": Style("body", "ink"),
+        "ego": Style("ground", "satisfying", 2),
+        "goal": Style("", "ink", 1.5, (2, 3)),
+        "node": Style("cell", "faint"),
+        "satisfying": Style(stroke="satisfying", width=1.3),
+        "rejected": Style(stroke="rejected", width=1.3, dash=(6, 4)),
+        "unused": Style(stroke="unused", width=0.9, dash=(1, 3)),
+        "way": Style(stroke="satisfying", width=5),
+        "violation": Style(stroke="rejected", width=2.5, dash=(6, 3)),
+        "violated": Style("swept", "rejected", 1.5),
+        "off": Style("ground", "faint", 0.8),
+        "value0": Style("cell", "faint", 0.8),
+        "value1": Style("swept", "faint", 0.8),
+        "value2": Style("crossing", "faint", 0.8),
+        "value3": Style("chosen", "faint", 0.8),
+        "value4": Style("value4", "faint", 0.8),
+        "value5": Style("value5", "faint", 0.8),
+        "value6": Style("taken", "faint", 0.8),
+        "curve": Style(stroke="satisfying", width=1.8),
+    }
+)
+
+LIGHT: Mapping[str, str] = MappingProxyType(
+    {
+        "ground": "#ffffff",
+        "ink": "#1b1f24",
+        "faint": "#59636e",
+        "taken": "#d5dade",
+        "cell": "#eef3f7",
+        "crossing": "#f6eebc",
+        "chosen": "#a9d5f2",
+        "swept": "#f9d3b8",
+        "body": "#e69f00",
+        "satisfying": "#0072b2",
+        "rejected": "#d55e00",
+        "unused": "#8d969f",
+        "value4": "#bfe5d9",
+        "value5": "#edcfdf",
+    }
+)
+
+DARK: Mapping[str, str] = MappingProxyType(
+    {
+        "ground": "#16191d",
+        "ink": "#e8eaed",
+        "faint": "#9aa5b1",
+        "taken": "#3a4149",
+        "cell": "#1f262d",
+        "crossing": "#433c14",
+        "chosen": "#0d4a73",
+        "swept": "#5a3116",
+        "body": "#8a5c00",
+        "satisfying": "#6cb8f0",
+        "rejected": "#ff9d5c",
+        "unused": "#6b747d",
+        "value4": "#0c4a3a",
+        "value5": "#5c2f49",
+    }
+)
+
+
+def as_css() -> str:
+    """The styles as CSS classes, light, and dark where the reader prefers that on a screen."""
+    dark = "\n".join(f"  {rule}" for rule in _rules(DARK, shape=False))
+    return "\n".join(
+        [
+            'text { font: 12px ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace }',
+            *_rules(LIGHT, shape=True),
+            f"@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}",
+        ]
+    )
+
+
+def _rules(colours: Mapping[str, str], *, shape: bool) -> list[str]:
+    rules = []
+    for name, style in STYLES.items():
+        parts = [f"fill: {colours[style.fill] if style.fill else 'none'}"]
+        if style.stroke:
+            parts.append(f"stroke: {colours[style.stroke]}")
+        if shape and style.stroke:
+            parts.append(f"stroke-width: {style.width:g}")
+        if shape and style.dash:
+            parts.append(f"stroke-dasharray: {' '.join(f'{one:g}' for one in style.dash)}")
+        if shape and style.halo:
+            parts.append("paint-order: stroke; stroke-linejoin: round")
+        if shape and style.bold:
+            parts.append("font-weight: bold")
+        rules.append(f".{name} {{ {'; '.join(parts)} }}")
+    return rules

@@ -1,0 +1,45 @@
+"""The ways through a graph from its start to its goals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.trace import TraceGraph
+
+Step = tuple[int, int]
+"""A follower in the next layer, and the cost of going there."""
+
+
+def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
+    """For every layer and node: does a path from start to a goal lead through it?"""
+    from_start = [{graph.start}]
+    for successors in graph.successors:
+        from_start.append({target for node in from_start[-1] for target in successors[node]})
+    ahead = set(graph.goals)
+    found = []
+    for layer in reversed(range(len(graph.states))):
+        if layer < len(graph.successors):
+            rows = graph.successors[layer]
+            ahead = {node for node in from_start[layer] if not ahead.isdisjoint(rows[node])}
+        ahead &= from_start[layer]
+        found.append(tuple([node in ahead for node in range(len(graph.states[layer]))]))
+    same = {layer: layer for layer in found}
+    return [same[layer] for layer in reversed(found)]
+
+
+def steps_in(
+    graph: TraceGraph, on_the_way: Sequence[Sequence[bool]]
+) -> tuple[tuple[tuple[Step, ...], ...], ...]:
+    """The followers of every node of every layer but the last, with their costs."""
+    same: dict[object, tuple[tuple[Step, ...], ...]] = {}
+    found = []
+    for layer, (rows, costs) in enumerate(zip(graph.successors, graph.weights, strict=True)):
+        ahead = on_the_way[layer + 1]
+        steps = tuple(
+            [
+                tuple([step for step in zip(row, cost, strict=True) if ahead[step[0]]])
+                for row, cost in zip(rows, costs, strict=True)
+            ]
+        )
+        found.append(same.setdefault(steps, steps))
+    return tuple(found)

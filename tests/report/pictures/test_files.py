@@ -1,0 +1,134 @@
+"""Files: SVG that can be read, PNG that shows something, a page that fetches nothing."""
+
+import io
+import re
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+
+import pytest
+
+from rulec.diagnostics import RulecError
+from rulec.report.pictures.files import Drawing, as_bytes, format_of
+from rulec.report.pictures.marks import Area, Line, Picture, Words, rectangle
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def drawing(number=2):
+    square = Area((rectangle(10, 10, 60, 50), rectangle(20, 20, 30, 30)), "chosen", "a <cell>")
+    line = Line(((0, 0), (100, 60)), "rejected")
+    words = Words("b & $f$", (50, 30), "middle")
+    turned = Words("up", (80, 30), "middle", turned=True)
+    pictures = [
+        Picture(f"{n} s to {n + 1} s", 120, 70, (square, line, words, turned))
+        for n in range(number)
+    ]
+    return Drawing("A title", pictures, Picture("", 120, 20, (Words("what it means", (0, 10)),)))
+
+
+@pytest.mark.parametrize(
+    ("file", "form"),
+    [("a.svg", "svg"), ("a.PNG", "png"), ("b/a.html", "html"), ("a", "svg"), ("a.txt", "svg")],
+)
+def test_the_name_says_the_format(file, form):
+    assert format_of(file) == form
+
+
+def test_svg():
+    root = ET.fromstring(as_bytes(drawing(), "svg", "f"))
+    texts = [one.text for one in root.iter(f"{SVG}text")]
+    assert texts == ["A title", "b & $f$", "up", "b & $f$", "up", "what it means"]
+    paths = list(root.iter(f"{SVG}path"))
+    assert [one.get("class") for one in paths] == ["chosen"] * 2
+    assert paths[0].find(f"{SVG}title").text == "a <cell>"
+    assert paths[0].get("d").count("M") == 2
+    # The second picture stands below the first, all below the title.
+    tops = [float(re.match(r"M[\d.]+,([\d.]+)", one.get("d"))[1]) for one in paths]
+    assert tops[1] - tops[0] == 70
+    assert root.get("height") == str(14 + 16 + 2 * 70 + 20)
+
+
+@pytest.mark.parametrize("form", ["svg", "png", "html"])
+def test_the_same_bytes_every_time(form):
+    pytest.importorskip("matplotlib")
+    assert as_bytes(drawing(), form, "f") == as_bytes(drawing(), form, "f")
+
+
+def pixels(data):
+    pytest.importorskip("matplotlib")
+    from matplotlib.image import imread
+
+    return imread(io.BytesIO(data))
+
+
+def test_png():
+    image = pixels(as_bytes(drawing(1), "png", "f"))
+    assert image.shape[:2] == (2 * (14 + 16 + 70 + 20), 2 * 120)
+    white, chosen = (1, 1, 1), (0xA9 / 255, 0xD5 / 255, 0xF2 / 255)
+
+    def at(x, y):
+        return tuple(image[2 * (30 + y), 2 * x, :3])
+
+    assert at(5, 60) == white
+    assert at(15, 40) == pytest.approx(chosen, abs=0.01)
+    assert at(22, 28) == white, "holes are not filled"
+
+
+def test_a_png_that_is_too_large_is_refused():
+    pytest.importorskip("matplotlib")
+    tall = Drawing("t", [Picture("", 100, 30_000, ())])
+    with pytest.raises(RulecError) as caught:
+        as_bytes(tall, "png", "f.png")
+    assert caught.value.diagnostics[0].code == "R0707"
+    assert as_bytes(tall, "svg", "f.svg")
+
+
+def test_without_matplotlib_there_is_a_way_out(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
+    with pytest.raises(RulecError) as caught:
+        as_bytes(drawing(), "png", "f.png")
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.place.file) == ("R0707", "f.png")
+    assert "rulec[pictures]" in problem.help
+    assert as_bytes(drawing(), "html", "f.html")
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.attributes, self.open = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag not in ("meta", "input"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_a_page_is_whole_and_fetches_nothing():
+    text = as_bytes(drawing(), "html", "f").decode()
+    page = Page(text)
+    assert page.open == []
+    assert page.tags.count("figure") == 2
+    assert page.tags.count("svg") == 3
+    assert not {"src", "href", "srcset"} & {name for name, _ in page.attributes}
+    assert not re.findall(r"url\(|@import|fetch\(|XMLHttp", text)
+    assert set(re.findall(r"https?://[^\"' ]*", text)) == {"http://www.w3.org/2000/svg"}
+    ids = [value for name, value in page.attributes if name == "id"]
+    assert len(ids) == len(set(ids))
+    assert "prefers-color-scheme: dark" in text
+    assert "@media print" in text
+
+
+def test_a_single_picture_needs_no_slider():
+    page = Page(as_bytes(drawing(1), "html", "f").decode())
+    assert "input" not in page.tags
+    assert "script" not in page.tags

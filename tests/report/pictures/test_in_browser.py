@@ -1,0 +1,83 @@
+"""The page in a real browser: the slider chooses, the keyboard moves it, dark is dark."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from rulec.cli.main import main
+
+BROWSER = next(
+    filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None
+)
+
+pytestmark = pytest.mark.skipif(BROWSER is None, reason="there is no Chromium")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    file = tmp_path_factory.mktemp("page") / "s2.html"
+    assert main(["draw", "scene", "s2", "-r", "esterle2019", "-o", str(file)]) == 0
+    return file
+
+
+def run(file, *options):
+    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+    profile = f"--user-data-dir={file.parent / 'profile'}"
+    done = subprocess.run(
+        [*command, profile, *options, file.as_uri()],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
+    return done.stdout
+
+
+def after(page, script):
+    """The page as it is when a script of somebody who uses it has run."""
+    used = page.with_name("used.html")
+    text = page.read_text(encoding="utf-8")
+    used.write_text(text.replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+    dom = run(used, "--dump-dom")
+    hidden = ["other" in tag for tag in re.findall(r"<figure[^>]*>", dom)]
+    output = re.search(r"<output[^>]*>(.*?)</output>", dom)[1]
+    return hidden, output, dom
+
+
+def test_one_layer_is_shown_at_first(page):
+    hidden, output, dom = after(page, "")
+    assert hidden == [False, True, True, True, True]
+    assert output == "0 s to 1 s"
+    assert '<form id="time">' in dom, "the slider appears with the script"
+
+
+def test_the_slider_chooses_the_layer(page):
+    moved = "slider.value = 3; slider.dispatchEvent(new Event('input'))"
+    hidden, output, dom = after(page, moved)
+    assert hidden == [True, True, True, False, True]
+    assert output == "3 s to 4 s"
+    assert 'aria-valuetext="3 s to 4 s"' in dom
+
+
+def test_all_at_once(page):
+    hidden, _, _ = after(page, "document.getElementById('all').click()")
+    assert hidden == [False] * 5
+
+
+def test_the_slider_can_be_reached_by_keyboard(page):
+    script = "slider.focus(); document.body.dataset.reached = document.activeElement.id"
+    assert 'data-reached="slider"' in after(page, script)[2]
+
+
+def test_dark_and_light(page, tmp_path):
+    pytest.importorskip("matplotlib")
+    from matplotlib.image import imread
+
+    for scheme, expected in (("0", (0x16, 0x19, 0x1D)), ("1", (255, 255, 255))):
+        shot = tmp_path / "shot.png"
+        settings = f"--blink-settings=preferredColorScheme={scheme}"
+        run(page, settings, "--window-size=960,420", f"--screenshot={shot}")
+        corner = imread(shot)[2, 2, :3]
+        assert tuple(round(float(part) * 255) for part in corner) == expected

@@ -1,0 +1,98 @@
+"""A trace as a ribbon: its rows, and violations at the state that decides them."""
+
+import pytest
+
+from rulec.report.pictures.marks import Area, Line, Words
+from rulec.report.pictures.ribbon import Run, ribbon
+from rulec.report.pictures.ribbon_picture import ribbon_picture
+from rulec.runtime.verify import verify
+from rulec.trace import Trace
+from rulec.workflow import compile_rulebook
+
+
+@pytest.fixture(scope="module")
+def rules():
+    return compile_rulebook("esterle2019")
+
+
+def trace(states, objects, **more):
+    return Trace("t", 0.5, objects, tuple(states), **more)
+
+
+OVERTAKEN = trace(
+    [{"position": {"v": letter, "w": "b"}, "surface": "R_cw"} for letter in "brrf"],
+    {"v": "vehicle", "w": "vehicle"},
+    present={"w": (1, 2)},
+)
+
+
+def test_rows(rules):
+    found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
+    rows = {row.title: row.runs for row in found.rows}
+    assert list(rows) == ["CONGESTED", "surface", "position(v)", "position(w)"]
+    assert rows["CONGESTED"] == (Run(0, 3, value=False),)
+    assert rows["position(v)"] == (Run(0, 0, "b"), Run(1, 2, "r"), Run(3, 3, "f"))
+    assert rows["position(w)"] == (Run(0, 0, None), Run(1, 2, "b"), Run(3, 3, None))
+
+
+def test_a_violation_is_marked_where_it_is_decided(rules):
+    """Passing on the right is done with the state in which v is behind: the last of four."""
+    found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
+    picture = ribbon_picture(found, rules)
+    (mark,) = [one for one in picture.marks if isinstance(one, Line) and one.style == "violation"]
+    last = next(one for one in picture.marks if isinstance(one, Area) and "f, 1.5" in one.tip)
+    assert {x for x, _ in mark.points} == {min(x for x, _ in last.rings[0])}
+    words = [one.text for one in picture.marks if isinstance(one, Words)]
+    told = "hard rule R1 [Article 11.1, 11.6] for v = v: beyond saving after state 3, at 1.5 s"
+    assert told in words
+    assert "1" in words
+
+
+def test_a_violation_that_the_end_decides_stands_at_the_end(tmp_path):
+    source = tmp_path / "late.rules"
+    source.write_text(
+        "rulebook late\nuse paper\nhard rule A (v: vehicle) { require eventually f(v) }\n"
+    )
+    rules = compile_rulebook(source)
+    here = trace([{"position": {"v": "b"}}] * 2, {"v": "vehicle"})
+    found = ribbon(here, rules, verify(here, rules))
+    (violation,) = found.violations
+    assert (violation.step, found.decisive(violation)) == (None, 2)
+    picture = ribbon_picture(found, rules)
+    assert any(
+        "not fulfilled when the trace ends" in one.text
+        for one in picture.marks
+        if isinstance(one, Words)
+    )
+
+
+def test_quantities_and_pairs(tmp_path):
+    (tmp_path / "v.rules").write_text(
+        "vocabulary v {\n  type car\n  quantity gap(a: car, b: car) in m\n"
+        "  quantity speed(a: car) in m/s\n}\n"
+    )
+    source = tmp_path / "far.rules"
+    source.write_text(
+        "rulebook far\nuse v\nhard rule A (a: car, b: car) "
+        "{ require always (speed(a) > 3 m/s implies gap(a, b) > 5 m) }\n"
+    )
+    rules = compile_rulebook(source)
+    states = [
+        {"speed": {"a": n, "b": 0}, "gap": {"a": {"b": 9 - n}, "b": {"a": 9 - n}}} for n in range(3)
+    ]
+    here = trace(states, {"a": "car", "b": "car"})
+    found = ribbon(here, rules, verify(here, rules))
+    assert [row.title for row in found.rows] == [
+        "speed(a) in m/s",
+        "speed(b) in m/s",
+        "gap(a, b) in m",
+        "gap(b, a) in m",
+    ]
+    picture = ribbon_picture(found, rules)
+    curves = [one for one in picture.marks if isinstance(one, Line) and one.style == "curve"]
+    rising, still, falling, _ = ([y for _, y in one.points] for one in curves)
+    # Downwards is more y.
+    assert rising == sorted(rising, reverse=True)
+    assert rising[0] > rising[-1]
+    assert len(set(still)) == 1
+    assert falling == sorted(falling)
