@@ -53,7 +53,7 @@ def command(
 ) -> int:
     """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
 
-    A table in JSON Lines, CSV or Parquet: what bounds the maneuver in each layer, stretch by stretch.
+    A table in JSON Lines, CSV or Parquet: what bounds a maneuver in each layer, piece by piece.
 
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
