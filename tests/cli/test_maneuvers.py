@@ -339,6 +339,20 @@ def test_where_nothing_satisfies_the_least_violating_are_shown(hurry, capsys):
     assert best["cells"][1]["signature"]["o1"] == "l"
 
 
+def test_a_soft_rule_that_cannot_be_judged_takes_no_answer_away(tmp_path, capsys):
+    source = tmp_path / "blind.rules"
+    source.write_text(HURRY + "signal foggy\nsoft rule lights { require always not foggy }\n")
+    status, out, err = answer(capsys, "s2", "--horizon", "2", "-r", str(source), "--json")
+    assert status == 1
+    assert json.loads(out)["satisfying"] == 0
+    assert "least_violating" not in json.loads(out)
+    assert "does not say the `foggy`, which rule `lights` needs" in err
+    # Asked for, they are needed.
+    status, out, err = answer(capsys, "s2", "-r", str(source), "--rank", "1")
+    assert (status, out) == (2, "")
+    assert "R0504" in err
+
+
 @pytest.mark.parametrize(
     ("priority", "level", "expected"),
     [

@@ -188,8 +188,10 @@ def _judged(rulebook: str | None, number: int | None, at: str, **options: Any) -
         return navigation_graph(**options), None, None
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     found = find_maneuvers(rulebook=rules, **options)
-    wanted = (number or 1) - 1
-    maneuver = next(islice(cheapest(found.product), wanted, None), None)
+    wanted = number or 1
+    maneuver = None
+    if wanted <= min(found.satisfying, sys.maxsize):
+        maneuver = next(islice(cheapest(found.product), wanted - 1, None))
     if maneuver is None and number is not None:
         raise click.UsageError(
             f"There is no maneuver {number}: {shown_count(found.satisfying)} satisfy the rulebook."

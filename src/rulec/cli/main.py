@@ -23,6 +23,7 @@ VERBS = {
     "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
     "doc": "Write a rulebook as a document for lawyers.",
     "draw": "Draw scenes over time, navigation graphs and traces.",
+    "envelopes": "Write the bounds of the cheapest satisfying maneuvers as a table.",
     "explain": "Explain a code of a message.",
     "fmt": "Format rulebooks and vocabularies.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rulec.cli.arguments import at_option, graph_options, json_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
+
+if TYPE_CHECKING:
+    from rulec.maneuvers import Maneuvers, Ranked
 
 
 @click.command()
@@ -83,7 +87,7 @@ def command(
     found = find_maneuvers(scenario, rules, after=past, **options)
     answers = report.Answers(
         listed=None if n_listed is None else found.cheapest(n_listed),
-        best=None if found.satisfying else found.best(),
+        best=None if found.satisfying or n_ranked is not None else _best(found),
         ranked=None if n_ranked is None else found.ranked(n_ranked),
         prunings=found.prunings() if why else None,
         classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
@@ -91,3 +95,15 @@ def command(
     seconds = time.perf_counter() - begin
     print_result((report.as_json if json_output else report.as_text)(found, answers, seconds))
     return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED
+
+
+def _best(found: Maneuvers) -> Sequence[Ranked] | None:
+    """The least violating maneuvers; what keeps them from being known is said beside the counts."""
+    from rulec.diagnostics import RulecError
+    from rulec.report.console import print_diagnostics
+
+    try:
+        return found.best()
+    except RulecError as error:
+        print_diagnostics(error.diagnostics)
+        return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -72,7 +73,7 @@ class Maneuvers:
 
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
-        return list(islice(cheapest(self.product), n))
+        return list(islice(cheapest(self.product), _number(n)))
 
     def best(self, n: int = MOST_BEST) -> list[Ranked]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
@@ -83,7 +84,7 @@ class Maneuvers:
         """
         return [
             self._ranked(1, penalty, next(cheapest(product)), product.accepted)
-            for penalty in islice(front(self._every, self._ranks), n)
+            for penalty in islice(front(self._every, self._ranks), _number(n))
             for product in [with_penalty(self._every, self._ranks, penalty)]
         ]
 
@@ -102,7 +103,7 @@ class Maneuvers:
                     for product in [with_penalty(every, ranks, penalty)]
                     for maneuver in cheapest(product)
                 ),
-                n,
+                _number(n),
             )
         )
 
@@ -120,7 +121,7 @@ class Maneuvers:
 
     def variants(self, n: int) -> list[Variant]:
         """A cheapest satisfying maneuver for each of the ``n`` cheapest classes that have one."""
-        return list(islice(variants(self.product, self._places), n))
+        return list(islice(variants(self.product, self._places), _number(n)))
 
     def counting_steps(self) -> list[CompiledRule]:
         """The hard rules that may judge members of one class differently: they count steps."""
@@ -163,6 +164,11 @@ class Maneuvers:
             example,
             tuple([one for one in lost if one.rule == rule.name]),
         )
+
+
+def _number(n: int) -> int:
+    """As many as anybody can count up to, instead of more."""
+    return min(n, sys.maxsize)
 
 
 def judged(

@@ -30,7 +30,8 @@ MOST_DEFAULTS = 4
 class Answers:
     """What was asked for beside the counts; None is what was not.
 
-    ``best`` are the least violating maneuvers, where none satisfies every hard rule.
+    ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
+    longer list of them in ``ranked``.
     """
 
     listed: Sequence[Maneuver] | None = None
@@ -95,7 +96,7 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += ["", f"{number}. {in_a_line(maneuver)}", *cell_lines(graph, maneuver)]
-    if answers.best and answers.ranked is None:
+    if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
         lines += ranked_maneuvers.blocks(found, answers.best)
     lines += ranked_maneuvers.blocks(found, answers.ranked or ())

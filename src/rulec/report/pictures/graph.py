@@ -29,6 +29,7 @@ MARGIN = 14.0
 
 _ROW = 34.0
 _TALLEST = 720.0
+_ORDER = ("unused", "rejected", "satisfying", "way")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +83,7 @@ def graph_picture(
 ) -> Picture:
     """The picture; ``judged``: do rules tell satisfying maneuvers from others?"""
     columns = _columns(graph)
-    marks: list[Mark] = [*_edges(graph, columns, found)]
-    if maneuver:
-        for (p, node), (q, target) in pairwise(enumerate(maneuver.nodes)):
-            marks.append(Line((columns.at(p, node), columns.at(q, target)), "way"))
+    marks: list[Mark] = [*_edges(graph, columns, found, maneuver)]
     marks += _nodes(graph, columns, found, maneuver)
     marks += _times(graph, columns)
     below = legend(
@@ -118,15 +116,21 @@ def _columns(graph: NavigationGraph) -> _Columns:
     return letters if letters.legible else numbers
 
 
-def _edges(graph: NavigationGraph, columns: _Columns, found: Passages) -> Iterator[Line]:
+def _edges(
+    graph: NavigationGraph, columns: _Columns, found: Passages, maneuver: Maneuver | None
+) -> list[Line]:
+    """Every step once, those that matter more above the others."""
     half = columns.extent()[0]
-    for style in ("unused", "rejected", "satisfying"):
-        for p, successors in enumerate(graph.successors):
-            for node, followers in enumerate(successors):
-                for target in followers:
-                    if _fate(found, p, node, target) == style:
-                        (x0, y0), (x1, y1) = columns.at(p, node), columns.at(p + 1, target)
-                        yield Line(((x0 + half, y0), (x1 - half, y1)), style)
+    way = set(enumerate(pairwise(maneuver.nodes))) if maneuver else set()
+    lines = []
+    for p, successors in enumerate(graph.successors):
+        for node, followers in enumerate(successors):
+            for target in followers:
+                (x0, y0), (x1, y1) = columns.at(p, node), columns.at(p + 1, target)
+                here = (p, (node, target)) in way
+                style = "way" if here else _fate(found, p, node, target)
+                lines.append(Line(((x0 + half, y0), (x1 - half, y1)), style))
+    return sorted(lines, key=lambda line: _ORDER.index(line.style))
 
 
 def _fate(found: Passages, layer: int, node: int, target: int) -> str:

@@ -1,0 +1,79 @@
+"""``rulec envelopes``: the bounds of maneuvers as a table."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.arguments import at_option, graph_options, rulebook_option
+from rulec.cli.exit_status import ExitStatus
+
+if TYPE_CHECKING:
+    from rulec.trace.formats import Format
+
+
+@click.command()
+@graph_options
+@rulebook_option
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+    help="The file to write; `-` is standard output.",
+)
+@click.option(
+    "--list",
+    "number",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Write the N cheapest satisfying maneuvers.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["jsonl", "csv", "parquet"]),
+    help="The format of the table.  [default: what the file's name ends with, else jsonl]",
+)
+@at_option
+def command(
+    scenario: str,
+    rulebook: str,
+    output: Path,
+    number: int,
+    form: Format | None,
+    at: str,
+    **options: Any,
+) -> int:
+    """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
+
+    A table in JSON Lines, CSV or Parquet: what bounds a maneuver in each layer, piece by piece.
+
+    Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
+    """
+    from rulec.files import written_whole
+    from rulec.report.console import print_diagnostics, print_result
+    from rulec.report.counts import shown_count
+    from rulec.report.envelope_table import write_envelopes
+    from rulec.settings import search_path
+    from rulec.trace.formats import format_of
+    from rulec.workflow import find_maneuvers, machines
+
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    found = find_maneuvers(scenario, rules, **options)
+    chosen = found.cheapest(number)
+    form = form or format_of(str(output))
+    if str(output) == "-":
+        write_envelopes(found.graph, chosen, sys.stdout.buffer, "standard output", form)
+    else:
+        with written_whole(output) as stream:
+            write_envelopes(found.graph, chosen, stream, str(output), form)
+        written = f"{len(chosen):,} of {shown_count(found.satisfying)} satisfying maneuvers"
+        print_result(f"wrote {written} to {output}")
+    return ExitStatus.OK if chosen else ExitStatus.VIOLATED
