@@ -14,7 +14,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rulec.automata import compiled_file
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import opened
@@ -23,7 +22,6 @@ from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
 from rulec.trace import Trace
-from rulec.trace.formats import format_of, read_chunks
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
@@ -89,7 +87,9 @@ def machines(
     if isinstance(reference, CompiledRulebook):
         return reference
     if isinstance(reference, str | Path) and Path(reference).suffix == ".json":
-        return compiled_file.read_compiled(Path(reference))
+        from rulec.automata.compiled_file import read_compiled
+
+        return read_compiled(Path(reference))
     from rulec.automata.any_step import AnyStep
 
     if isinstance(reference, AnyStep):
@@ -230,6 +230,8 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
 
     The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
     """
+    from rulec.trace.formats import format_of, read_chunks
+
     with opened(Path(path)) as stream:
         for chunk in read_chunks(stream, str(path), format_of(str(path))):
             yield from chunk

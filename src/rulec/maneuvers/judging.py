@@ -16,12 +16,11 @@ from rulec.maneuvers.answers import Pruning, Ranked
 from rulec.maneuvers.recorded import fitted
 from rulec.maneuvers.terms import in_terms_of
 from rulec.rulebook.model import Strength
-from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
 from rulec.runtime.instances import HARD, SOFT, Instance, instances, violations
-from rulec.runtime.online.past import Past
+from rulec.runtime.online.past import NO_PAST, Past
 from rulec.runtime.penalties import Penalty, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
@@ -33,6 +32,7 @@ from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+    from rulec.runtime.before import Before
 
 
 MOST_BEST = 100
@@ -140,7 +140,7 @@ class Maneuvers:
     @cached_property
     def _every(self) -> Effects:
         """With soft rules, too. Those of which nothing can be violated are left out already."""
-        past = past_of(self.paths, self.after, self.rules, self.graph.step, SOFT)
+        past = _past(self.graph, self.paths, self.rules, SOFT, self.after)
         soft = _instances(self.graph, self.paths, self.rules, SOFT, past)
         return effects(self.paths, [*self.hard.instances, *soft])
 
@@ -184,11 +184,25 @@ def judged(
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
     paths = in_terms_of(rules.vocabulary, fitted(rules.vocabulary, graph))
-    past = past_of(paths, after, rules, graph.step, HARD)
+    past = _past(graph, paths, rules, HARD, after)
     hard = effects(paths, _instances(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
     counted = count_paths(paths)
     return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)
+
+
+def _past(
+    graph: NavigationGraph,
+    paths: TraceGraph,
+    rules: CompiledRulebook,
+    strengths: Collection[Strength],
+    after: Before | None,
+) -> Past:
+    if after is None:
+        return NO_PAST
+    from rulec.runtime.before import past_of
+
+    return past_of(paths, after, rules, graph.step, strengths)
 
 
 def _instances(
