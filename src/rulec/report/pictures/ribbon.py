@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby, permutations
+from itertools import groupby
 from typing import Any
 
 from rulec.automata.compiled import CompiledRulebook
@@ -74,24 +74,29 @@ def ribbon(trace: Trace, rules: CompiledRulebook, verdict: Verdict) -> Ribbon:
     }
     rows = []
     left_out = 0
-    for objects in _choices(trace):
+    for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, read)]:
         for name in read:
             row = _row(trace, rules, name, objects)
-            if row is None:
-                continue
-            said = any(_said(state, name, objects) for state in trace.states)
-            # Of pairs there are too many to tell of each what nobody said.
-            if said or (name in matters and len(objects) < 2):
-                rows.append(row)
-            else:
-                left_out += 1
+            if row is not None:
+                told = name in matters or any(_said(state, name, objects) for state in trace.states)
+                rows += [row] if told else []
+                left_out += not told
     return Ribbon(trace, tuple(rows), left_out, verdict.violations)
 
 
-def _choices(trace: Trace) -> Iterator[tuple[str, ...]]:
-    yield ()
-    yield from ((name,) for name in trace.objects)
-    yield from permutations(trace.objects, 2)
+def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
+    """The pairs of which some state speaks; most of all that there are have defaults alone."""
+    values = (state.get(name) for name in names for state in trace.states)
+    found = {
+        (one, other): None
+        for value in values
+        if isinstance(value, Mapping)
+        for one, inner in value.items()
+        if isinstance(inner, Mapping)
+        for other in inner
+    }
+    order = {name: place for place, name in enumerate(trace.objects)}
+    return sorted(found, key=lambda pair: (order[pair[0]], order[pair[1]]))
 
 
 def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]) -> Row | None:

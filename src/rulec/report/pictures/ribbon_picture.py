@@ -11,6 +11,8 @@ from rulec.automata.compiled import CompiledRulebook
 from rulec.report.automaton_drawing import CHARACTER, text_width
 from rulec.report.pictures.marks import (
     LINE_HEIGHT,
+    MARGIN,
+    WIDTH,
     Area,
     Line,
     Mark,
@@ -23,8 +25,6 @@ from rulec.report.pictures.ribbon import Ribbon, Row, extremes, in_words
 from rulec.report.pictures.scale import ticks
 from rulec.report.verdicts import MOST_VIOLATIONS, in_a_line
 
-WIDTH = 900.0
-MARGIN = 14.0
 WIDEST_TITLE = 34
 
 _ROW = 24.0
