@@ -14,7 +14,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rulec.automata import compiled_file
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import opened
@@ -23,7 +22,6 @@ from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
 from rulec.trace import Trace
-from rulec.trace.formats import format_of, read_chunks
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
@@ -89,7 +87,9 @@ def machines(
     if isinstance(reference, CompiledRulebook):
         return reference
     if isinstance(reference, str | Path) and Path(reference).suffix == ".json":
-        return compiled_file.read_compiled(Path(reference))
+        from rulec.automata.compiled_file import read_compiled
+
+        return read_compiled(Path(reference))
     from rulec.automata.any_step import AnyStep
 
     if isinstance(reference, AnyStep):
@@ -230,6 +230,8 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
 
     The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
     """
+    from rulec.trace.formats import format_of, read_chunks
+
     with opened(Path(path)) as stream:
         for chunk in read_chunks(stream, str(path), format_of(str(path))):
             yield from chunk
@@ -254,15 +256,32 @@ def navigation_graph(
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
-    """Partition a scenario, given by name, by path or itself, into cells and their graph."""
+    """Partition a scenario, given by name, by path or itself, into cells and their graph.
+
+    In a recorded scene the step, unless given, is the longest one that leaves ego a place to start.
+    """
     from rulec.partition import navigation_graph as build
     from rulec.scenario import Scenario, load_scenario
 
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
+    if step_s is None and scenario.account is not None:
+        step_s = _longest_step(scenario, partition, horizon_s)
     return build(
         scenario, partition=partition, adjacency=adjacency, step_s=step_s, horizon_s=horizon_s
     )
+
+
+def _longest_step(
+    scenario: Scenario, partition: PartitionName, horizon_s: float | None
+) -> float | None:
+    """The scenario's own step, or the half of it, and so on; None if none will do."""
+    from rulec.partition.start import step_that_leaves_room
+    from rulec.scenario.timing import timing
+
+    times = timing(scenario.horizon_s if horizon_s is None else horizon_s, scenario.step_s)
+    found = step_that_leaves_room(scenario, times, partition)
+    return None if found is None else float(found.step)
 
 
 def find_maneuvers(

@@ -42,6 +42,8 @@ def measure(rounds: int) -> Iterator[Result]:
     commands |= {command: [*RULEC, *command.split()] for command in wanted}
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "RULEC_CACHE_DIR": cache}
+        # Where somebody keeps Python from writing bytecode, every process would compile anew.
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         waited: dict[str, list[float]] = {label: [] for label in commands}
         taken = in_turns(
             {

@@ -21,7 +21,6 @@ from rulec.runtime.effects import effects
 from rulec.runtime.instances import instances, violations
 from rulec.runtime.letters import present_in
 from rulec.runtime.monitor import Monitor
-from rulec.runtime.online.past import NO_PAST
 from rulec.runtime.online.replay import said_of
 from rulec.runtime.product import explore
 from rulec.runtime.verify import verify
@@ -139,7 +138,6 @@ def test_a_trace_a_monitor_and_its_snapshot_are_the_same_past(past, graph):
 
 @given(graphs())
 def test_without_a_past_all_begins_here(graph):
-    assert past_of(graph, None, RULES, HALF) == NO_PAST
     begun = past_of(graph, Monitor(RULES), RULES, HALF)
     assert instances(graph, RULES, past=begun) == instances(graph, RULES)
 

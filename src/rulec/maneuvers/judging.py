@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,14 +13,14 @@ from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.stuttering import stutter_invariant
 from rulec.diagnostics import Place, RulecError
 from rulec.maneuvers.answers import Pruning, Ranked
+from rulec.maneuvers.recorded import fitted
 from rulec.maneuvers.terms import in_terms_of
 from rulec.rulebook.model import Strength
-from rulec.runtime.before import Before, past_of
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
 from rulec.runtime.instances import HARD, SOFT, Instance, instances, violations
-from rulec.runtime.online.past import Past
+from rulec.runtime.online.past import NO_PAST, Past
 from rulec.runtime.penalties import Penalty, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
@@ -31,6 +32,7 @@ from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+    from rulec.runtime.before import Before
 
 
 MOST_BEST = 100
@@ -72,7 +74,7 @@ class Maneuvers:
 
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
-        return list(islice(cheapest(self.product), n))
+        return list(islice(cheapest(self.product), _number(n)))
 
     def best(self, n: int = MOST_BEST) -> list[Ranked]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
@@ -83,7 +85,7 @@ class Maneuvers:
         """
         return [
             self._ranked(1, penalty, next(cheapest(product)), product.accepted)
-            for penalty in islice(front(self._every, self._ranks), n)
+            for penalty in islice(front(self._every, self._ranks), _number(n))
             for product in [with_penalty(self._every, self._ranks, penalty)]
         ]
 
@@ -102,7 +104,7 @@ class Maneuvers:
                     for product in [with_penalty(every, ranks, penalty)]
                     for maneuver in cheapest(product)
                 ),
-                n,
+                _number(n),
             )
         )
 
@@ -120,7 +122,7 @@ class Maneuvers:
 
     def variants(self, n: int) -> list[Variant]:
         """A cheapest satisfying maneuver for each of the ``n`` cheapest classes that have one."""
-        return list(islice(variants(self.product, self._places), n))
+        return list(islice(variants(self.product, self._places), _number(n)))
 
     def counting_steps(self) -> list[CompiledRule]:
         """The hard rules that may judge members of one class differently: they count steps."""
@@ -138,7 +140,7 @@ class Maneuvers:
     @cached_property
     def _every(self) -> Effects:
         """With soft rules, too. Those of which nothing can be violated are left out already."""
-        past = past_of(self.paths, self.after, self.rules, self.graph.step, SOFT)
+        past = _past(self.graph, self.paths, self.rules, SOFT, self.after)
         soft = _instances(self.graph, self.paths, self.rules, SOFT, past)
         return effects(self.paths, [*self.hard.instances, *soft])
 
@@ -165,6 +167,11 @@ class Maneuvers:
         )
 
 
+def _number(n: int) -> int:
+    """As many as anybody can count up to, instead of more."""
+    return min(n, sys.maxsize)
+
+
 def judged(
     graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
 ) -> Maneuvers:
@@ -176,12 +183,26 @@ def judged(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
-    paths = in_terms_of(rules.vocabulary, graph.trace_graph())
-    past = past_of(paths, after, rules, graph.step, HARD)
+    paths = in_terms_of(rules.vocabulary, fitted(rules.vocabulary, graph))
+    past = _past(graph, paths, rules, HARD, after)
     hard = effects(paths, _instances(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
     counted = count_paths(paths)
     return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)
+
+
+def _past(
+    graph: NavigationGraph,
+    paths: TraceGraph,
+    rules: CompiledRulebook,
+    strengths: Collection[Strength],
+    after: Before | None,
+) -> Past:
+    if after is None:
+        return NO_PAST
+    from rulec.runtime.before import past_of
+
+    return past_of(paths, after, rules, graph.step, strengths)
 
 
 def _instances(

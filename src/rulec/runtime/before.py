@@ -16,7 +16,7 @@ from rulec.runtime.checking import check_objects
 from rulec.runtime.instances import HARD
 from rulec.runtime.monitor import Monitor
 from rulec.runtime.numbers import exact
-from rulec.runtime.online.past import NO_PAST, Past
+from rulec.runtime.online.past import Past
 from rulec.runtime.online.replay import replayed
 from rulec.trace import Trace, TraceGraph
 
@@ -26,7 +26,7 @@ Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
 
 def past_of(
     graph: TraceGraph,
-    before: Before | None,
+    before: Before,
     rulebook: CompiledRulebook,
     step_s: Fraction,
     strengths: Collection[Strength] = HARD,
@@ -39,8 +39,6 @@ def past_of(
         RulecError: R0501 to R0508 if a trace does not fit the rulebook, R0510 if a snapshot is not
             of these rules, R0511 if what was before does not lead up to the graph.
     """
-    if before is None:
-        return NO_PAST
     check_objects(graph.objects, rulebook.vocabulary)
     monitor, place = _monitor(before, rulebook, step_s, strengths)
     there = {

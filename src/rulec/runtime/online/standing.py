@@ -88,23 +88,20 @@ def onward(now: Standing, scene: Scene, letters: Letters) -> Standing:
     """
     last = now.so_far
     if scene is now.scene:
-        after = [node[letter] for node, letter in zip(now.nodes, letters, strict=True)]
+        before, changes = now.nodes, list[Change]()
+        after = [node[letter] for node, letter in zip(before, letters, strict=True)]
         # Nodes that are alike are identical: then no machine has moved.
-        if after == now.nodes:
+        if after == before or not _differ(before, after):
             so_far = SoFar(last.state + 1, last.verdict, last.rules)
             return Standing(scene, after, so_far, now.n_violations)
-        before, changes = now.nodes, list[Change]()
     else:
         edges, changes = carried_over(now.scene, now.nodes, scene)
         before = nodes_at(scene, edges)
         after = [node[letter] for node, letter in zip(before, letters, strict=True)]
-    if scene is not now.scene or _differ(before, after):
-        changes += _changes(scene, before, after)
-        lost = {rule for rule, verdict in last.rules.items() if verdict == "violated"}
-        lost.update(one.rule for one in changes if one.verdict == "violated")
-        so_far = _so_far(last.state + 1, scene, after, lost, tuple(changes))
-    else:
-        so_far = SoFar(last.state + 1, last.verdict, last.rules)
+    changes += _changes(scene, before, after)
+    lost = {rule for rule, verdict in last.rules.items() if verdict == "violated"}
+    lost.update(one.rule for one in changes if one.verdict == "violated")
+    so_far = _so_far(last.state + 1, scene, after, lost, tuple(changes))
     violated = sum(one.verdict == "violated" for one in changes)
     return Standing(scene, after, so_far, now.n_violations + violated)
 
