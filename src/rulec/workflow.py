@@ -256,15 +256,32 @@ def navigation_graph(
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
-    """Partition a scenario, given by name, by path or itself, into cells and their graph."""
+    """Partition a scenario, given by name, by path or itself, into cells and their graph.
+
+    In a recorded scene the step, unless given, is the longest one that leaves ego a place to start.
+    """
     from rulec.partition import navigation_graph as build
     from rulec.scenario import Scenario, load_scenario
 
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
+    if step_s is None and scenario.account is not None:
+        step_s = _longest_step(scenario, partition, horizon_s)
     return build(
         scenario, partition=partition, adjacency=adjacency, step_s=step_s, horizon_s=horizon_s
     )
+
+
+def _longest_step(
+    scenario: Scenario, partition: PartitionName, horizon_s: float | None
+) -> float | None:
+    """The scenario's own step, or the half of it, and so on; None if none will do."""
+    from rulec.partition.start import step_that_leaves_room
+    from rulec.scenario.timing import timing
+
+    times = timing(scenario.horizon_s if horizon_s is None else horizon_s, scenario.step_s)
+    found = step_that_leaves_room(scenario, times, partition)
+    return None if found is None else float(found.step)
 
 
 def find_maneuvers(

@@ -6,13 +6,16 @@ import re
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
 from rulec.report.formats import FORMATS
+
+if TYPE_CHECKING:
+    from rulec.scenario import Choice
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -205,8 +208,65 @@ def traces_format_option(function: Decorated) -> Decorated:
     )(function)
 
 
+def _scene_options(function: Decorated) -> Decorated:
+    """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
+    for decorate in (
+        click.option(
+            "--congested-below",
+            "congested_below_kmh",
+            type=click.FloatRange(min=0),
+            default=30.0,
+            show_default=True,
+            metavar="KMH",
+            help="In a recorded scene: traffic counts as congested below this median speed.",
+        ),
+        click.option(
+            "--prediction",
+            type=click.Choice(["recorded", "constant"]),
+            default="recorded",
+            show_default=True,
+            help="In a recorded scene: others move as recorded, or with constant acceleration.",
+        ),
+        click.option(
+            "--reference",
+            type=int,
+            metavar="LANELET",
+            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
+            "[default: the one ego is on]",
+        ),
+        click.option(
+            "--at-time",
+            "at_s",
+            type=float,
+            metavar="S",
+            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
+            "planning problem, or the vehicle's first]",
+        ),
+        click.option(
+            "--ego",
+            type=int,
+            metavar="ID",
+            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
+            "[default: the first planning problem]",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+def chosen(options: dict[str, Any]) -> Choice:
+    """The choice that ``graph_options`` say, taken out of all options."""
+    from rulec.scenario.commonroad.choice import Choice
+
+    return Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
+
+
 def graph_options(function: Decorated) -> Decorated:
-    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency."""
+    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
+
+    Also what can be chosen about a recorded scene, which ``chosen`` takes out again.
+    """
+    function = _scene_options(function)
     for decorate in (
         click.option(
             "--adjacency",

@@ -12,6 +12,7 @@ import click
 from rulec.cli.arguments import (
     RULEBOOK_HELP,
     at_option,
+    chosen,
     complete_rulebooks,
     graph_options,
     rulebook_option,
@@ -171,23 +172,28 @@ def trace(
     _write(Drawing(trace_title(verdict, used), [picture]), output, form)
 
 
-def _judged(rulebook: str | None, number: int | None, at: str, **options: Any) -> Judged:
+def _judged(
+    scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
+) -> Judged:
     """The graph, with a rulebook its maneuvers, and the one that is to be shown."""
     from itertools import islice
 
     from rulec.report.console import print_diagnostics
     from rulec.report.counts import shown_count
     from rulec.runtime.cheapest import cheapest
+    from rulec.scenario import load_scenario
     from rulec.settings import search_path
     from rulec.workflow import find_maneuvers, machines, navigation_graph
 
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
+        scene = load_scenario(scenario, chosen(options))
         options["partition"] = options["partition"] or "paper"
-        return navigation_graph(**options), None, None
+        return navigation_graph(scene, **options), None, None
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    found = find_maneuvers(rulebook=rules, **options)
+    scene = load_scenario(scenario, chosen(options))
+    found = find_maneuvers(scene, rules, **options)
     wanted = number or 1
     maneuver = None
     if wanted <= min(found.satisfying, sys.maxsize):

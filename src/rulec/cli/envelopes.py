@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, graph_options, rulebook_option
+from rulec.cli.arguments import at_option, chosen, graph_options, rulebook_option
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -61,19 +61,21 @@ def command(
     from rulec.report.console import print_diagnostics, print_result
     from rulec.report.counts import shown_count
     from rulec.report.envelope_table import write_envelopes
+    from rulec.scenario import load_scenario
     from rulec.settings import search_path
     from rulec.trace.formats import format_of
     from rulec.workflow import find_maneuvers, machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    found = find_maneuvers(scenario, rules, **options)
-    chosen = found.cheapest(number)
+    scene = load_scenario(scenario, chosen(options))
+    found = find_maneuvers(scene, rules, **options)
+    cheapest = found.cheapest(number)
     form = form or format_of(str(output))
     if str(output) == "-":
-        write_envelopes(found.graph, chosen, sys.stdout.buffer, "standard output", form)
+        write_envelopes(found.graph, cheapest, sys.stdout.buffer, "standard output", form)
     else:
         with written_whole(output) as stream:
-            write_envelopes(found.graph, chosen, stream, str(output), form)
-        written = f"{len(chosen):,} of {shown_count(found.satisfying)} satisfying maneuvers"
+            write_envelopes(found.graph, cheapest, stream, str(output), form)
+        written = f"{len(cheapest):,} of {shown_count(found.satisfying)} satisfying maneuvers"
         print_result(f"wrote {written} to {output}")
-    return ExitStatus.OK if chosen else ExitStatus.VIOLATED
+    return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, graph_options, json_option, rulebook_option
+from rulec.cli.arguments import (
+    at_option,
+    chosen,
+    graph_options,
+    json_option,
+    rulebook_option,
+)
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -78,13 +84,15 @@ def command(
     """
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
+    from rulec.scenario import load_scenario
     from rulec.settings import search_path
     from rulec.workflow import find_maneuvers, machines, read_past
 
     begin = time.perf_counter()
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     past = None if after is None else read_past(after)
-    found = find_maneuvers(scenario, rules, after=past, **options)
+    scene = load_scenario(scenario, chosen(options))
+    found = find_maneuvers(scene, rules, after=past, **options)
     answers = report.Answers(
         listed=None if n_listed is None else found.cheapest(n_listed),
         best=None if found.satisfying or n_ranked is not None else _best(found),

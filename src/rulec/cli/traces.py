@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import graph_options, traces_format_option
+from rulec.cli.arguments import chosen, graph_options, traces_format_option
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -47,12 +47,14 @@ def command(
     from rulec.report.console import print_result, progress
     from rulec.report.counts import shown_count
     from rulec.runtime.product import count_paths
+    from rulec.scenario import load_scenario
     from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces
     from rulec.trace.tables import kinds_in
     from rulec.workflow import navigation_graph
 
-    cells = navigation_graph(scenario, **{**options, "partition": options["partition"] or "paper"})
+    scene = load_scenario(scenario, chosen(options))
+    cells = navigation_graph(scene, **{**options, "partition": options["partition"] or "paper"})
     graph, name = cells.trace_graph(), cells.scenario.name
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:

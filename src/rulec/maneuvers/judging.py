@@ -13,6 +13,7 @@ from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.stuttering import stutter_invariant
 from rulec.diagnostics import Place, RulecError
 from rulec.maneuvers.answers import Pruning, Ranked
+from rulec.maneuvers.recorded import fitted
 from rulec.maneuvers.terms import in_terms_of
 from rulec.rulebook.model import Strength
 from rulec.runtime.cheapest import Maneuver, cheapest
@@ -182,7 +183,7 @@ def judged(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
-    paths = in_terms_of(rules.vocabulary, graph.trace_graph())
+    paths = in_terms_of(rules.vocabulary, fitted(rules.vocabulary, graph))
     past = _past(graph, paths, rules, HARD, after)
     hard = effects(paths, _instances(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations

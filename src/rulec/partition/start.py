@@ -40,7 +40,7 @@ def start_cell(
     blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
-    finer = _step_that_leaves_room(scenario, timing, partition)
+    finer = step_that_leaves_room(scenario, timing, partition, 2)
     raise RulecError(
         Diagnostic(
             "R0607",
@@ -49,16 +49,24 @@ def start_cell(
             expected="expected a free place; an obstacle takes the whole width of its lanes",
             help=f"a step of {float(finer.step):g} s would do"
             if finer
-            else "a smaller step does not help here: move ego along the road, or that obstacle",
+            else f"a smaller step does not help here: {_remedy(scenario)}",
         )
     )
 
 
-def _step_that_leaves_room(
-    scenario: Scenario, timing: Timing, partition: PartitionName
+def _remedy(scenario: Scenario) -> str:
+    if scenario.account is None:
+        return "move ego along the road, or that obstacle"
+    return "choose another moment or another ego with --at-time and --ego"
+
+
+def step_that_leaves_room(
+    scenario: Scenario, timing: Timing, partition: PartitionName, fraction: int = 1
 ) -> Timing | None:
-    """The longest step, halving, with which the first interval leaves ego's place free."""
-    fraction = 2
+    """The longest step with which the first interval leaves ego's place free.
+
+    The step of ``timing`` divided by ``fraction``, or half of that, and so on.
+    """
     while fraction <= _FINEST and (timing.layers - 1) * fraction < MAX_LAYERS:
         first = Timing(timing.step / fraction, 1)
         places = scene(scenario, first, partition)

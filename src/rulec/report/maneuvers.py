@@ -11,7 +11,7 @@ import click
 
 from rulec.maneuvers import Maneuvers, Pruning, Ranked
 from rulec.partition import NavigationGraph
-from rulec.report import prunings, ranked_maneuvers, variants
+from rulec.report import prunings, ranked_maneuvers, recorded_scene, variants
 from rulec.report.counts import shown_count
 from rulec.report.excerpt import visible
 from rulec.report.maneuver_lines import as_data, cell_lines, in_a_line
@@ -58,6 +58,8 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
         "by_default": list(found.by_default),
         "seconds": round(seconds, 6),
     }
+    if graph.scenario.account is not None:
+        data["scene"] = recorded_scene.as_data(found, graph.scenario.account)
     if found.violated_before is not None:
         data["violated_before"] = [
             {"rule": one.rule, "binding": dict(one.binding), "step": one.step}
@@ -85,6 +87,7 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     how = f"partition {graph.partition}, adjacency {graph.adjacency}"
     lines = [
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
+        *_scene(found),
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(found.traces)}",
         f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
@@ -105,6 +108,11 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     if answers.classes is not None:
         lines += variants.blocks(found, answers.classes[1])
     return "\n".join(lines)
+
+
+def _scene(found: Maneuvers) -> Iterator[str]:
+    account = found.graph.scenario.account
+    return iter(()) if account is None else recorded_scene.lines(found, account)
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:

@@ -2,13 +2,17 @@
 
 The way through: ``read`` a TOML file -> ``schema``, ``fields``: its tables, field by field ->
 ``convert``, ``obstacles``, ``check``: the ``model``. What is wrong is collected in ``Findings``,
-each in its place, which ``toml_places`` finds. ``motion`` says where an obstacle is at what time.
+each in its place, which ``toml_places`` finds. ``commonroad`` reads recorded scenes.
+``motion`` says where an obstacle is at what time.
 """
 
+from rulec.scenario.commonroad.choice import Choice
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
+    Account,
     ConstantAcceleration,
     Ego,
+    Footprints,
     MissingLane,
     Obstacle,
     Road,
@@ -19,9 +23,12 @@ from rulec.scenario.model import (
 from rulec.scenario.read import available_scenarios, load_scenario
 
 __all__ = [
+    "Account",
     "Box",
+    "Choice",
     "ConstantAcceleration",
     "Ego",
+    "Footprints",
     "MissingLane",
     "Obstacle",
     "Road",

@@ -89,14 +89,28 @@ class Trajectory:
     points: tuple[tuple[float, float, float], ...]
 
 
-Motion = ConstantAcceleration | Trajectory
+@dataclass(frozen=True, slots=True)
+class Footprints:
+    """What is occupied at ascending times: bounds that move in straight lines in between.
+
+    None where it is nowhere near the road. Before the first time and after the last one the
+    obstacle is not there. Unlike a trajectory's, its extent may change, as when a vehicle turns.
+    """
+
+    times: tuple[float, ...]
+    boxes: tuple[Box | None, ...]
+
+
+Motion = ConstantAcceleration | Trajectory | Footprints
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
     """Another traffic participant: a rectangle along the road that moves by a prediction.
 
-    ``walking_direction`` is in degrees from ego's direction, counter-clockwise: 90 is to the left.
+    ``broader`` are more and more general words for its type, for rulebooks that lack the type's.
+    ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in
+    degrees from ego's direction, counter-clockwise: 90 is to the left.
     """
 
     id: str
@@ -106,6 +120,7 @@ class Obstacle:
     motion: Motion
     walking_direction: float | None = None
     signals: Mapping[str, SignalValue] = field(default_factory=dict)
+    broader: tuple[str, ...] = ()
 
     @property
     def walks(self) -> bool:
@@ -129,11 +144,29 @@ class Ego:
 
 
 @dataclass(frozen=True, slots=True)
+class Account:
+    """What became of a recorded scene on its way to a scenario.
+
+    ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
+    lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
+    there goes on as before; ``derived`` says how each derived signal came about.
+    """
+
+    reference: int
+    recorded: int
+    left_out: int
+    until_s: float
+    derived: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
 class Scenario:
     """A scene and its prediction: everything that a partition is computed from.
 
     ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
-    that every cell of the last layer will do.
+    that every cell of the last layer will do. ``account`` is there if the scene was recorded: then
+    signals and types that a rulebook does not know are no mistake, and ``step_s`` is only the
+    longest step that is good.
     """
 
     name: str
@@ -145,3 +178,4 @@ class Scenario:
     horizon_s: float = 4.0
     step_s: float = 1.0
     about: str = ""
+    account: Account | None = None

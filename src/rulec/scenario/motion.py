@@ -7,8 +7,15 @@ from itertools import pairwise
 from math import atan2, cos, degrees, inf, radians, sin
 from typing import Literal
 
+from rulec.scenario.footprints import bounds_within, displacement_within, displacements
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import ConstantAcceleration, Motion, Obstacle, Trajectory
+from rulec.scenario.model import (
+    ConstantAcceleration,
+    Footprints,
+    Motion,
+    Obstacle,
+    Trajectory,
+)
 
 Facing = Literal["along", "left", "against", "right"]
 
@@ -20,9 +27,11 @@ def span(motion: Motion) -> tuple[float, float]:
             return 0.0, inf
         case Trajectory(points):
             return points[0][0], points[-1][0]
+        case Footprints(times):
+            return times[0], times[-1]
 
 
-def position_at(motion: Motion, time: float) -> tuple[float, float]:
+def position_at(motion: ConstantAcceleration | Trajectory, time: float) -> tuple[float, float]:
     """The centre ``(s, d)`` at a time (s) within ``span``."""
     match motion:
         case ConstantAcceleration():
@@ -37,6 +46,8 @@ def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
     Exact: between the times that it looks at, motion along and across the road is monotone. None if
     the obstacle is not there in that interval.
     """
+    if isinstance(obstacle.motion, Footprints):
+        return bounds_within(obstacle.motion, start, end)
     first, last = span(obstacle.motion)
     start, end = max(start, first), min(end, last)
     if start > end:
@@ -82,11 +93,22 @@ def _heading(motion: Motion, start: float, end: float) -> tuple[float, float]:
                 for (t0, s0, d0), (t1, s1, d1) in pairwise(points)
                 if (s0, d0) != (s1, d1)
             ]
-            meanwhile = _step_within(motion, start, end)
-            if meanwhile != (0.0, 0.0) or not steps:
-                return meanwhile
-            before = [step for step in steps if step[1] <= end]
-            return (before[-1] if before else steps[0])[2:]
+            return _nearest_step(tuple(steps), _step_within(motion, start, end), end)
+        case Footprints():
+            meanwhile = displacement_within(motion, start, end)
+            return _nearest_step(displacements(motion), meanwhile, end)
+
+
+def _nearest_step(
+    steps: tuple[tuple[float, float, float, float], ...],
+    meanwhile: tuple[float, float],
+    end: float,
+) -> tuple[float, float]:
+    """How far it went meanwhile; if it stood, in the last of its steps before, else the next."""
+    if meanwhile != (0.0, 0.0) or not steps:
+        return meanwhile
+    before = [step for step in steps if step[1] <= end]
+    return (before[-1] if before else steps[0])[2:]
 
 
 def _step_within(motion: Trajectory, start: float, end: float) -> tuple[float, float]:

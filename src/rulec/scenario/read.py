@@ -8,6 +8,7 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
+from rulec.scenario.commonroad.choice import Choice
 from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
 from rulec.scenario.model import Scenario
@@ -24,22 +25,24 @@ def available_scenarios() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in scenarios_folder().glob("*.toml")))
 
 
-def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
-    """A built-in scenario by its name, or a scenario file (TOML, ``docs/scenarios.md``).
+def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
+    """A built-in scenario by its name, or one from a file: TOML, or CommonRoad's XML.
 
-    A built-in name comes first; ``./s1`` is a file in any case.
+    A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
+    recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.
 
     Raises:
         RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and
-            R0602 to R0606 for what is wrong in it, all mistakes of one file together.
+            R0602 to R0606 for what is wrong in it, all mistakes of one file together; R0610 to
+            R0612 for CommonRoad's files, R0613 for a ``choice`` where there is none to be made.
     """
     name = os.fspath(name_or_path)
     known = available_scenarios()
     if isinstance(name_or_path, str) and name.casefold() in known:
-        return read_scenario(scenarios_folder() / f"{name.casefold()}.toml")
+        return read_scenario(scenarios_folder() / f"{name.casefold()}.toml", choice)
     looks_like_a_path = not isinstance(name_or_path, str) or os.sep in name or "." in name
     if looks_like_a_path or _exists(name):
-        return read_scenario(Path(name))
+        return read_scenario(Path(name), choice)
     raise RulecError(
         Diagnostic(
             "R0601",
@@ -50,8 +53,22 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     )
 
 
-def read_scenario(path: Path) -> Scenario:
+def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
+    if path.suffix.lower() == ".xml":
+        from rulec.scenario.commonroad.convert import read_scene
+
+        return read_scene(path, choice or Choice())
+    if choice not in (None, Choice()):
+        raise RulecError(
+            Diagnostic(
+                "R0613",
+                f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
+                "chosen",
+                Place(str(path)),
+                help="leave the options for recorded scenes out, or edit the scenario's file",
+            )
+        )
     source = _text(path)
     return to_scenario(parsed_toml(source, "R0602", _HOW), path.stem, Findings(TomlText(source)))
 

@@ -5,6 +5,28 @@ from rulec.diagnostics.explanations.explanation import Explanation
 _ROAD = "[road]\ns = [0.0, 100.0]\nlanes = [-1.75, 1.75]\n\n"
 _GOOD = f"{_ROAD}[ego]\ns = 10.0\nd = 0.0\n"
 _CAR = '[[obstacle]]\nid = "car"\ntype = "vehicle"\nlength = 5.0\nwidth = 1.8\n'
+_COMMONROAD = """\
+cat > road.xml <<'END'
+<commonRoad commonRoadVersion="2018b" benchmarkID="ZAM_Road-1_1_T-1" timeStepSize="0.1"
+    author="" affiliation="" source="" tags="" date="2020-01-01">
+  <lanelet id="1">
+    <leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>
+    <rightBound><point><x>0</x><y>-2</y></point><point><x>99</x><y>-2</y></point></rightBound>
+  </lanelet>
+  <planningProblem id="2">
+    <initialState>
+      <position><point><x>9</x><y>0</y></point></position>
+      <velocity><exact>5</exact></velocity><orientation><exact>0</exact></orientation>
+      <yawRate><exact>0</exact></yawRate><slipAngle><exact>0</exact></slipAngle>
+      <time><exact>0</exact></time>
+    </initialState>
+    <goalState>
+      <time><intervalStart>0</intervalStart><intervalEnd>40</intervalEnd></time>
+    </goalState>
+  </planningProblem>
+</commonRoad>
+END
+"""
 
 SCENARIOS = {
     "R0601": Explanation(
@@ -80,5 +102,42 @@ SCENARIOS = {
         'graph = rulec.navigation_graph("s1")\n'
         "envelope(graph, [graph.start, graph.successors[0][graph.start][0]])\n",
         "python",
+    ),
+    "R0610": Explanation(
+        "a file cannot be read as a CommonRoad scenario",
+        "A file whose name ends with `.xml` is taken for a CommonRoad scenario, version 2018b or "
+        "2020a. It has to be well-formed and complete, and to do without a `DOCTYPE`: what that "
+        "defines may fill the memory or fetch other files.",
+        _COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
+        _COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
+        "command",
+    ),
+    "R0611": Explanation(
+        "the package for CommonRoad scenarios is not installed",
+        "They are read by `commonroad-io`, which is installed on request, because it takes some "
+        "370 MB with what it needs: `pip install 'rulec[commonroad]'`. In a checkout that is "
+        "`.venv/bin/python -m pip install -e '.[commonroad]'`.",
+        "",
+        "",
+        "circumstance",
+    ),
+    "R0612": Explanation(
+        "what is chosen is not in the recorded scene",
+        "A recorded scene has its own numbers for planning problems, vehicles and lanelets, and "
+        "its own times. The message names those that can be chosen with `--ego`, `--at-time` and "
+        "`--reference`. Without any choice, ego is the first planning problem's, so there has to "
+        "be one, and it has to be on a lane.",
+        _COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 7",
+        _COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 2",
+        "command",
+    ),
+    "R0613": Explanation(
+        "a choice for recorded scenes was made for another scenario",
+        "What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
+        "from is what a CommonRoad scenario has recorded. A built-in scenario, or one in TOML, "
+        "says itself where ego and the road are and how others move.",
+        "rulec maneuvers s1 -r esterle2019 --ego 2",
+        "rulec maneuvers s1 -r esterle2019",
+        "command",
     ),
 }

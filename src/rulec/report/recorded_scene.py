@@ -1,0 +1,52 @@
+"""What became of a recorded scene: what is left out, continued, derived, and not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from rulec.maneuvers import Maneuvers
+from rulec.maneuvers.recorded import assumed
+from rulec.report.excerpt import visible
+from rulec.scenario import Account
+
+MOST_NAMED = 6
+"""So many unknown names fit on a line of text; JSON has them all."""
+
+
+def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
+    """For JSON: lanelet, counts of obstacles, derived signals with their reasons, unknown ones."""
+    supplied = found.paths.states[0][0]
+    return {
+        "reference": account.reference,
+        "obstacles": account.recorded,
+        "left_out": account.left_out,
+        "recorded_until_s": account.until_s,
+        "derived": {
+            name: {"value": supplied[name], "because": why}
+            for name, why in account.derived.items()
+            if name in supplied
+        },
+        "unknown": list(assumed(found.rules, found.paths)),
+    }
+
+
+def lines(found: Maneuvers, account: Account) -> Iterator[str]:
+    """The same as text."""
+    kept = account.recorded - account.left_out
+    out = f", {account.left_out} left out: not on this road" if account.left_out else ""
+    yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"
+    end = float(len(found.graph.layers) * found.graph.step)
+    if end > account.until_s:
+        yield (
+            f"recorded    until {max(account.until_s, 0):g} s; who is there then is taken to go on "
+            "at its last speed"
+        )
+    for name, item in as_data(found, account)["derived"].items():
+        value = str(item["value"]).lower() if isinstance(item["value"], bool) else item["value"]
+        yield visible(f"derived     {name} = {value}: {item['because']}")
+    unknown = assumed(found.rules, found.paths)
+    if unknown:
+        names = ", ".join(unknown[:MOST_NAMED])
+        more = f" and {len(unknown) - MOST_NAMED} more" if len(unknown) > MOST_NAMED else ""
+        yield visible(f"unknown     {names}{more}: the rulebook's defaults stand for them")

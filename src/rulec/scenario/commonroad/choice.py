@@ -1,0 +1,29 @@
+"""What can be chosen about a recorded scene, which has many vehicles, roads and moments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Prediction = Literal["recorded", "constant"]
+
+CONGESTED_BELOW_KMH = 30.0
+"""Traffic is taken to be congested where the middle one of its vehicles is slower than this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Whose maneuvers are sought, from when on, along which road, and what is expected of others.
+
+    ``ego``: a planning problem or a participant; None is the first planning problem. ``at_s``: the
+    time of the file that becomes time 0; None is the planning problem's, the participant's first.
+    ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
+    ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
+    is ``congested`` below a median speed.
+    """
+
+    ego: int | None = None
+    at_s: float | None = None
+    reference: int | None = None
+    prediction: Prediction = "recorded"
+    congested_below_kmh: float = CONGESTED_BELOW_KMH

@@ -1,0 +1,50 @@
+"""Is traffic congested? No CommonRoad file says so; this is how it is told from the vehicles.
+
+Traffic is congested where the median speed of the vehicles on ego's road that go ego's way is below
+a threshold. Speeds are those at which they cover the road from time 0 on, for a second if the
+recording goes on so long: in some recordings the speed that is written down is another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from statistics import median
+
+from rulec.scenario.geometry import Box
+from rulec.scenario.model import Obstacle
+from rulec.scenario.motion import swept
+
+FEWEST = 3
+"""So many vehicles it takes for traffic to be congested."""
+
+_FOR_S = 1.0
+_KMH = 3.6
+
+
+def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
+    """Is it, and how was that found?"""
+    speeds = [
+        speed * _KMH
+        for one in obstacles
+        if "vehicle" in (one.type, *one.broader) and (speed := _speed(one, road)) is not None
+    ]
+    if len(speeds) < FEWEST:
+        return (
+            False,
+            f"it takes {FEWEST} vehicles that go ego's way on its road, here {len(speeds)}",
+        )
+    middle = median(speeds)
+    relation = "below" if middle < below_kmh else "not below"
+    compared = f"{middle:.1f} km/h, {relation} {below_kmh:g} km/h"
+    return middle < below_kmh, f"the median speed of {len(speeds)} vehicles is {compared}"
+
+
+def _speed(obstacle: Obstacle, road: Box) -> float | None:
+    """The speed along the road (m/s); None if it is not on the road, or comes towards ego."""
+    now = swept(obstacle, 0.0, 0.0)
+    then = swept(obstacle, _FOR_S, _FOR_S)
+    if now is None or then is None or not now.overlaps(road):
+        return None
+    speed = (then.s_min + then.s_max - now.s_min - now.s_max) / 2 / _FOR_S
+    # Who stands may drift backwards by what the recording is inexact
+    return max(speed, 0.0) if speed > -1.0 else None

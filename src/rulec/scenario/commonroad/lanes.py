@@ -1,0 +1,198 @@
+"""The lanes of ego's road side by side, and places on it as if every lane had straight bounds.
+
+Lanes get wider and narrower, begin and end; the road of a scenario has lanes of one width. So
+across the road a place is put in proportion between the bounds of its lane: the middle of a lane
+stays the middle, and a car that keeps within its lane does so in the scenario. Where ego is, lanes
+have the width that they have there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.scenario.commonroad.recording import Lanelet, Points, Recording
+from rulec.scenario.commonroad.reference_line import ReferenceLine, dense
+from rulec.scenario.commonroad.route import beside
+from rulec.scenario.model import MissingLane
+
+NARROWEST_LANE_M = 1.0
+"""Where a lane is narrower it has not begun yet, or has ended."""
+
+_EVERY_M = 1.0
+_MARGIN_M = 5.0
+_HAIR_M = 0.01
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """Bounds of lanes from right to left: ``bounds[i]`` at ``s[i]``, ``straight`` in the scenario.
+
+    ``there[i][k]``: does lane k (from 0) exist between ``s[i]`` and ``s[i + 1]``?
+    """
+
+    s: _Values
+    bounds: _Values
+    straight: _Values
+    there: NDArray[np.bool_]
+
+    def straightened(self, places: Points) -> Points:
+        """Places, ``s`` and ``d`` in each row, with ``d`` between the lanes' straight bounds."""
+        at = np.nan_to_num(places[:, 0])
+        before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
+        part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
+        part = np.clip(part, 0.0, 1.0)[:, None]
+        bounds = self.bounds[before] * (1 - part) + self.bounds[before + 1] * part
+        d = places[:, 1:]
+        lane = np.clip((bounds <= d).sum(axis=1) - 1, 0, bounds.shape[1] - 2)
+        row = np.arange(len(places))
+        right, left = bounds[row, lane], bounds[row, lane + 1]
+        low, high = self.straight[lane], self.straight[lane + 1]
+        offset = d[:, 0] - right
+        inside = (offset >= 0) & (d[:, 0] <= left)
+        stretched = low + offset * (high - low) / (left - right)
+        beyond = np.where(offset < 0, low + offset, high + d[:, 0] - left)
+        return np.stack((places[:, 0], np.where(inside, stretched, beyond)), axis=1)
+
+    def count_at(self, s: float) -> int:
+        """How many lanes there are at a place."""
+        piece = int(np.clip(np.searchsorted(self.s, s, "right") - 1, 0, len(self.there) - 1))
+        return int(self.there[piece].sum())
+
+    def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
+        """Where lanes are not there between two places, ``shift`` taken from each ``s``."""
+        return tuple(
+            MissingLane(lane + 1, (low - shift, high - shift))
+            for lane in range(self.there.shape[1])
+            for low, high in self._gaps(lane, start, end)
+        )
+
+    def _gaps(self, lane: int, start: float, end: float) -> Iterator[tuple[float, float]]:
+        gap: tuple[float, float] | None = None
+        for there, (low, high) in zip(self.there[:, lane], pairwise(self.s), strict=True):
+            low, high = max(float(low), start), min(float(high), end)
+            if low >= high:
+                continue
+            if not there:
+                gap = (gap[0] if gap else low, high)
+            elif gap:
+                yield gap
+                gap = None
+        if gap and gap[1] - gap[0] > _HAIR_M:
+            yield gap
+
+
+def lanes_along(
+    recording: Recording, way: Sequence[int], line: ReferenceLine, ego_s: float
+) -> Lanes:
+    """The lanes beside those of the way that lead the same way.
+
+    Raises:
+        ValueError: there is no lane as wide as ``NARROWEST_LANE_M``.
+    """
+    lanelets = [recording.lanelets[number] for number in way]
+    borders = _borders(lanelets, line)
+    grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
+    grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
+    strip = _Strip(recording, lanelets, line, borders, grid)
+    right, left = (_bound(strip, lanelets, left=side) for side in (False, True))
+    on_the_right = _side(strip, right, left=False)
+    on_the_left = _side(strip, left, left=True)
+    own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
+    columns = [*reversed(on_the_right), own, *on_the_left]
+    middles = strip.pieces((grid[:-1] + grid[1:]) / 2)
+    there = np.stack(
+        [
+            present[middles] & (np.minimum(width[:-1], width[1:]) >= NARROWEST_LANE_M)
+            for width, present in columns
+        ],
+        axis=1,
+    )
+    some = np.flatnonzero(there.any(axis=0))
+    if not len(some):
+        raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
+    kept = slice(some[0], some[-1] + 1)
+    widths = np.stack([width for width, _ in columns], axis=1)
+    first = right - widths[:, : len(on_the_right)].sum(axis=1)
+    bounds = np.cumsum(np.column_stack((first, widths)), axis=1)
+    usual = _usual_widths(grid, widths, there, ego_s)
+    straight = np.cumsum((0.0, *usual))
+    straight += float(np.interp(ego_s, grid, right)) - straight[len(on_the_right)]
+    bounded = slice(kept.start, kept.stop + 1)
+    return Lanes(grid, bounds[:, bounded], straight[bounded], there[:, kept])
+
+
+@dataclass(frozen=True, slots=True)
+class _Strip:
+    """What all lanes have in common: the way, where its lanelets meet, places to look at."""
+
+    recording: Recording
+    way: Sequence[Lanelet]
+    line: ReferenceLine
+    borders: _Values
+    grid: _Values
+
+    def pieces(self, s: _Values) -> NDArray[np.intp]:
+        """The numbers of the way's lanelets at places."""
+        return np.clip(np.searchsorted(self.borders, s, "right") - 1, 0, len(self.way) - 1)
+
+
+def _borders(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
+    """Where along the line lanelets begin, and the last one ends."""
+    ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
+    places = np.nan_to_num(line.coordinates(ends)[:, 0])
+    borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
+    borders[-1] = line.length
+    return borders
+
+
+def _usual_widths(
+    grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
+) -> Iterator[float]:
+    """The width of each lane where ego is, or if it is not there what it mostly is elsewhere."""
+    at = int(np.clip(np.searchsorted(grid, ego_s, "right") - 1, 0, len(there) - 1))
+    for width, own in zip(widths.T, there.T, strict=True):
+        if own[at]:
+            yield float(np.interp(ego_s, grid, width))
+        else:
+            yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
+
+
+def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
+    """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
+    rows = [beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
+    found = []
+    for k in range(max(map(len, rows))):
+        present = np.array([len(row) > k for row in rows])
+        own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
+        outer = _bound(strip, own, left=left)
+        known = present[strip.pieces(strip.grid)]
+        width = np.maximum(outer - inner if left else inner - outer, _HAIR_M)
+        if known.any():
+            width = np.interp(strip.grid, strip.grid[known], width[known])
+        inner = inner + width if left else inner - width
+        found.append((width, present))
+    return found
+
+
+def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
+    """The offset of the lanelets' left or right bound at the places of the grid."""
+    found = [np.empty((0, 2))]
+    for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
+        if lanelet is None:
+            continue
+        bound = dense(lanelet.left if left else lanelet.right, _EVERY_M)
+        places = strip.line.coordinates(bound)
+        near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
+        found.append(places[near])
+    places = np.concatenate(found)
+    if not len(places):
+        raise ValueError("a lane's bounds are nowhere beside its centre line")
+    places = places[np.argsort(places[:, 0], kind="stable")]
+    return np.interp(strip.grid, places[:, 0], places[:, 1])

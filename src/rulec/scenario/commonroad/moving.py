@@ -1,0 +1,135 @@
+"""What the library says of obstacles and planning problems, as a recording has it.
+
+Places and headings in a file may be areas and intervals. What an obstacle occupies then is all that
+it may occupy; where only one number can be used it is the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from rulec.scenario.commonroad.recording import Lanelet, Participant, Points, Problem, State
+
+FARTHEST_M = 1e8
+"""Numbers in a file are smaller than this, places included: the earth is not so large."""
+
+_CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2
+"""Corners and middles of the sides of a rectangle of length and width 1."""
+
+
+def participants_of(scenario: Any) -> Iterator[Participant]:
+    """All obstacles of a scenario of the library's, in its order."""
+    for one in scenario.static_obstacles:
+        yield _participant(one, [one.initial_state], standing=True)
+    for one in scenario.dynamic_obstacles:
+        yield _participant(one, _states_of(one), standing=False)
+    for one in scenario.environment_obstacle:
+        outline = _corners(one.occupancy_at_time(0))
+        yield Participant(one.obstacle_id, one.obstacle_type.value, True, {}, {0: outline})
+    for one in scenario.phantom_obstacle:
+        yield Participant(one.obstacle_id, "unknown", False, {}, dict(_predicted(one)))
+
+
+def _states_of(obstacle: Any) -> list[Any]:
+    trajectory = getattr(obstacle.prediction, "trajectory", None)
+    return [obstacle.initial_state, *(trajectory.state_list if trajectory else ())]
+
+
+def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Participant:
+    known: dict[int, State] = {}
+    outlines: dict[int, Points] = {}
+    for state in states:
+        step = int(state.time_step)
+        outline = _rectangle(obstacle.obstacle_shape, state)
+        if outline is None:
+            outline = _corners(obstacle.occupancy_at_time(step))
+        outlines[step] = outline
+        known[step] = _state(state, outline)
+    if not standing and not hasattr(obstacle.prediction, "trajectory"):
+        outlines.update(_predicted(obstacle))
+    return Participant(
+        obstacle.obstacle_id, obstacle.obstacle_type.value, standing, known, outlines
+    )
+
+
+def _predicted(obstacle: Any) -> Iterator[tuple[int, Points]]:
+    """What a prediction without states says is occupied."""
+    for occupancy in getattr(obstacle.prediction, "occupancy_set", None) or ():
+        shape = getattr(occupancy, "shape", occupancy)
+        yield int(occupancy.time_step), _corners(shape)
+
+
+def _rectangle(shape: Any, state: Any) -> Points | None:
+    """The outline in the usual case, a rectangle in an exact place; None in any other."""
+    length, width = getattr(shape, "length", None), getattr(shape, "width", None)
+    position, heading = state.position, state.orientation
+    plain = isinstance(length, (int, float)) and isinstance(width, (int, float))
+    if not plain or not isinstance(position, np.ndarray) or not isinstance(heading, (int, float)):
+        return None
+    cos, sin = np.cos(heading), np.sin(heading)
+    size = np.array([length, width], dtype=float)
+    corners = _CORNERS * size - (getattr(shape, "origin_x_shift", 0.0), 0.0)
+    outline: Points = corners @ np.array([[cos, sin], [-sin, cos]]) + position[:2]
+    return outline
+
+
+def _corners(occupancy: Any) -> Points:
+    """A polygon's corners and the middles of its sides; all of a group's."""
+    shape = occupancy.shapely_object
+    outline = shape.convex_hull.exterior if shape.geom_type != "Polygon" else shape.exterior
+    corners = np.asarray(outline.coords, dtype=float)[:, :2]
+    middles = (corners[1:] + corners[:-1]) / 2
+    return np.concatenate((corners[:-1], middles))
+
+
+def _state(state: Any, outline: Points) -> State:
+    position = state.position
+    x, y = position[:2] if isinstance(position, np.ndarray) else outline.mean(axis=0)
+    return State(
+        _number(float(x)),
+        _number(float(y)),
+        _number(state.orientation),
+        _number(getattr(state, "velocity", None)),
+        _number(getattr(state, "acceleration", None)),
+    )
+
+
+def _number(value: Any) -> float:
+    """A number, the middle of an interval, or 0 for what is not said."""
+    if value is None:
+        return 0.0
+    number = float(value) if isinstance(value, (int, float)) else (value.start + value.end) / 2
+    if not abs(number) < FARTHEST_M:
+        raise ValueError("a state has a value that is no number, or out of all bounds")
+    return number
+
+
+def problem_of(problem: Any, lanelets: Mapping[int, Lanelet]) -> Problem:
+    """A planning problem of the library's."""
+    start = problem.initial_state
+    outline = (
+        np.zeros((1, 2)) if isinstance(start.position, np.ndarray) else _corners(start.position)
+    )
+    goals = [point for state in problem.goal.state_list for point in _goal(state)]
+    for numbers in (problem.goal.lanelets_of_goal_position or {}).values():
+        goals += [
+            lanelets[i].centre[len(lanelets[i].centre) // 2] for i in numbers if i in lanelets
+        ]
+    return Problem(
+        problem.planning_problem_id,
+        int(start.time_step),
+        _state(start, outline),
+        np.array(goals, dtype=float).reshape(-1, 2),
+    )
+
+
+def _goal(state: Any) -> Iterator[Points]:
+    position: Any = getattr(state, "position", None)
+    if isinstance(position, np.ndarray):
+        yield position[:2]
+    elif hasattr(position, "shapely_object"):
+        centre = position.shapely_object.centroid
+        yield np.array([centre.x, centre.y])

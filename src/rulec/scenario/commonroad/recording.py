@@ -1,0 +1,100 @@
+"""What a CommonRoad file says, as data: lanelets, participants, and whose maneuver is sought.
+
+Places are in the file's own frame, x and y in metres; angles are radians, counter-clockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from numpy import float64
+from numpy.typing import NDArray
+
+Points = NDArray[float64]
+"""Places: one row each, x and y."""
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """A traffic light's programme: colours, each for so many time steps, from a step on."""
+
+    begin: int
+    phases: tuple[tuple[str, int], ...]
+
+    def colour_at(self, step: int) -> str:
+        """Its colour at a time step."""
+        left = (step - self.begin) % sum(duration for _, duration in self.phases)
+        for colour, duration in self.phases:
+            if left < duration:
+                return colour
+            left -= duration
+        raise AssertionError("a remainder is smaller than what it is the remainder of")
+
+
+@dataclass(frozen=True, slots=True)
+class Lanelet:
+    """A piece of a lane. ``left`` and ``right`` are its bounds in the direction of travel.
+
+    ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
+    the names of those that hold here; ``lights`` are those that have a programme.
+    """
+
+    id: int
+    left: Points
+    right: Points
+    centre: Points
+    successors: tuple[int, ...]
+    predecessors: tuple[int, ...]
+    left_of: int | None
+    right_of: int | None
+    types: frozenset[str]
+    signs: frozenset[str]
+    limit_mps: float | None
+    lights: tuple[Light, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where a centre is, its heading, and its motion along that heading."""
+
+    x: float
+    y: float
+    heading: float
+    speed: float
+    acceleration: float
+
+
+@dataclass(frozen=True, slots=True)
+class Participant:
+    """An obstacle of the file: by time step what it occupies, as a polygon's corners.
+
+    ``standing``: it is there all the time, in its only state.
+    """
+
+    id: int
+    type: str
+    standing: bool
+    states: Mapping[int, State]
+    outlines: Mapping[int, Points]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A planning problem: where ego is at a time step, and places where it wants to go."""
+
+    id: int
+    step: int
+    start: State
+    goals: Points
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A file: one time step takes ``step_s`` seconds."""
+
+    name: str
+    step_s: float
+    lanelets: Mapping[int, Lanelet]
+    participants: tuple[Participant, ...]
+    problems: tuple[Problem, ...]

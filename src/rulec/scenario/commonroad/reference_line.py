@@ -1,0 +1,141 @@
+"""Street-wise coordinates: the arc length ``s`` along a reference line, the offset ``d`` from it.
+
+The foot of a place is where the place is perpendicular to the line. On a line of straight pieces
+that leaves gaps at the outside of every bend and overlaps at the inside; so directions are
+interpolated along each piece between those of its ends (Bender, Ziegler, Stiller, "Lanelets:
+Efficient map representation for autonomous driving", IV 2014), and ``s`` and ``d`` vary without
+jumps. Pieces are 5 m long at most, so that a bend is felt no farther from it. Beyond its ends the
+line goes on straight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy import float64, intp
+from numpy.typing import NDArray
+
+from rulec.scenario.commonroad.recording import Points
+
+BEYOND_M = 2000.0
+"""How far the line goes on straight beyond its ends."""
+
+_CLOSEST_M = 0.05
+_PIECE_M = 5.0
+_AT_ONCE = 1 << 18
+_HAIR = 1e-9
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceLine:
+    """A line of straight pieces: for each where it begins, and how it and the direction run on.
+
+    ``first`` and ``change``: the slope of the interpolated direction at its beginning, as seen from
+    the piece, and by how much it changes up to the end.
+    """
+
+    arc: _Values
+    start: Points
+    ahead: Points
+    lengths: _Values
+    first: _Values
+    change: _Values
+
+    @property
+    def length(self) -> float:
+        """From the first corner to the last, without what lies beyond."""
+        return float(self.arc[-1])
+
+    def heading_at(self, s: float) -> float:
+        """The direction of the piece at ``s``, in radians."""
+        dx, dy = self.ahead[self._piece(np.array([s]))[0]]
+        return float(np.arctan2(dy, dx))
+
+    def coordinates(self, places: Points) -> Points:
+        """``s`` and ``d`` of places, a row each: those of the nearest foot; NaN without one."""
+        every = np.arange(len(self.arc))[None, :]
+        size = max(1, _AT_ONCE // len(self.arc))
+        parts = [self._nearest(places[at : at + size], every) for at in range(0, len(places), size)]
+        return np.concatenate(parts) if parts else np.empty((0, 2))
+
+    def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
+        """As ``coordinates``, of feet on pieces not farther than ``reach`` from an ``s`` each.
+
+        So a body is not torn apart where the road comes near itself.
+        """
+        low, high = self._piece(around - reach), self._piece(around + reach)
+        steps = np.arange(int((high - low).max(initial=0)) + 1)
+        size = max(1, _AT_ONCE // len(steps))
+        parts = [
+            self._nearest(
+                places[at : at + size],
+                np.minimum(low[at : at + size, None] + steps, high[at : at + size, None]),
+            )
+            for at in range(0, len(places), size)
+        ]
+        return np.concatenate(parts) if parts else np.empty((0, 2))
+
+    def _piece(self, s: _Values) -> NDArray[intp]:
+        return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
+
+    def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
+        """The nearest feet of places on those pieces: a row for each place, or one for all."""
+        ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
+        dx = places[:, :1] - self.start[pieces, 0]
+        dy = places[:, 1:] - self.start[pieces, 1]
+        along = dx * ux + dy * uy
+        across = ux * dy - uy * dx
+        lengths, first = self.lengths[pieces], self.first[pieces]
+        room = lengths - across * self.change[pieces]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = (along + across * first) / room
+        good = (room > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
+        distance = np.where(good, np.hypot(along - part * lengths, across), np.inf)
+        best = np.argmin(distance, axis=1)
+        row = np.arange(len(places))
+        piece = np.broadcast_to(pieces, distance.shape)[row, best]
+        s = self.arc[piece] + part[row, best] * self.lengths[piece]
+        d = np.copysign(distance[row, best], across[row, best])
+        return np.where(np.isfinite(d)[:, None], np.stack((s, d), axis=1), np.nan)
+
+
+def reference_line(corners: Points) -> ReferenceLine:
+    """The line through corners, of which those too close to the one before are left out."""
+    kept = [corners[0]]
+    for corner in corners[1:]:
+        if np.hypot(*(corner - kept[-1])) > _CLOSEST_M:
+            kept.append(corner)
+    points = dense(np.array(kept), _PIECE_M)
+    start, end = points[1] - points[0], points[-1] - points[-2]
+    extended = np.concatenate(
+        (
+            [points[0] - start / np.hypot(*start) * BEYOND_M],
+            points,
+            [points[-1] + end / np.hypot(*end) * BEYOND_M],
+        )
+    )
+    steps = np.diff(extended, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    angles = np.arctan2(steps[:, 1], steps[:, 0])
+    halves = _turn(angles[:-1], angles[1:]) / 2
+    first, last = np.tan(np.append(0.0, -halves)), np.tan(np.append(halves, 0.0))
+    arc = np.concatenate(([0.0], np.cumsum(lengths)[:-1])) - BEYOND_M
+    return ReferenceLine(arc, extended[:-1], steps / lengths[:, None], lengths, first, last - first)
+
+
+def dense(points: Points, every_m: float) -> Points:
+    """A line of straight pieces with further points, so that no two are farther apart."""
+    parts = [points[:1]]
+    for one, other in pairwise(points):
+        count = max(1, int(np.ceil(np.hypot(*(other - one)) / every_m)))
+        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(parts)
+
+
+def _turn(before: _Values, after: _Values) -> _Values:
+    """From one angle to another, the short way."""
+    turned: _Values = (after - before + np.pi) % (2 * np.pi) - np.pi
+    return turned

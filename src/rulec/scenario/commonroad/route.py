@@ -1,0 +1,177 @@
+"""The lanelets that ego follows: the one it is on, those that led to it, those that lie ahead."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from math import atan2, cos, pi
+
+import numpy as np
+import shapely
+
+from rulec.scenario.commonroad.recording import Lanelet, Points, Recording, State
+
+REACH_M = 300.0
+"""The road is followed this far ahead of ego and behind it, where the file has so much of it."""
+
+NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_area"})
+"""Types of lanelets that are no part of the carriageway."""
+
+_NEAR_M = 3.0
+_LOOK_M = 30.0
+_Next = Callable[[Lanelet], Iterable[int]]
+
+
+def is_lane(lanelet: Lanelet) -> bool:
+    """Is it a part of the carriageway?"""
+    return not lanelet.types & NO_LANES
+
+
+def lanelet_of(recording: Recording, state: State) -> int | None:
+    """The lanelet that a vehicle is on: of those in its place the one that leads its way best.
+
+    The nearest one if it is beside all of them by no more than 3 m.
+    """
+    place = shapely.Point(state.x, state.y)
+    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
+    far = {x.id: float(shapely.distance(_area(x), place)) for x in lanes}
+    near = [x for x in lanes if far[x.id] <= _NEAR_M]
+    inside = [x for x in near if far[x.id] == 0.0]
+
+    def rank(lanelet: Lanelet) -> tuple[float, float, int]:
+        error = abs(_turn(_heading_beside(lanelet, state), state.heading))
+        return (0.0 if inside else far[lanelet.id], round(error, 6), lanelet.id)
+
+    return min(inside or near, key=rank).id if near else None
+
+
+def lanelets_at(recording: Recording, places: Points) -> frozenset[int]:
+    """The lanes that hold one of the places, and those beside them that lead the same way."""
+    points = shapely.points(places)
+    found = {
+        lanelet.id
+        for lanelet in recording.lanelets.values()
+        if is_lane(lanelet) and bool(shapely.intersects(_area(lanelet), points).any())
+    }
+    return frozenset(
+        y
+        for x in found
+        for y in (x, *beside(recording, x, left=True), *beside(recording, x, left=False))
+    )
+
+
+def beside(recording: Recording, start: int, *, left: bool) -> tuple[int, ...]:
+    """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
+    found: list[int] = []
+    lanelet = recording.lanelets[start]
+    while True:
+        number = lanelet.left_of if left else lanelet.right_of
+        if number is None or number in (start, *found) or number not in recording.lanelets:
+            return tuple(found)
+        lanelet = recording.lanelets[number]
+        if not is_lane(lanelet):
+            return tuple(found)
+        found.append(number)
+
+
+def route(recording: Recording, start: int, targets: frozenset[int]) -> tuple[int, ...]:
+    """The lanelets along ego's road, in their order, each followed by one of its successors.
+
+    Where the road branches: towards a target if one can be reached, else as straight as possible.
+    """
+    lanelets = recording.lanelets
+    ahead = _way_to(lanelets, start, targets)
+    ahead = _straight_on(lanelets, ahead, lambda x: x.successors, backwards=False)
+    behind = _straight_on(lanelets, [start], lambda x: x.predecessors, backwards=True, taken=ahead)
+    return (*behind[:0:-1], *ahead)
+
+
+def _way_to(lanelets: Mapping[int, Lanelet], start: int, targets: frozenset[int]) -> list[int]:
+    """The way through the fewest lanelets; only the start if there is none."""
+    came_from: dict[int, int | None] = {start: None}
+    waiting = deque([start])
+    while waiting:
+        here = waiting.popleft()
+        if here in targets:
+            way = [here]
+            while (previous := came_from[way[-1]]) is not None:
+                way.append(previous)
+            return way[::-1]
+        for number in lanelets[here].successors:
+            if number in lanelets and number not in came_from:
+                came_from[number] = here
+                waiting.append(number)
+    return [start]
+
+
+def _straight_on(
+    lanelets: Mapping[int, Lanelet],
+    way: list[int],
+    following: _Next,
+    *,
+    backwards: bool,
+    taken: Iterable[int] = (),
+) -> list[int]:
+    way = list(way)
+    seen = {*way, *taken}
+    reach = sum(_length(lanelets[number]) for number in way[1:])
+    while reach < REACH_M:
+        here = lanelets[way[-1]]
+        options = [lanelets[n] for n in following(here) if n in lanelets and n not in seen]
+        options = [option for option in options if is_lane(option)]
+        if not options:
+            break
+        leaving = _end_heading(here, backwards)
+        chosen = min(
+            options, key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), x.id)
+        )
+        way.append(chosen.id)
+        seen.add(chosen.id)
+        reach += _length(chosen)
+    return way
+
+
+def _area(lanelet: Lanelet) -> shapely.Polygon:
+    return shapely.make_valid(shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1]))))
+
+
+def _length(lanelet: Lanelet) -> float:
+    return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+
+
+def _heading_beside(lanelet: Lanelet, state: State) -> float:
+    """The lanelet's direction at the piece of its centre line nearest to a vehicle."""
+    centre = shapely.LineString(lanelet.centre)
+    along = shapely.line_locate_point(centre, shapely.Point(state.x, state.y))
+    reached = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(lanelet.centre, axis=0).T))))
+    piece = int(np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(reached) - 2))
+    return _direction(lanelet.centre[piece], lanelet.centre[piece + 1])
+
+
+def _end_heading(lanelet: Lanelet, backwards: bool) -> float:
+    """The direction in which the way leaves a lanelet."""
+    centre = lanelet.centre[::-1] if backwards else lanelet.centre
+    return _direction(centre[-2], centre[-1])
+
+
+def _heading_ahead(lanelet: Lanelet, backwards: bool) -> float:
+    """The direction in which the way leads some 30 m into a lanelet."""
+    centre = lanelet.centre[::-1] if backwards else lanelet.centre
+    line = shapely.LineString(centre)
+    end = min(line.length, _LOOK_M)
+    one, other = (line.interpolate(s) for s in (max(end - 1.0, 0.0), end))
+    return _direction((one.x, one.y), (other.x, other.y))
+
+
+def _direction(one: Iterable[float], other: Iterable[float]) -> float:
+    (x0, y0), (x1, y1) = one, other
+    return atan2(y1 - y0, x1 - x0)
+
+
+def _turn(one: float, other: float) -> float:
+    return (other - one + pi) % (2 * pi) - pi
+
+
+def leads_the_same_way(one: float, other: float) -> bool:
+    """Do two headings differ by less than 60°?"""
+    return cos(one - other) > 0.5

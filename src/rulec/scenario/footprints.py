@@ -1,0 +1,74 @@
+"""Where an obstacle is that is known by what it occupies from time to time."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
+
+from rulec.scenario.geometry import Box
+from rulec.scenario.model import Footprints
+
+
+def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
+    """The bounds of all that is occupied from ``start`` to ``end`` (s); None if nothing is."""
+    found = list(_boxes(motion, start, end))
+    if not found:
+        return None
+    return Box(
+        min(box.s_min for box in found),
+        max(box.s_max for box in found),
+        min(box.d_min for box in found),
+        max(box.d_max for box in found),
+    )
+
+
+def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float], ...]:
+    """Each time the middle moved: from when to when, and how far along and across the road."""
+    steps = []
+    for k in range(len(motion.times) - 1):
+        one, other = motion.boxes[k : k + 2]
+        if one is not None and other is not None:
+            ahead, left = _shift(one, other)
+            if (ahead, left) != (0.0, 0.0):
+                steps.append((motion.times[k], motion.times[k + 1], ahead, left))
+    return tuple(steps)
+
+
+def displacement_within(motion: Footprints, start: float, end: float) -> tuple[float, float]:
+    """How far along and across the road the middle moved between two times (s)."""
+    found = list(_boxes(motion, start, end))
+    return _shift(found[0], found[-1]) if found else (0.0, 0.0)
+
+
+def _shift(one: Box, other: Box) -> tuple[float, float]:
+    return (
+        (other.s_min + other.s_max - one.s_min - one.s_max) / 2,
+        (other.d_min + other.d_max - one.d_min - one.d_max) / 2,
+    )
+
+
+def _boxes(motion: Footprints, start: float, end: float) -> Iterator[Box]:
+    """What is occupied at both times and at all between at which that is known."""
+    times = motion.times
+    first, last = bisect_left(times, start), bisect_right(times, end)
+    ends = (_at(motion, start), *motion.boxes[first:last], _at(motion, end))
+    return (box for box in ends if box is not None)
+
+
+def _at(motion: Footprints, time: float) -> Box | None:
+    times, boxes = motion.times, motion.boxes
+    after = bisect_left(times, time)
+    if after == len(times):
+        return None
+    if times[after] == time:
+        return boxes[after]
+    one, other = (boxes[after - 1], boxes[after]) if after else (None, None)
+    if one is None or other is None:
+        return None
+    part = (time - times[after - 1]) / (times[after] - times[after - 1])
+    return Box(
+        one.s_min + part * (other.s_min - one.s_min),
+        one.s_max + part * (other.s_max - one.s_max),
+        one.d_min + part * (other.d_min - one.d_min),
+        one.d_max + part * (other.d_max - one.d_max),
+    )

@@ -1,0 +1,155 @@
+"""Maneuvers of a recorded scene, as the user meets them."""
+
+import json
+
+import pytest
+from roads import ROAD_XML
+
+from rulec.cli.main import main
+
+pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
+
+
+@pytest.fixture
+def road(tmp_path):
+    file = tmp_path / "road.xml"
+    file.write_text(ROAD_XML)
+    return str(file)
+
+
+@pytest.fixture
+def answer(capsys, road):
+    def run(*arguments, verb="maneuvers"):
+        status = main([verb, road, *arguments])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return run
+
+
+def test_text(answer):
+    status, out, err = answer("-r", "esterle2019")
+    assert (status, err) == (0, "")
+    assert out.splitlines()[:7] == [
+        "scenario    road: 4 s in steps of 0.5 s, partition paper, adjacency touch",
+        "obstacles   1 on the road of lanelet 1",
+        "recorded    until 0 s; who is there then is taken to go on at its last speed",
+        "derived     CONGESTED = false: it takes 3 vehicles that go ego's way on its road, here 1",
+        "graph       18 nodes, 16 edges",
+        "maneuvers   1",
+        "satisfying  1 by esterle2019 (R1, R2, R3)",
+    ]
+
+
+def test_json(answer):
+    status, out, _ = answer("-r", "vienna", "--json")
+    scene = json.loads(out)["scene"]
+    assert status == 0
+    assert scene.pop("unknown")[:2] == ["safe_gap", "oncoming"]
+    assert {name: item["value"] for name, item in scene.pop("derived").items()} == {
+        "congested": False,
+        "lanes": "one_lane",
+    }
+    assert scene == {"reference": 1, "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
+
+
+def test_what_a_rulebook_reads_and_nobody_supplies_is_said(answer):
+    _, out, _ = answer("-r", "vienna")
+    (line,) = (x for x in out.splitlines() if x.startswith("unknown"))
+    assert line.startswith("unknown     safe_gap, oncoming, ")
+    assert line.endswith("more: the rulebook's defaults stand for them")
+
+
+def test_congestion_is_configurable(tmp_path, capsys):
+    cars = "".join(
+        ROAD_XML[ROAD_XML.index("  <obstacle") : ROAD_XML.index("  <planning")]
+        .replace('"3"', f'"{n}"')
+        .replace("<x>40<", f"<x>{n}<")
+        for n in (30, 50, 70)
+    )
+    file = tmp_path / "full.xml"
+    file.write_text(ROAD_XML.replace("  <planning", f"{cars}  <planning"))
+    for below, expected in (("17", False), ("19", True)):  # they go 5 m/s, 18 km/h
+        main(["maneuvers", str(file), "-r", "esterle2019", "--json", "--congested-below", below])
+        scene = json.loads(capsys.readouterr().out)["scene"]
+        assert scene["derived"]["CONGESTED"]["value"] is expected
+
+
+def test_another_ego(answer):
+    status, out, _ = answer("-r", "esterle2019", "--ego", "3", "--json")
+    found = json.loads(out)
+    assert (status, found["scene"]["obstacles"], found["nodes"]) == (0, 0, 9)
+
+
+@pytest.mark.parametrize(
+    "option",
+    [["--ego", "7"], ["--at-time", "1"], ["--reference", "7"], ["--ego", "3", "--at-time", "1"]],
+)
+def test_what_is_not_there(answer, option):
+    status, out, err = answer("-r", "esterle2019", *option)
+    assert (status, out) == (2, "")
+    assert "error[R0612]" in err
+    assert "= help: " in err
+
+
+def test_choices_are_refused_for_other_scenarios(capsys):
+    assert main(["maneuvers", "s1", "-r", "esterle2019", "--prediction", "constant"]) == 2
+    assert "error[R0613]" in capsys.readouterr().err
+
+
+def test_the_step_gets_shorter_until_ego_has_room(tmp_path, capsys):
+    """A car 3 m behind ego's centre at 10 m/s takes its place in 0.3 s: 0.5 s are too long."""
+    file = tmp_path / "close.xml"
+    text = ROAD_XML.replace("<x>40<", "<x>4<").replace(
+        "<velocity><exact>5</exact></velocity>\n    </initialState>\n  </obstacle>",
+        "<velocity><exact>10</exact></velocity>\n    </initialState>\n  </obstacle>",
+    )
+    file.write_text(text)
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["step_s"] == 0.25
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "0.5"]) == 2
+    assert "a step of 0.25 s would do" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("types", "kind"),
+    [
+        ("type vehicle", "vehicle"),
+        ("type vehicle\ntype car is vehicle", "car"),
+        ("type road_user", "road_user"),
+        ("type obstacle", "obstacle"),
+    ],
+)
+def test_the_most_specific_type_that_a_rulebook_knows(answer, tmp_path, types, kind):
+    book = tmp_path / "book.rules"
+    book.write_text(
+        f"rulebook book\n{types}\nposition(o: {kind}) is one of b, f, l, r\n"
+        f"hard rule A (o: {kind}) {{ require always b(o) }}\n"
+    )
+    status, out, err = answer("-r", str(book), "--json")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["satisfying"] == 1
+
+
+def test_what_a_rulebook_cannot_speak_of_is_in_the_way_all_the_same(answer, tmp_path):
+    book = tmp_path / "book.rules"
+    book.write_text(
+        "rulebook book\ntype cat\nposition(o: cat) is one of b, f, l, r\n"
+        "hard rule A (o: cat) { require always b(o) }\n"
+    )
+    status, out, err = answer("-r", str(book), "--json")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["nodes"] == 18
+
+
+def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
+    book = tmp_path / "book.rules"
+    book.write_text(
+        "rulebook book\nlanes is one of narrow, wide default wide\n"
+        "quantity congested in m default 3\nhard rule A { require always "
+        "wide and congested > 2 m }\n"
+    )
+    status, out, err = answer("-r", str(book), "--json")
+    assert (status, err) == (0, "")
+    scene = json.loads(out)["scene"]
+    assert (scene["derived"], scene["unknown"]) == ({}, ["lanes", "congested"])

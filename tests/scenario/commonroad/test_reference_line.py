@@ -1,0 +1,86 @@
+"""Street-wise coordinates against circles and straight lines, where they are known."""
+
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from rulec.scenario.commonroad.reference_line import BEYOND_M, reference_line
+
+RADIUS = 60.0
+offsets = st.floats(-20, 20)
+
+
+def arc(pieces, angle=pi):
+    """A left turn around (0, RADIUS) from the origin, with corners on the circle."""
+    at = np.linspace(0, angle, pieces + 1)
+    return np.stack((RADIUS * np.sin(at), RADIUS - RADIUS * np.cos(at)), axis=1)
+
+
+@given(st.floats(-500, 600), st.floats(-500, 500))
+def test_on_a_straight_line_they_are_x_and_y(x, y):
+    line = reference_line(np.array([(0.0, 0.0), (30.0, 0.0), (100.0, 0.0)]))
+    ((s, d),) = line.coordinates(np.array([(x, y)]))
+    assert (s, d) == pytest.approx((x, y), abs=1e-6)
+    assert line.length == pytest.approx(100)
+
+
+@given(st.floats(0.1, pi - 0.1), offsets)
+def test_on_a_circle_they_are_the_angle_and_the_distance(angle, offset):
+    """With corners every 1.9 m the line and its interpolated directions are those of the circle."""
+    line = reference_line(arc(100))
+    far = RADIUS - offset  # to the left is towards the centre
+    ((s, d),) = line.coordinates(np.array([(far * sin(angle), RADIUS - far * cos(angle))]))
+    assert s == pytest.approx(RADIUS * angle, abs=0.05)
+    assert d == pytest.approx(offset, abs=0.02)
+    assert line.heading_at(s) == pytest.approx(angle, abs=0.02)
+
+
+@given(st.floats(0.1, 3), offsets, st.integers(4, 12))
+def test_they_do_not_jump_at_corners(angle, offset, pieces):
+    """Even where the line is coarse: a step of 1 cm is one of a few centimetres at most."""
+    assume(abs(offset) < 12)
+    line = reference_line(arc(pieces))
+    far = RADIUS - offset
+    places = np.array(
+        [(far * sin(a), RADIUS - far * cos(a)) for a in (angle, angle + 0.01 / RADIUS)]
+    )
+    one, other = line.coordinates(places)
+    assert np.abs(one - other).max() < 0.05
+    assert other[0] > one[0]
+
+
+@given(st.floats(-1, 1.5), offsets)
+def test_a_window_finds_the_same_feet(part, offset):
+    line = reference_line(arc(40))
+    place = np.array([(RADIUS * part, offset)])
+    ((s, d),) = line.coordinates(place)
+    ((near_s, near_d),) = line.coordinates_near(place, np.array([s + 3]), np.array([5.0]))
+    assert (near_s, near_d) == (s, d)
+
+
+def test_a_window_keeps_to_its_part_of_a_road_that_comes_near_itself():
+    there_and_back = np.array([(0, 0), (50, 0), (60, 5), (50, 10), (0, 10)], dtype=float)
+    line = reference_line(there_and_back)
+    place = np.array([(20.0, 6.0)])
+    ((s, d),) = line.coordinates(place)
+    assert (s, d) == pytest.approx((line.length - 20, 4), abs=1e-6)
+    ((s, d),) = line.coordinates_near(place, np.array([20.0]), np.array([10.0]))
+    assert (s, d) == pytest.approx((20, 6), abs=1e-6)
+
+
+def test_beyond_the_ends_it_goes_on_straight():
+    line = reference_line(arc(100, pi / 2))
+    ((s, d), (t, e)) = line.coordinates(np.array([(-30.0, 4.0), (RADIUS + 3, RADIUS + 50)]))
+    assert (s, d) == pytest.approx((-30, 4), abs=0.3)
+    assert (t, e) == pytest.approx((line.length + 50, -3), abs=0.8)
+
+
+def test_what_has_no_foot_has_no_coordinates():
+    line = reference_line(np.array([(0.0, 0.0), (10.0, 0.0)]))
+    found = line.coordinates(np.array([(-BEYOND_M - 1, 0.0), (5.0, 1.0)]))
+    assert np.isnan(found[0]).all()
+    assert found[1].tolist() == [5, 1]
+    assert line.coordinates(np.empty((0, 2))).shape == (0, 2)
