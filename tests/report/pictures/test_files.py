@@ -74,6 +74,17 @@ def test_png():
     assert at(22, 28) == white, "holes are not filled"
 
 
+def test_any_letters_and_long_titles():
+    pytest.importorskip("matplotlib")
+    words = Words("漢字 \x07 \U0001f600", (10, 10))
+    strange = Drawing("a title of many words " * 30, [Picture("", 400, 40, (words,))])
+    assert as_bytes(strange, "png", "f.png")
+    texts = [one.text for one in ET.fromstring(as_bytes(strange, "svg", "f")).iter(f"{SVG}text")]
+    assert " ".join(texts[:-1]) == strange.title.strip()
+    assert max(map(len, texts)) * 7.3 <= 400
+    assert texts[-1] == "漢字 \\x07 \U0001f600"
+
+
 def test_a_png_that_is_too_large_is_refused():
     pytest.importorskip("matplotlib")
     tall = Drawing("t", [Picture("", 100, 30_000, ())])

@@ -29,19 +29,37 @@ OVERTAKEN = trace(
 def test_rows(rules):
     found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
     rows = {row.title: row.runs for row in found.rows}
+    assert found.left_out == 0
     assert list(rows) == ["CONGESTED", "surface", "position(v)", "position(w)"]
     assert rows["CONGESTED"] == (Run(0, 3, value=False),)
     assert rows["position(v)"] == (Run(0, 0, "b"), Run(1, 2, "r"), Run(3, 3, "f"))
     assert rows["position(w)"] == (Run(0, 0, None), Run(1, 2, "b"), Run(3, 3, None))
 
 
+def test_what_is_only_a_default_matters_if_a_violated_rule_reads_it(rules):
+    """R1 reads CONGESTED and positions; the surface is read by the other two."""
+    here = trace([{"position": {"v": letter}} for letter in "brrf"], {"v": "vehicle"})
+    found = ribbon(here, rules, verify(here, rules))
+    assert [one.rule for one in found.violations] == ["R1"]
+    assert [row.title for row in found.rows] == ["CONGESTED", "position(v)"]
+    assert found.left_out == 1
+
+
 def test_a_violation_is_marked_where_it_is_decided(rules):
     """Passing on the right is done with the state in which v is behind: the last of four."""
     found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
     picture = ribbon_picture(found, rules)
-    (mark,) = [one for one in picture.marks if isinstance(one, Line) and one.style == "violation"]
+    moment, mark = (
+        one
+        for one in picture.marks
+        if isinstance(one, Line) and one.style in ("moment", "violation")
+    )
     last = next(one for one in picture.marks if isinstance(one, Area) and "f, 1.5" in one.tip)
-    assert {x for x, _ in mark.points} == {min(x for x, _ in last.rings[0])}
+    assert {x for x, _ in moment.points + mark.points} == {min(x for x, _ in last.rings[0])}
+    # The thick part is in the row of v.
+    (top, bottom), ys = sorted(y for _, y in mark.points), [y for _, y in last.rings[0]]
+    assert top < min(ys) < max(ys) < bottom
+    assert bottom - top < 30
     words = [one.text for one in picture.marks if isinstance(one, Words)]
     told = "hard rule R1 [Article 11.1, 11.6] for v = v: beyond saving after state 3, at 1.5 s"
     assert told in words
@@ -91,6 +109,8 @@ def test_quantities_and_pairs(tmp_path):
     picture = ribbon_picture(found, rules)
     curves = [one for one in picture.marks if isinstance(one, Line) and one.style == "curve"]
     rising, still, falling, _ = ([y for _, y in one.points] for one in curves)
+    titles = [one.text for one in picture.marks if isinstance(one, Words) and one.anchor == "end"]
+    assert titles[:3] == ["speed(a) in m/s: 0 to 2", "speed(b) in m/s: 0", "gap(a, b) in m: 7 to 9"]
     # Downwards is more y.
     assert rising == sorted(rising, reverse=True)
     assert rising[0] > rising[-1]

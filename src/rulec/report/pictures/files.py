@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Literal, cast, get_args
 
-from rulec.report.pictures.marks import LINE_HEIGHT, Picture, Words, stacked
+from rulec.report.automaton_drawing import CHARACTER
+from rulec.report.pictures.marks import LINE_HEIGHT, MARGIN, Picture, Words, stacked
 
 Format = Literal["svg", "png", "html"]
-
-_MARGIN = 14.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +39,13 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
         from rulec.report.pictures.page import as_page
 
         return as_page(drawing.title, drawing.pictures, drawing.legend).encode()
-    title = Words(drawing.title, (_MARGIN, _MARGIN), style="strong")
     width = max(picture.width for picture in drawing.pictures)
-    head = Picture(drawing.title, width, _MARGIN + LINE_HEIGHT, (title,))
+    lines = wrap(drawing.title, int((width - 2 * MARGIN) / CHARACTER))
+    words = tuple(
+        Words(line, (MARGIN, MARGIN + n * LINE_HEIGHT), style="strong")
+        for n, line in enumerate(lines)
+    )
+    head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, words)
     below = [drawing.legend] if drawing.legend else []
     whole = stacked(drawing.title, [head, *drawing.pictures, *below])
     if form == "png":

@@ -11,6 +11,8 @@ from rulec.report.automaton_drawing import text_width
 from rulec.report.pictures.legend import Entry, legend
 from rulec.report.pictures.marks import (
     LINE_HEIGHT,
+    MARGIN,
+    WIDTH,
     Area,
     Line,
     Mark,
@@ -23,9 +25,6 @@ from rulec.report.pictures.marks import (
 from rulec.report.pictures.signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.runtime.cheapest import Maneuver
 from rulec.runtime.passages import Passages
-
-WIDTH = 900.0
-MARGIN = 14.0
 
 _ROW = 34.0
 _TALLEST = 720.0

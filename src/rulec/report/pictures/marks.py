@@ -14,6 +14,12 @@ from rulec.report.automaton_drawing import text_width
 
 Point = tuple[float, float]
 
+WIDTH = 900.0
+"""Of every picture, so that they can stand below each other."""
+
+MARGIN = 14.0
+"""Left free at the sides."""
+
 LINE_HEIGHT = 16.0
 """From one line of text to the next."""
 

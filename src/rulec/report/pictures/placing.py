@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -13,6 +13,9 @@ Rectangle = tuple[float, float, float, float]
 
 _ROOM = 4.0
 """Between words and what is beside them, in px."""
+
+_LARGE = 0.6
+"""Of the largest room's size; such rooms are all as good."""
 
 _SHIFTS = (0.5, 0.25, 0.75, 0.1, 0.9)
 """Where along a rectangle words are tried, as a part of the way that they can go."""
@@ -39,16 +42,28 @@ class Placing:
     def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> Words | None:
         """The first of the texts that fits into one of the rooms, upright if it can be.
 
-        The largest room is tried first. None if none of the texts fits anywhere.
+        Of the large rooms that in the middle is tried first. None if no text fits anywhere.
         """
-        largest = sorted(rooms, key=lambda room: (room[0] - room[2]) * (room[3] - room[1]))
+        ordered = sorted(rooms, key=_preference(rooms))
         for text in texts:
             for turned in (False, True):
-                for room in largest:
+                for room in ordered:
                     for words in _within(text, room, turned=turned):
                         if self.take(words):
                             return words
         return None
+
+
+def _preference(rooms: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool, float, float]]:
+    sizes = {room: (room[2] - room[0]) * (room[3] - room[1]) for room in rooms}
+    largest = max(sizes.values())
+    middle = (min(room[1] for room in rooms) + max(room[3] for room in rooms)) / 2
+
+    def rank(room: Rectangle) -> tuple[bool, float, float]:
+        small = sizes[room] < _LARGE * largest
+        return small, 0.0 if small else abs((room[1] + room[3]) / 2 - middle), -sizes[room]
+
+    return rank
 
 
 def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[Words]:

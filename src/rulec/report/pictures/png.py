@@ -6,6 +6,7 @@ The only file that knows matplotlib, which is installed on request.
 from __future__ import annotations
 
 import io
+import warnings
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
@@ -53,7 +54,10 @@ def as_png(picture: Picture, file: str) -> bytes:
         _draw(axes, mark, order)
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.savefig(stream, format="png", metadata={"Software": None})
+    with warnings.catch_warnings():
+        # A letter that the font does not have is drawn as a box; nobody could do anything about it.
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
+        figure.savefig(stream, format="png", metadata={"Software": None})
     return stream.getvalue()
 
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby, permutations
+from itertools import groupby
+from typing import Any
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.report.explanation import shown
 from rulec.runtime.moment import value_in
 from rulec.runtime.terms import names_in
 from rulec.runtime.verdict import Verdict, Violation
-from rulec.trace import Trace, Value
+from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 
 
@@ -49,10 +50,11 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Ribbon:
-    """The rows of a trace and what it violates."""
+    """The rows of a trace and what it violates; ``left_out`` more have nothing but defaults."""
 
     trace: Trace
     rows: tuple[Row, ...]
+    left_out: int
     violations: tuple[Violation, ...]
 
     def decisive(self, violation: Violation) -> int:
@@ -63,23 +65,38 @@ class Ribbon:
 def ribbon(trace: Trace, rules: CompiledRulebook, verdict: Verdict) -> Ribbon:
     """The rows that the rules read: first what is about nobody, then object by object, then pairs.
 
-    A row in which nothing is ever said is left out.
+    What the trace does not speak of has a row only if a rule that is violated reads it.
     """
     read = dict.fromkeys(name for rule in rules.rules for name in names_in(rule.formula))
-    rows = [
-        row
-        for objects in _choices(trace)
-        for name in read
-        for row in [_row(trace, rules, name, objects)]
-        if row is not None and any(run.value is not None for run in row.runs)
-    ]
-    return Ribbon(trace, tuple(rows), verdict.violations)
+    violated = {one.rule for one in verdict.violations}
+    matters = {
+        name for rule in rules.rules if rule.name in violated for name in names_in(rule.formula)
+    }
+    rows = []
+    left_out = 0
+    for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, read)]:
+        for name in read:
+            row = _row(trace, rules, name, objects)
+            if row is not None:
+                told = name in matters or any(_said(state, name, objects) for state in trace.states)
+                rows += [row] if told else []
+                left_out += not told
+    return Ribbon(trace, tuple(rows), left_out, verdict.violations)
 
 
-def _choices(trace: Trace) -> Iterator[tuple[str, ...]]:
-    yield ()
-    yield from ((name,) for name in trace.objects)
-    yield from permutations(trace.objects, 2)
+def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
+    """The pairs of which some state speaks; most of all that there are have defaults alone."""
+    values = (state.get(name) for name in names for state in trace.states)
+    found = {
+        (one, other): None
+        for value in values
+        if isinstance(value, Mapping)
+        for one, inner in value.items()
+        if isinstance(inner, Mapping)
+        for other in inner
+    }
+    order = {name: place for place, name in enumerate(trace.objects)}
+    return sorted(found, key=lambda pair: (order[pair[0]], order[pair[1]]))
 
 
 def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]) -> Row | None:
@@ -90,22 +107,19 @@ def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, .
         for item, kind in zip(objects, declaration.parameters, strict=True)
     ):
         return None
-    # A pair of whom no state speaks has only defaults; there are many such.
-    if len(objects) > 1 and not any(_said(trace, number, name, objects) for number in _all(trace)):
+    values = [
+        _value(trace, number, name, objects, declaration) for number in range(len(trace.states))
+    ]
+    if all(value is None for value in values):
         return None
-    values = [_value(trace, number, name, objects, declaration) for number in _all(trace)]
     unit = declaration.unit if isinstance(declaration, Quantity) else ""
     return Row(name, objects, unit, _possible(declaration), tuple(_runs(values)))
 
 
-def _all(trace: Trace) -> range:
-    return range(len(trace.states))
-
-
-def _said(trace: Trace, number: int, name: str, objects: Sequence[str]) -> bool:
-    value = trace.states[number].get(name)
+def _said(state: State, name: str, objects: Sequence[str]) -> bool:
+    value: Any = state.get(name)
     for item in objects:
-        value = value.get(item) if hasattr(value, "get") else None  # type: ignore[union-attr]
+        value = value.get(item) if value is not None else None
     return value is not None
 
 
@@ -131,6 +145,12 @@ def _possible(declaration: Declaration) -> tuple[Value, ...]:
     if isinstance(declaration, Enumeration):
         return declaration.values
     return () if isinstance(declaration, Quantity) else (False, True)
+
+
+def extremes(row: Row) -> tuple[float, float]:
+    """The least and the greatest value of a quantity."""
+    numbers = [float(run.value) for run in row.runs if run.value is not None]
+    return min(numbers), max(numbers)
 
 
 def in_words(value: Value) -> str:

@@ -40,8 +40,7 @@ def _drawn(mark: Mark) -> Iterator[str]:
             path = " ".join(f"M{_through(ring)}Z" for ring in rings)
             yield f'<path class="{style}" fill-rule="evenodd" d="{path}"{_closed("path", tip)}'
         case Line(points, style, tip):
-            line = "" if style != "curve" else ' stroke-linejoin="round"'
-            shape = f'class="{style}" points="{_through(points)}"{line}'
+            shape = f'class="{style}" points="{_through(points)}"'
             yield f"<polyline {shape}{_closed('polyline', tip)}"
         case Words(text, (x, y), anchor, style, turned):
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
