@@ -18,10 +18,10 @@ def road(tmp_path):
 
 
 @pytest.fixture
-def answer(capsys, road):
+def answer(capfd, road):
     def run(*arguments, verb="maneuvers"):
         status = main([verb, road, *arguments])
-        captured = capsys.readouterr()
+        captured = capfd.readouterr()
         return status, captured.out, captured.err
 
     return run
@@ -153,3 +153,20 @@ def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
     assert (status, err) == (0, "")
     scene = json.loads(out)["scene"]
     assert (scene["derived"], scene["unknown"]) == ({}, ["lanes", "congested"])
+
+
+def test_traces_in_a_rulebooks_words_are_judged_by_it(answer, tmp_path, capfd):
+    file = str(tmp_path / "t.jsonl")
+    assert answer("-r", "esterle2019", "-o", file, verb="traces")[0] == 0
+    assert main(["verify", file, "-r", "esterle2019"]) == 0
+    capfd.readouterr()
+    (trace,) = map(json.loads, (tmp_path / "t.jsonl").read_text().splitlines())
+    assert trace["objects"] == {"3": "vehicle"}
+    assert set(trace["states"][0]) == {"position", "surface", "CONGESTED"}
+
+
+def test_traces_without_one_have_all_that_is_known(answer):
+    status, out, _ = answer("-o", "-", verb="traces")
+    trace = json.loads(out)
+    assert (status, trace["objects"]) == (0, {"3": "car"})
+    assert {"lanes", "two_wheeled"} < set(trace["states"][0])

@@ -12,13 +12,17 @@ from commonroad_clcs.clcs import CurvilinearCoordinateSystem
 from commonroad_clcs.config import CLCSParams
 from commonroad_clcs.pycrccosy import CartesianProjectionDomainError
 
+
+def project(frame, x, y):
+    """The coordinates of a place; None outside the domain."""
+    try:
+        return frame.convert_to_curvilinear_coords(x, y).tolist()
+    except CartesianProjectionDomainError:
+        return None
+
+
 for line in sys.stdin:
     job = json.loads(line)
     frame = CurvilinearCoordinateSystem(np.array(job["line"]), CLCSParams(), preprocess_path=False)
-    found = []
-    for x, y in job["places"]:
-        try:
-            found.append(frame.convert_to_curvilinear_coords(x, y).tolist())
-        except CartesianProjectionDomainError:
-            found.append(None)
+    found = [project(frame, x, y) for x, y in job["places"]]
     sys.stdout.write(json.dumps(found) + "\n")

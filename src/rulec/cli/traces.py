@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import chosen, graph_options, traces_format_option
+from rulec.cli.arguments import chosen, complete_rulebooks, graph_options, traces_format_option
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -21,6 +21,13 @@ MOST_TRACES = 10_000_000
 
 @click.command()
 @graph_options
+@click.option(
+    "-r",
+    "--rulebook",
+    metavar="R",
+    help="Write the traces in this rulebook's words, with the partition that it reads.",
+    shell_complete=complete_rulebooks,
+)
 @click.option(
     "-o",
     "--output",
@@ -37,25 +44,36 @@ MOST_TRACES = 10_000_000
 )
 @traces_format_option
 def command(
-    scenario: str, output: Path, limit: int | None, form: Format | None, **options: Any
+    scenario: str,
+    rulebook: str | None,
+    output: Path,
+    limit: int | None,
+    form: Format | None,
+    **options: Any,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 
     `rulec verify` reads the file. It appears whole or not at all.
     """
     from rulec.files import written_whole
-    from rulec.report.console import print_result, progress
+    from rulec.report.console import print_diagnostics, print_result, progress
     from rulec.report.counts import shown_count
     from rulec.runtime.product import count_paths
     from rulec.scenario import load_scenario
+    from rulec.settings import search_path
     from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces
     from rulec.trace.tables import kinds_in
-    from rulec.workflow import navigation_graph
+    from rulec.workflow import find_maneuvers, machines, navigation_graph
 
     scene = load_scenario(scenario, chosen(options))
-    cells = navigation_graph(scene, **{**options, "partition": options["partition"] or "paper"})
-    graph, name = cells.trace_graph(), cells.scenario.name
+    if rulebook is None:
+        options["partition"] = options["partition"] or "paper"
+        graph = navigation_graph(scene, **options).trace_graph()
+    else:
+        rules = machines(rulebook, search_path(), print_diagnostics)
+        graph = find_maneuvers(scene, rules, **options).paths
+    name = scene.name
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(
