@@ -15,9 +15,10 @@ measures a part. Every figure is processor time, the median of several rounds in
 in a table takes its turn, so that a busy moment of the machine meets all of it; the fastest round
 is nearest to a machine with nothing else to do. "Peer takes" says how many times as long another
 way of doing the same work takes, in the same rounds. Ratios carry over to other machines, times do
-not. "Wanted" was set on a quiet machine. Where the load average below is above the number of cores,
-other programs share memory, caches and cores with these, and even processor time can be twice as
-long; copying an array and `python -c pass` (9 ms on the quiet machine) show how much.
+not. "Wanted" is what rulec aims at on a machine of this kind. Where the load average below is above
+the number of cores, other programs had their share of cores, caches and memory, which lengthens
+processor time, too; by how much is not known. Copying an array and `python -c pass` are there to
+compare machines by.
 """
 
 

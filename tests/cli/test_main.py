@@ -17,6 +17,17 @@ def test_version(capsys):
     assert capsys.readouterr().out == "rulec 0.1.0\n"
 
 
+def test_the_version_alone_needs_nothing_else_to_be_loaded():
+    program = (
+        "import sys; sys.argv = ['rulec', '--version']\n"
+        "from rulec.cli.program import run\n"
+        "status = run()\n"
+        "print(status, 'click' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("rulec 0.1.0\n0 False\n", "")
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_verb_explains_itself(verb, capsys):
     assert main([verb, "--help"]) == 0

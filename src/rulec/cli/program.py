@@ -9,11 +9,15 @@ from io import TextIOWrapper
 from types import FrameType
 from typing import TextIO
 
+from rulec.version import __version__
+
 
 def run() -> int:
     """Run the command line as a process of its own and return its exit status."""
     try:
         _prepare()
+        if sys.argv[1:] == ["--version"] and _said_version():
+            return 0
         from rulec.cli.main import main
 
         return main()
@@ -40,6 +44,19 @@ def _prepare() -> None:
     if hasattr(sys, "set_int_max_str_digits"):
         # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
         sys.set_int_max_str_digits(100_000)
+
+
+def _said_version() -> bool:
+    """Scripts ask for the version often, and it needs nothing that ``main`` imports.
+
+    What cannot be written is left to ``main``, which knows what to say of that.
+    """
+    try:
+        sys.stdout.write(f"rulec {__version__}\n")
+        sys.stdout.flush()
+    except OSError:
+        return False
+    return True
 
 
 def _let_go_of(stream: TextIO) -> None:
