@@ -66,6 +66,16 @@ def test_all_at_once(page):
     assert hidden == [False] * 5
 
 
+def test_without_its_script_the_page_shows_everything(page):
+    bare = page.with_name("bare.html")
+    text = page.read_text(encoding="utf-8")
+    bare.write_text(re.sub(r"<script>.*</script>", "", text, flags=re.DOTALL), encoding="utf-8")
+    dom = run(bare, "--dump-dom")
+    assert dom.count("<figure") == 5
+    assert 'class="other"' not in dom
+    assert '<form id="time" hidden' in dom, "a slider that does nothing is not shown"
+
+
 def test_the_slider_can_be_reached_by_keyboard(page):
     script = "slider.focus(); document.body.dataset.reached = document.activeElement.id"
     assert 'data-reached="slider"' in after(page, script)[2]
