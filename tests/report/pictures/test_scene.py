@@ -12,7 +12,7 @@ from rulec.partition import navigation_graph
 from rulec.report.pictures.marks import Area, Line, Words
 from rulec.report.pictures.scene import scene_legend, scene_pictures
 from rulec.report.pictures.signatures import in_letters
-from rulec.scenario import load_scenario
+from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
 from rulec.workflow import find_maneuvers
 
 CELLS = ("cell", "crossing", "chosen")
@@ -144,3 +144,23 @@ def test_lanes_are_drawn():
     lanes = [one for one in picture.marks if isinstance(one, Line) and one.style == "lane"]
     # Six lanes have five lines between them.
     assert len(lanes) == 5
+
+
+def test_no_line_is_drawn_between_lanes_that_have_ended():
+    """Of three lanes the two on the left end at 60 and 80 m, so that from there no line is left."""
+    road = Road(
+        (0.0, 100.0),
+        (0.0, 3.0, 6.0, 9.0),
+        missing=(MissingLane(3, (60.0, 100.0)), MissingLane(2, (80.0, 100.0))),
+    )
+    graph = navigation_graph(Scenario("ending", road, Ego(1.0, 1.0)))
+    picture = scene_pictures(graph, [0], None)[0]
+    ends: dict[float, float] = {}
+    for one in picture.marks:
+        if isinstance(one, Line) and one.style == "lane":
+            (_, y), (x, _) = one.points
+            ends[y] = max(ends.get(y, 0.0), x)
+    upper, lower = (ends[y] for y in sorted(ends))
+    metre = (900 - 2 * 14) / 100
+    assert lower == pytest.approx(14 + 100 * metre), "the right lane goes on"
+    assert upper == pytest.approx(14 + 80 * metre)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from textwrap import wrap
 
 from rulec.partition import Cell, NavigationGraph, envelope
@@ -26,6 +27,7 @@ from rulec.report.pictures.placing import Placing
 from rulec.report.pictures.scale import ticks
 from rulec.report.pictures.signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.runtime.cheapest import Maneuver
+from rulec.scenario import Road
 
 
 def scene_pictures(
@@ -71,7 +73,8 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     if maneuver and chosen is not None:
         bounds = envelope(graph, maneuver.nodes[: layer + 1])[layer]
         right, left = min(d for _, d in bounds.d_right), max(d for _, d in bounds.d_left)
-        told = f"cell {chosen}: s {bounds.s_min:g} … {bounds.s_max:g} m, d {right:g} … {left:g} m"
+        low, high, right, left = (round(x, 2) for x in (bounds.s_min, bounds.s_max, right, left))
+        told = f"cell {chosen}: s {low:g} … {high:g} m, d {right:g} … {left:g} m"
         marks.append(Words(told, (WIDTH - MARGIN, MARGIN), "end"))
     axis = list(_axis(frame))
     placing = Placing([one.bounds for one in [*marks, *axis] if isinstance(one, Words)])
@@ -79,8 +82,7 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     marks += [Area((rectangle(*frame.box(hole)),), "ground") for hole in road.holes()]
     order = sorted(range(len(here.cells)), key=lambda i: i == chosen)
     marks += [_cell(frame, here.cells[i], i, i == chosen) for i in order]
-    for d in road.lanes[1:-1]:
-        marks.append(Line((frame.at(road.s[0], d), frame.at(road.s[1], d)), "lane"))
+    marks += _lane_marks(frame, road)
     marks += obstacle_marks(graph, frame, layer)
     if layer == 0:
         marks += ego_marks(graph, frame, placing)
@@ -117,6 +119,16 @@ def _cell(frame: Frame, cell: Cell, number: int, chosen: bool) -> Area:
     style = "chosen" if chosen else "crossing" if cell.surface == "crossing" else "cell"
     shape = tuple(tuple(frame.at(s, d) for s, d in list(ring.coords)[:-1]) for ring in rings)
     return Area(shape, style, f"cell {number}: {in_full(cell)}")
+
+
+def _lane_marks(frame: Frame, road: Road) -> Iterator[Line]:
+    """Lines between lanes, where at least one of the two is there."""
+    ends = {s for gap in road.missing for s in gap.s if road.s[0] < s < road.s[1]}
+    for right, d in enumerate(road.lanes[1:-1], 1):
+        for start, end in pairwise([road.s[0], *sorted(ends), road.s[1]]):
+            gone = {gap.lane for gap in road.missing if gap.s[0] <= start and end <= gap.s[1]}
+            if not {right, right + 1} <= gone:
+                yield Line((frame.at(start, d), frame.at(end, d)), "lane")
 
 
 def _labels(frame: Frame, cells: Sequence[Cell], placing: Placing) -> tuple[list[Words], list[str]]:
