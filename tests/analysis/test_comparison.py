@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, sides, states
 
@@ -90,8 +90,20 @@ GROUPS = [
 ]
 
 
+TWO_THINGS = COUNTED[2]
+A_CAR = next(one for one in COUNTED if "type='car'" in repr(one))
+
+
 @settings(deadline=None, max_examples=60)
 @given(st.tuples(*[formulas(COUNTED)] * 2), SEMANTICS)
+@example(
+    # Who has to be there in the first state is asked about by nobody in the second one.
+    (
+        Unary(UnaryOperator.ALWAYS, COUNTED[0]),
+        Binary(BinaryOperator.AND, A_CAR, Binary(BinaryOperator.AND, COUNTED[0], TWO_THINGS)),
+    ),
+    ("stutter", "stutter"),
+)
 def test_rules_that_count(pair, semantics):
     check(*sides(pair, [], semantics), GROUPS)
 

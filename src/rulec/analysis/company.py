@@ -64,7 +64,7 @@ def company_for(situation: Situation, scene: Scene) -> Company | None:
 def company_of(situation: Situation, scene: Scene, types: Sequence[str]) -> Company | None:
     """One companion of each of these types, so that the counts come out; None if they cannot."""
     counts = _wanted(situation)
-    kinds = kinds_of(situation, scene) if types else []
+    kinds = kinds_of(situation, scene, types) if types else []
     start = tuple(dict(situation.counted)[count] for count in counts)
     reached: dict[tuple[int, ...], Company] = {start: ()}
     for wanted in types:
@@ -113,15 +113,19 @@ def _comes_out(situation: Situation, scene: Scene, counted: Mapping[Count, int])
     return True
 
 
-def kinds_of(situation: Situation, scene: Scene) -> list[Companion]:
-    """What a further object could be, as far as the counts tell; the most general types first."""
+def kinds_of(situation: Situation, scene: Scene, types: Sequence[str] = ()) -> list[Companion]:
+    """What a further object could be, as far as the counts tell; the most general types first.
+
+    That is of any type that is counted, or one of ``types``, which may be there to be counted in
+    another state.
+    """
     vocabulary = scene.vocabulary
     counts = _wanted(situation)
     found: dict[tuple[str, tuple[int, ...]], Companion] = {}
     fitting = [
         kind
         for kind in vocabulary.types
-        if any(vocabulary.is_subtype(kind, count.type) for count in counts)
+        if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
     ]
     for kind in sorted(fitting, key=lambda one: len(list(vocabulary.ancestors(one)))):
         for one in _of_type(kind, counts, situation, scene):
