@@ -25,11 +25,13 @@ check_folder() {
 }
 
 check_space() {
+    case $purpose in test) megabytes=1000 ;; *) megabytes=500 ;; esac
     free=$(df -Pk "$home" 2>/dev/null | awk 'NR == 2 { print $4 }')
     case $free in
     '' | *[!0-9]*) ;;
     *)
-        [ "$free" -ge 512000 ] || stop "rulec's environment takes up to 500 MB, but the disk of" \
+        [ "$free" -ge $((megabytes * 1024)) ] ||
+            stop "rulec's environment takes up to $megabytes MB, but the disk of" \
             "$home has only $((free / 1024)) MB left. Make room and call again."
         ;;
     esac

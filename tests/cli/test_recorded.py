@@ -43,21 +43,16 @@ def test_text(answer):
 
 def test_json(answer):
     status, out, _ = answer("-r", "vienna", "--json")
-    scene = json.loads(out)["scene"]
+    found = json.loads(out)
+    scene = found["scene"]
     assert status == 0
-    assert scene.pop("unknown")[:2] == ["safe_gap", "oncoming"]
+    assert {"safe_gap", "crossing_use"} < set(found["by_default"])
+    assert not {"congested", "lanes"} & set(found["by_default"])
     assert {name: item["value"] for name, item in scene.pop("derived").items()} == {
         "congested": False,
         "lanes": "one_lane",
     }
     assert scene == {"reference": 1, "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
-
-
-def test_what_a_rulebook_reads_and_nobody_supplies_is_said(answer):
-    _, out, _ = answer("-r", "vienna")
-    (line,) = (x for x in out.splitlines() if x.startswith("unknown"))
-    assert line.startswith("unknown     safe_gap, oncoming, ")
-    assert line.endswith("more: the rulebook's defaults stand for them")
 
 
 def test_congestion_is_configurable(tmp_path, capsys):
@@ -151,8 +146,8 @@ def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
     )
     status, out, err = answer("-r", str(book), "--json")
     assert (status, err) == (0, "")
-    scene = json.loads(out)["scene"]
-    assert (scene["derived"], scene["unknown"]) == ({}, ["lanes", "congested"])
+    found = json.loads(out)
+    assert (found["scene"]["derived"], found["by_default"]) == ({}, ["lanes", "congested"])
 
 
 def test_traces_in_a_rulebooks_words_are_judged_by_it(answer, tmp_path, capfd):

@@ -10,9 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rulec.automata.compiled import CompiledRulebook
 from rulec.maneuvers.terms import SUPPLIED
-from rulec.runtime.terms import names_in
 from rulec.trace import State, TraceGraph, Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
@@ -41,17 +39,6 @@ def fitted(vocabulary: Vocabulary, graph: NavigationGraph) -> TraceGraph:
             tuple([_state(vocabulary, objects, state) for state in layer])
             for layer in traces.states
         ),
-    )
-
-
-def assumed(rules: CompiledRulebook, traces: TraceGraph) -> tuple[str, ...]:
-    """What the rules read and nobody supplies, so that the vocabulary's default stands for it."""
-    supplied = {name for layer in traces.states for state in layer for name in state}
-    read = {name for rule in rules.rules for name in names_in(rule.formula)}
-    return tuple(
-        name
-        for name in rules.vocabulary.declarations
-        if name in read and name not in supplied | SUPPLIED
     )
 
 

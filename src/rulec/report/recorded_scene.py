@@ -1,4 +1,4 @@
-"""What became of a recorded scene: what is left out, continued, derived, and not known."""
+"""What became of a recorded scene: what is left out, continued, and derived."""
 
 from __future__ import annotations
 
@@ -6,16 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from rulec.maneuvers import Maneuvers
-from rulec.maneuvers.recorded import assumed
 from rulec.report.excerpt import visible
 from rulec.scenario import Account
 
-MOST_NAMED = 6
-"""So many unknown names fit on a line of text; JSON has them all."""
-
 
 def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
-    """For JSON: lanelet, counts of obstacles, derived signals with their reasons, unknown ones."""
+    """For JSON: the lanelet, counts of obstacles, derived signals with their reasons."""
     supplied = found.paths.states[0][0]
     return {
         "reference": account.reference,
@@ -27,7 +23,6 @@ def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
             for name, why in account.derived.items()
             if name in supplied
         },
-        "unknown": list(assumed(found.rules, found.paths)),
     }
 
 
@@ -45,8 +40,3 @@ def lines(found: Maneuvers, account: Account) -> Iterator[str]:
     for name, item in as_data(found, account)["derived"].items():
         value = str(item["value"]).lower() if isinstance(item["value"], bool) else item["value"]
         yield visible(f"derived     {name} = {value}: {item['because']}")
-    unknown = assumed(found.rules, found.paths)
-    if unknown:
-        names = ", ".join(unknown[:MOST_NAMED])
-        more = f" and {len(unknown) - MOST_NAMED} more" if len(unknown) > MOST_NAMED else ""
-        yield visible(f"unknown     {names}{more}: the rulebook's defaults stand for them")
