@@ -22,7 +22,6 @@ from rulec.scenario.commonroad.moving import FARTHEST_M, participants_of, proble
 from rulec.scenario.commonroad.recording import Lanelet, Light, Points, Recording
 from rulec.scenario.commonroad.safe_xml import check_commonroad, refused
 
-
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
 
