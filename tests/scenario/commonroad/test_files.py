@@ -82,6 +82,7 @@ def test_areas_and_intervals_are_taken_whole(written):
         ("<x>9</x>", "<x>nan</x>", "is no number"),
         ("<x>9</x>", "<x>1e300</x>", "out of all bounds"),
         ("<y>2</y>", "<y>1e300</y>", "is no place"),
+        ("<x>99</x>", "<x>99999999</x>", "longer than 20 km"),
         ("<y>2</y>", "<y>-2</y>", "no lane of the road is as wide as 1 m"),
     ],
 )

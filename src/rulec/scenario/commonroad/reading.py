@@ -22,6 +22,9 @@ from rulec.scenario.commonroad.moving import FARTHEST_M, participants_of, proble
 from rulec.scenario.commonroad.recording import Lanelet, Light, Points, Recording
 from rulec.scenario.commonroad.safe_xml import check_commonroad, refused
 
+LONGEST_M = 20_000.0
+"""Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
+
 
 def read_recording(path: Path) -> Recording:
     """What the file says.
@@ -141,4 +144,6 @@ def _points(vertices: Any) -> Points:
     points = np.asarray(vertices, dtype=float)[:, :2]
     if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
         raise ValueError("a lanelet's bound has fewer than two points, or one that is no place")
+    if np.ptp(points, axis=0).max() > LONGEST_M:
+        raise ValueError(f"a lanelet's bound is longer than {LONGEST_M / 1000:g} km")
     return points
