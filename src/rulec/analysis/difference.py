@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
 
-from rulec.analysis.common_words import common_words
 from rulec.analysis.comparison import Comparison, Relation, compare
 from rulec.analysis.distinct import Distinct, at_one_step
 from rulec.analysis.history import Inheritance, ProvisionHistory, ProvisionKind
+from rulec.analysis.shared_words import shared_words
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.analysis.violation import read_by
 from rulec.automata.compiled import CompiledRule
@@ -105,7 +105,7 @@ class Difference:
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
         """What one rulebook's rule forbids and the other's allows: both names, and the states."""
-        words = common_words(self.first.vocabulary, self.second.vocabulary)
+        words = shared_words(self.first.vocabulary, self.second.vocabulary)
         names = read_by(pair.machines[0]) | read_by(pair.machines[1])
         one, other = self.first.name, self.second.name
         for traces, forbids, allows in (

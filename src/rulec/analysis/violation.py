@@ -13,11 +13,11 @@ from fractions import Fraction
 
 from rulec.analysis.alphabet import Alphabet
 from rulec.analysis.columns import machine_column
-from rulec.analysis.common_words import common_words
 from rulec.analysis.distinct import Side
 from rulec.analysis.errors import UndecidedError
 from rulec.analysis.scene import Scene
 from rulec.analysis.search import shortest
+from rulec.analysis.shared_words import shared_words
 from rulec.analysis.staging import alone, staged
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead
@@ -67,7 +67,7 @@ def _scene(side: Side, others: Sequence[Side], given: Sequence[Fact]) -> Scene:
     for other in others:
         if other.rulebook.vocabulary == vocabulary:
             continue
-        words = common_words(vocabulary, other.rulebook.vocabulary)
+        words = shared_words(vocabulary, other.rulebook.vocabulary)
         for name in sorted(words.unlike & asked):
             raise UndecidedError(f"`{name}` is not declared alike in both")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike

@@ -75,21 +75,6 @@ def counts(formula: Formula) -> bool:
     )
 
 
-def known_of(
-    propositions: Sequence[Proposition], instances: Iterable[FactInstance], vocabulary: Vocabulary
-) -> Formula:
-    """All that is known of propositions at any instant.
-
-    An enumeration has one value, a number is on one side of each threshold, facts hold. The facts
-    may bring in more propositions than these, of which the same is known; what is known of these
-    alone is what holds for some values of the others. A fact that has nothing to do with these is
-    left out, even if it cannot hold.
-    """
-    own = {_subject(one) for one in propositions}
-    facts = [one.formula for group in linked(instances) if own & _subjects(group) for one in group]
-    return joined(AND, [_natural([*propositions, *facts], vocabulary), *facts])
-
-
 @dataclass(frozen=True, slots=True)
 class FactGroup:
     """Instances of facts that have to do with each other.

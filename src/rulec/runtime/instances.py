@@ -20,7 +20,6 @@ from rulec.trace import TraceGraph
 
 HARD: tuple[Strength, ...] = ("hard",)
 SOFT: tuple[Strength, ...] = ("soft",)
-EVERY = (*HARD, *SOFT)
 
 
 @dataclass(frozen=True, slots=True)

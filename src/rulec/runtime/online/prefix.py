@@ -15,8 +15,6 @@ Of the other two the end decides: if it came now, what ``holds so far`` would be
 ``pending`` violated.
 """
 
-PREFIXES: tuple[Prefix, ...] = ("satisfied", "violated", "holds so far", "pending")
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edge:

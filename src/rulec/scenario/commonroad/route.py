@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from math import atan2, cos, pi
+from math import atan2, pi
 
 import numpy as np
 import shapely
@@ -170,8 +170,3 @@ def _direction(one: Iterable[float], other: Iterable[float]) -> float:
 
 def _turn(one: float, other: float) -> float:
     return (other - one + pi) % (2 * pi) - pi
-
-
-def leads_the_same_way(one: float, other: float) -> bool:
-    """Do two headings differ by less than 60°?"""
-    return cos(one - other) > 0.5

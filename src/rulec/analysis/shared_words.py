@@ -9,7 +9,7 @@ from rulec.vocabulary import Declaration, ObjectType, Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
-class CommonWords:
+class SharedWords:
     """The words of both; the declarations that one lacks; names for what is not alike in both."""
 
     vocabulary: Vocabulary
@@ -17,7 +17,7 @@ class CommonWords:
     unlike: frozenset[str]
 
 
-def common_words(one: Vocabulary, other: Vocabulary) -> CommonWords:
+def shared_words(one: Vocabulary, other: Vocabulary) -> SharedWords:
     """The words of two vocabularies together.
 
     Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
@@ -37,4 +37,4 @@ def common_words(one: Vocabulary, other: Vocabulary) -> CommonWords:
             declarations[name] = replace(known, default=None)
     not_shared = frozenset(one.declarations.keys() ^ other.declarations.keys())
     words = Vocabulary(one.name, types, declarations)
-    return CommonWords(words, not_shared, frozenset(unlike))
+    return SharedWords(words, not_shared, frozenset(unlike))
