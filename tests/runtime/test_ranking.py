@@ -15,7 +15,7 @@ from random_priorities import LEVELS, RULES, closed, rulebooks
 from rulec.maneuvers import judged, partition_for
 from rulec.runtime.cheapest import cheapest
 from rulec.runtime.effects import effects
-from rulec.runtime.instances import EVERY, instances, violations
+from rulec.runtime.instances import HARD, SOFT, instances, violations
 from rulec.runtime.penalties import Rank, ranks_of
 from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.verify import verify
@@ -60,7 +60,7 @@ def at_most(one, other, order):
 
 
 def searched(graph, rulebook):
-    return effects(graph, instances(graph, rulebook, strengths=EVERY)), ranks_of(rulebook)
+    return effects(graph, instances(graph, rulebook, strengths=(*HARD, *SOFT))), ranks_of(rulebook)
 
 
 @given(graphs(objects=("car1", "car2")), rulebooks())
@@ -109,7 +109,7 @@ def test_every_penalty_comes_once_behind_all_better_ones(graph, rulebook):
 
 @given(graphs(objects=("car1", "car2")), rulebooks())
 def test_what_a_path_violates_is_what_its_trace_does(graph, rulebook):
-    bound = instances(graph, rulebook, strengths=EVERY)
+    bound = instances(graph, rulebook, strengths=(*HARD, *SOFT))
     key = repr
     for path in paths(graph):
         verdict = verify(trace_of(graph, path, ""), rulebook)

@@ -90,16 +90,12 @@ in_force = st.builds(tree.InForce, days, st.just("") | days) | st.builds(
 )
 levels = st.none() | names
 weights = st.none() | st.builds(tree.Number, figures)
-SWITCHES = [tree.AtomUse(tree.Name(word)) for word in ("on", "off")]
-"""`set x = on` sets an option."""
 
 provisions = st.one_of(
     st.builds(tree.OptionItem, names, st.booleans()),
     st.builds(tree.ParamItem, names, st.none() | names, formulas, st.none() | in_force),
     st.builds(tree.SetItem, names, st.booleans()),
-    st.builds(
-        tree.SetItem, names, formulas.filter(lambda one: one not in SWITCHES), st.none() | in_force
-    ),
+    st.builds(tree.SetItem, names, formulas, st.none() | in_force),
     st.builds(tree.DefineItem, names, parameters, formulas, st.booleans()),
     st.builds(tree.DropItem, names, texts),
     st.builds(tree.SoftenItem, names, levels, weights, st.none() | texts),

@@ -83,3 +83,20 @@ def test_a_bound_counts_in(unit):
     assert parse_formula(f"next[1 {unit}] p").bound.low.unit == unit
     text = f"rulebook a\nsignal p\ndefine d = next[1 {unit}] p\nhard rule r {{ require d }}\n"
     assert parse(Source("a.rules", text))[1] == ()
+
+
+@pytest.mark.parametrize(
+    ("written", "printed"),
+    [
+        ("on", "on"),
+        ("(on)", "(on)"),
+        ("(off + 1 m)", "(off + 1 m)"),
+        ("(off) + 1 m", "(off + 1 m)"),
+        ("(off(v))", "(off(v))"),
+        ("(online)", "online"),
+    ],
+)
+def test_a_setting_that_begins_with_a_switch_s_word_keeps_its_parentheses(written, printed):
+    file, mistakes = parse(Source("a.rules", f"rulebook a\nset x = {written}\n"))
+    assert mistakes == ()
+    assert f"set x = {printed}\n" in print_file(file)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from rulec.syntax import tree
 from rulec.syntax.printer.formulas import (
     Style,
@@ -11,6 +13,8 @@ from rulec.syntax.printer.formulas import (
     print_text,
     print_whole,
 )
+
+SWITCH = re.compile(r"(on|off)\b")
 
 
 def print_header_line(line: tree.HeaderLine) -> str:
@@ -68,7 +72,10 @@ def print_provision(item: tree.Provision, style: Style) -> str:
             return f"set {name.text} = {'on' if value else 'off'}"
         case tree.SetItem(name, value, in_force):
             assert not isinstance(value, bool), "the case above"
-            return f"set {name.text} = {print_formula(value, style)}{_dates(in_force)}"
+            text = print_formula(value, style)
+            if SWITCH.match(text):  # a name here; bare, the word would switch an option
+                text = f"({text})"
+            return f"set {name.text} = {text}{_dates(in_force)}"
         case tree.DefineItem(name, parameters, body, again):
             word = "redefine" if again else "define"
             head = name.text + print_parameters(parameters)
