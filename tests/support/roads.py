@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rulec.scenario.commonroad.recording import Lanelet, Participant, Problem, Recording, State
+from rulec.scenario.recorded.recording import Lanelet, Participant, Problem, Recording, State
 
 BESIDE = Path(__file__).resolve().parents[3] / "shared/data/commonroad"
 RECORDINGS = Path(os.environ.get("RULEC_RECORDINGS", BESIDE))

@@ -256,7 +256,7 @@ def _scene_options(function: Decorated) -> Decorated:
 
 def chosen(options: dict[str, Any]) -> Choice:
     """The choice that ``graph_options`` say, taken out of all options."""
-    from rulec.scenario.commonroad.choice import Choice
+    from rulec.scenario.recorded.choice import Choice
 
     return Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
 

@@ -6,7 +6,6 @@ each in its place, which ``toml_places`` finds. ``commonroad`` reads recorded sc
 ``motion`` says where an obstacle is at what time.
 """
 
-from rulec.scenario.commonroad.choice import Choice
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     Account,
@@ -21,6 +20,7 @@ from rulec.scenario.model import (
     Trajectory,
 )
 from rulec.scenario.read import available_scenarios, load_scenario
+from rulec.scenario.recorded.choice import Choice
 
 __all__ = [
     "Account",

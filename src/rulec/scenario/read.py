@@ -8,10 +8,10 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
-from rulec.scenario.commonroad.choice import Choice
 from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
 from rulec.scenario.model import Scenario
+from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.toml_places import TomlText
 from rulec.toml import parsed_toml
 
@@ -56,7 +56,7 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
     if path.suffix.lower() == ".xml":
-        from rulec.scenario.commonroad.convert import read_scene
+        from rulec.scenario.recordings import read_scene
 
         return read_scene(path, choice or Choice())
     if choice not in (None, Choice()):

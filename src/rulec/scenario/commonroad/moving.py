@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rulec.scenario.commonroad.recording import Lanelet, Participant, Points, Problem, State
+from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Problem, State
 
 FARTHEST_M = 1e8
 """Numbers in a file are smaller than this, places included: the earth is not so large."""

@@ -19,8 +19,8 @@ import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.scenario.commonroad.moving import FARTHEST_M, participants_of, problem_of
-from rulec.scenario.commonroad.recording import Lanelet, Light, Points, Recording
 from rulec.scenario.commonroad.safe_xml import check_commonroad, refused
+from rulec.scenario.recorded.recording import Lanelet, Light, Points, Recording
 
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.scenario.commonroad.reference_line import dense
-from rulec.scenario.commonroad.traffic import View
 from rulec.scenario.model import Stretch
+from rulec.scenario.recorded.reference_line import dense
+from rulec.scenario.recorded.traffic import View
 
 _NARROWEST_M = 0.1
 _EVERY_M = 0.5

@@ -1,4 +1,4 @@
-"""What a CommonRoad file says, as data: lanelets, participants, and whose maneuver is sought.
+"""What a recording of traffic says, as data: lanelets, participants, and whose maneuver is sought.
 
 Places are in the file's own frame, x and y in metres; angles are radians, counter-clockwise.
 """

@@ -17,7 +17,7 @@ import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.scenario.commonroad.recording import Points
+from rulec.scenario.recorded.recording import Points
 
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""

@@ -9,9 +9,9 @@ from math import hypot
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, named
-from rulec.scenario.commonroad.choice import Choice
-from rulec.scenario.commonroad.recording import Participant, Points, Problem, Recording, State
-from rulec.scenario.commonroad.route import lanelet_of
+from rulec.scenario.recorded.choice import Choice
+from rulec.scenario.recorded.recording import Participant, Points, Problem, Recording, State
+from rulec.scenario.recorded.route import lanelet_of
 
 _SAME_PLACE_M = 0.1
 

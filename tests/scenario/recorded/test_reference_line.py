@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.scenario.commonroad.reference_line import BEYOND_M, reference_line
+from rulec.scenario.recorded.reference_line import BEYOND_M, reference_line
 
 RADIUS = 60.0
 offsets = st.floats(-20, 20)

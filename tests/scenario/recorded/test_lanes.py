@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from roads import lanelet, recording, straight
 
-from rulec.scenario.commonroad.lanes import NARROWEST_LANE_M, lanes_along
-from rulec.scenario.commonroad.reference_line import reference_line
 from rulec.scenario.model import MissingLane
+from rulec.scenario.recorded.lanes import NARROWEST_LANE_M, lanes_along
+from rulec.scenario.recorded.reference_line import reference_line
 
 
 def lanes_of(lanelets, way, ego_s=10.0):

@@ -9,7 +9,7 @@ from math import atan2, pi
 import numpy as np
 import shapely
 
-from rulec.scenario.commonroad.recording import Lanelet, Points, Recording, State
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording, State
 
 REACH_M = 300.0
 """The road is followed this far ahead of ego and behind it, where the file has so much of it."""

@@ -9,10 +9,10 @@ from roads import recording, rectangle, straight, vehicle
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Box, Choice, ConstantAcceleration, Footprints
-from rulec.scenario.commonroad.convert import to_scenario
-from rulec.scenario.commonroad.recording import Light, Participant
-from rulec.scenario.commonroad.traffic import GOES_ON_S
 from rulec.scenario.motion import swept
+from rulec.scenario.recorded.convert import to_scenario
+from rulec.scenario.recorded.recording import Light, Participant
+from rulec.scenario.recorded.traffic import GOES_ON_S
 
 ROAD = straight(1, 0, 200, left_of=2)
 BESIDE = straight(2, 0, 200, y=4, right_of=1)

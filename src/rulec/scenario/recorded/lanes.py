@@ -16,10 +16,10 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.scenario.commonroad.recording import Lanelet, Points, Recording
-from rulec.scenario.commonroad.reference_line import ReferenceLine, dense
-from rulec.scenario.commonroad.route import beside
 from rulec.scenario.model import MissingLane
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine, dense
+from rulec.scenario.recorded.route import beside
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""

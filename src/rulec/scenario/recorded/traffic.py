@@ -8,11 +8,6 @@ from math import cos, degrees, pi
 
 import numpy as np
 
-from rulec.scenario.commonroad.choice import Prediction
-from rulec.scenario.commonroad.kinds import WORDS
-from rulec.scenario.commonroad.lanes import Lanes
-from rulec.scenario.commonroad.recording import Participant, Points, Recording
-from rulec.scenario.commonroad.reference_line import ReferenceLine
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     PEDESTRIAN,
@@ -22,6 +17,11 @@ from rulec.scenario.model import (
     Obstacle,
     SignalValue,
 )
+from rulec.scenario.recorded.choice import Prediction
+from rulec.scenario.recorded.kinds import WORDS
+from rulec.scenario.recorded.lanes import Lanes
+from rulec.scenario.recorded.recording import Participant, Points, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine
 
 GOES_ON_S = 600.0
 """So long after the end of a recording who was there then is taken to go on."""

@@ -3,8 +3,8 @@
 import pytest
 from roads import lanelet, recording, straight
 
-from rulec.scenario.commonroad.recording import State
-from rulec.scenario.commonroad.route import lanelet_of, lanelets_at, route
+from rulec.scenario.recorded.recording import State
+from rulec.scenario.recorded.route import lanelet_of, lanelets_at, route
 
 FORK = [
     straight(1, 0, 50, successors=(2, 3, 4)),

@@ -4,39 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from rulec.scenario.commonroad.choice import Choice
-from rulec.scenario.commonroad.congestion import congested
-from rulec.scenario.commonroad.crosswalks import crossings
-from rulec.scenario.commonroad.ego import reference_of, start_of, unfit
-from rulec.scenario.commonroad.lanes import lanes_along
-from rulec.scenario.commonroad.reading import read_recording
-from rulec.scenario.commonroad.recording import Recording
-from rulec.scenario.commonroad.reference_line import reference_line
-from rulec.scenario.commonroad.route import REACH_M, lanelets_at, route
-from rulec.scenario.commonroad.safe_xml import refused
-from rulec.scenario.commonroad.signs import signals_of
-from rulec.scenario.commonroad.traffic import View, obstacles
 from rulec.scenario.model import Account, Ego, Obstacle, Road, Scenario, SignalValue
+from rulec.scenario.recorded.choice import Choice
+from rulec.scenario.recorded.congestion import congested
+from rulec.scenario.recorded.crosswalks import crossings
+from rulec.scenario.recorded.ego import reference_of, start_of, unfit
+from rulec.scenario.recorded.lanes import lanes_along
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.reference_line import reference_line
+from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
+from rulec.scenario.recorded.signs import signals_of
+from rulec.scenario.recorded.traffic import View, obstacles
 
 STEP_S = 0.5
-
-
-def read_scene(path: Path, choice: Choice) -> Scenario:
-    """The scenario in a CommonRoad file.
-
-    Raises:
-        RulecError: R0610, R0611 and R0701 as for ``read_recording``, R0612 if what is chosen is not
-            in the file.
-    """
-    recording = read_recording(path)
-    try:
-        return to_scenario(recording, choice, str(path))
-    except ValueError as reason:
-        raise refused(path, f"its road makes no sense, {reason}", None) from None
 
 
 def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
