@@ -28,10 +28,10 @@ def presences(view: View) -> Iterator[Presence]:
     """The stretches in which somebody is there, brief absences forgotten."""
     most = round(view.thresholds.away_s / view.recording.step_s)
     people = view.people.participants
-    taken = {str(one.id) for one in people}
+    taken = {one.id for one in people}
     nowhere = np.cumsum(np.isnan(view.others.w), axis=1)
     for row, one in enumerate(people):
-        name = str(one.id)
+        name = one.id
         columns = np.flatnonzero(view.near[row])
         gone = nowhere[row]
         breaks = [

@@ -25,7 +25,7 @@ from rulec.drives.ways import Stretch, stretches
 from rulec.drives.whereabouts import Moments, whereabouts
 from rulec.drives.words import Words
 from rulec.scenario.recorded.kinds import WORDS
-from rulec.scenario.recorded.recording import LaneletId, Recording
+from rulec.scenario.recorded.recording import Recording
 from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Vocabulary
 
@@ -91,19 +91,19 @@ class Drives:
         self._side: Side = side
         self._people = everyone(recording, thresholds)
         self._moments = whereabouts(recording, self._people)
-        self._roads: dict[tuple[LaneletId, ...], tuple[Road, Placed] | str] = {}
+        self._roads: dict[tuple[str, ...], tuple[Road, Placed] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
         """Whoever moves and steers, in the order of the file."""
         return tuple(
-            str(one.id)
+            one.id
             for one in self._people.participants
             if not one.standing and set(WORDS.get(one.type, ())).intersection(_DRIVERS)
         )
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle: one, unless it leaves its road or the recording jumps."""
-        row = next(k for k, one in enumerate(self._people.participants) if str(one.id) == ego)
+        row = next(k for k, one in enumerate(self._people.participants) if one.id == ego)
         found = [
             one
             for part in _unbroken(self._people, row, self._moments.get(row, {}))
@@ -117,7 +117,7 @@ class Drives:
             yield self._drive(row, name, stretch)
 
     def _drive(self, row: int, name: str, stretch: Stretch) -> Drive | NoDrive:
-        ego = str(self._people.participants[row].id)
+        ego = self._people.participants[row].id
         answer = self._road(stretch.way)
         if isinstance(answer, str):
             return NoDrive(ego, answer)
@@ -139,7 +139,7 @@ class Drives:
         )
         return _told(seen, ego, name, self._telling)
 
-    def _road(self, way: tuple[LaneletId, ...]) -> tuple[Road, Placed] | str:
+    def _road(self, way: tuple[str, ...]) -> tuple[Road, Placed] | str:
         if way not in self._roads:
             try:
                 road = road_along(self.recording, way)

@@ -13,7 +13,7 @@ from rulec.drives.everyone import Flags, Values
 from rulec.scenario.geometry import Box
 from rulec.scenario.recorded.crosswalks import crossings
 from rulec.scenario.recorded.lanes import Lanes, borders_along, lanes_along
-from rulec.scenario.recorded.recording import Lanelet, LaneletId, Recording
+from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import extended
 from rulec.scenario.recorded.traffic import View
@@ -49,7 +49,7 @@ class Road:
         return np.clip(found, 0, len(straight) - 2)
 
 
-def road_along(recording: Recording, way: Sequence[LaneletId]) -> Road:
+def road_along(recording: Recording, way: Sequence[str]) -> Road:
     """The road of a chain of lanelets, and what lies straight on before and after it.
 
     Raises:

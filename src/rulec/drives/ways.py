@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from rulec.drives.whereabouts import Moments
-from rulec.scenario.recorded.recording import LaneletId, Recording
+from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.route import beside, is_lane
 
 MOST_HOPS = 4
@@ -28,7 +28,7 @@ class Stretch:
 
     first: int
     last: int
-    way: tuple[LaneletId, ...]
+    way: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,14 +36,14 @@ class _Path:
     """The best chain so far that ends in a lanelet: its cost, and its last hop."""
 
     cost: float
-    hops: tuple[LaneletId, ...]
+    hops: tuple[str, ...]
     before: _Path | None
 
 
 def stretches(recording: Recording, moments: Moments) -> Iterator[Stretch]:
     """The pieces of a drive, each along one road, in their order."""
     first = last = -1
-    best: dict[LaneletId, _Path] = {}
+    best: dict[str, _Path] = {}
     for column, places in moments.items():
         wanted = _rows(recording, places)
         onward = _onward(recording, best, wanted)
@@ -57,9 +57,9 @@ def stretches(recording: Recording, moments: Moments) -> Iterator[Stretch]:
         yield Stretch(first, last, _way(best))
 
 
-def _rows(recording: Recording, places: Mapping[LaneletId, float]) -> dict[LaneletId, float]:
+def _rows(recording: Recording, places: Mapping[str, float]) -> dict[str, float]:
     """The lanelets that hold a state, and those beside them, with how badly they fit."""
-    found: dict[LaneletId, float] = {}
+    found: dict[str, float] = {}
     for number, cost in places.items():
         for left in (True, False):
             row = (number, *beside(recording, number, left=left))
@@ -71,9 +71,9 @@ def _rows(recording: Recording, places: Mapping[LaneletId, float]) -> dict[Lanel
 
 
 def _onward(
-    recording: Recording, best: Mapping[LaneletId, _Path], wanted: Mapping[LaneletId, float]
-) -> dict[LaneletId, _Path]:
-    found: dict[LaneletId, _Path] = {}
+    recording: Recording, best: Mapping[str, _Path], wanted: Mapping[str, float]
+) -> dict[str, _Path]:
+    found: dict[str, _Path] = {}
     for start, path in best.items():
         for hops in _chains(recording, start, wanted):
             end = hops[-1] if hops else start
@@ -86,13 +86,13 @@ def _onward(
 
 
 def _chains(
-    recording: Recording, start: LaneletId, wanted: Mapping[LaneletId, float]
-) -> Iterator[tuple[LaneletId, ...]]:
+    recording: Recording, start: str, wanted: Mapping[str, float]
+) -> Iterator[tuple[str, ...]]:
     """The shortest chain of successors to each wanted lanelet; the empty one to the start."""
     if start in wanted:
         yield ()
     seen = {start}
-    ends: list[tuple[LaneletId, ...]] = [()]
+    ends: list[tuple[str, ...]] = [()]
     for _ in range(MOST_HOPS):
         longer = []
         for chain in ends:
@@ -107,9 +107,9 @@ def _chains(
         ends = longer
 
 
-def _way(best: Mapping[LaneletId, _Path]) -> tuple[LaneletId, ...]:
+def _way(best: Mapping[str, _Path]) -> tuple[str, ...]:
     path: _Path | None = min(best.values(), key=lambda one: (one.cost, one.hops))
-    found: list[tuple[LaneletId, ...]] = []
+    found: list[tuple[str, ...]] = []
     while path is not None:
         found.append(path.hops)
         path = path.before

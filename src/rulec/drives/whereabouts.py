@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from rulec.drives.everyone import Everyone, Values
-from rulec.scenario.recorded.recording import Lanelet, LaneletId, Recording
+from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import is_lane
 
 NEAR_M = 3.0
@@ -20,7 +20,7 @@ NEAR_M = 3.0
 _BESIDE_COST = 1.0
 _AGAINST = pi / 2
 
-Moments = Mapping[int, Mapping[LaneletId, float]]
+Moments = Mapping[int, Mapping[str, float]]
 """Column -> lanelet -> how badly it fits: 0 on it and along it, 1 nearly across it or beside it."""
 
 
@@ -36,7 +36,7 @@ def whereabouts(recording: Recording, people: Everyone) -> dict[int, Moments]:
         shapely.make_valid(shapely.Polygon(np.concatenate((x.right, x.left[::-1])))) for x in lanes
     ]
     who, which = shapely.STRtree(areas).query(points, predicate="dwithin", distance=NEAR_M)
-    found: dict[int, dict[int, dict[LaneletId, float]]] = defaultdict(lambda: defaultdict(dict))
+    found: dict[int, dict[int, dict[str, float]]] = defaultdict(lambda: defaultdict(dict))
     for number in np.unique(which):
         some = who[which == number]
         headings = _directions(lanes[number], points[some])
