@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 Prediction = Literal["recorded", "constant"]
@@ -20,6 +21,7 @@ class Choice:
     ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
     ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
     is ``congested`` below a median speed. Ids are those of the file; numbers will do.
+    ``net`` is the file with the roads, for formats that keep them apart.
     """
 
     ego: str | int | None = None
@@ -27,3 +29,4 @@ class Choice:
     reference: str | int | None = None
     prediction: Prediction = "recorded"
     congested_below_kmh: float = CONGESTED_BELOW_KMH
+    net: Path | None = None
