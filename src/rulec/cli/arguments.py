@@ -214,8 +214,8 @@ def net_option(function: Decorated) -> Decorated:
         "--net",
         type=click.Path(dir_okay=False, path_type=Path),
         metavar="FILE",
-        help="For SUMO's floating-car data: the net.  [default: the one they name, or the only "
-        "*.net.xml beside them]",
+        help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
+        "ending in .net.xml beside them]",
     )(function)
 
 
