@@ -52,7 +52,7 @@ def test_json(answer):
         "congested": False,
         "lanes": "one_lane",
     }
-    assert scene == {"reference": 1, "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
+    assert scene == {"reference": "1", "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
 
 
 def test_congestion_is_configurable(tmp_path, capsys):

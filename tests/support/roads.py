@@ -45,13 +45,21 @@ ROAD_XML = """\
 
 
 def lanelet(number, centre, width=4.0, **more):
-    """A lanelet around a centre line of two points or more, of one width or of one at each."""
+    """A lanelet around a centre line of two points or more, of one width or of one at each.
+
+    Ids may be given as numbers.
+    """
     centre = np.array(centre, dtype=float)
     ahead = np.gradient(centre, axis=0)
     across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1) / np.hypot(*ahead.T)[:, None]
     half = np.broadcast_to(np.asarray(width, dtype=float) / 2, len(centre))[:, None] * across
+    for beside in ("left_of", "right_of"):
+        if more.get(beside) is not None:
+            more[beside] = str(more[beside])
+    for along in ("successors", "predecessors"):
+        more[along] = tuple(map(str, more.get(along, ())))
     plain = Lanelet(
-        number,
+        str(number),
         centre + half,
         centre - half,
         centre,
@@ -84,13 +92,13 @@ def vehicle(number, places, kind="car", length=4.0, width=2.0, speed=0.0, **more
     acceleration = more.pop("acceleration", 0.0)
     states = {step: State(x, y, heading, speed, acceleration) for step, (x, y) in places.items()}
     outlines = {step: rectangle(x, y, length, width, heading) for step, (x, y) in places.items()}
-    return Participant(number, kind, more.get("standing", False), states, outlines)
+    return Participant(str(number), kind, more.get("standing", False), states, outlines)
 
 
 def recording(lanelets, participants=(), ego=(0.0, 0.0), goals=(), heading=0.0, step_s=0.5):
     """A recording with one planning problem, number 99, at step 0."""
     start = State(*ego, heading, 0.0, 0.0)
-    problem = Problem(99, 0, start, np.array(goals, dtype=float).reshape(-1, 2))
+    problem = Problem("99", 0, start, np.array(goals, dtype=float).reshape(-1, 2))
     return Recording(
         "made by hand", step_s, {x.id: x for x in lanelets}, tuple(participants), (problem,)
     )

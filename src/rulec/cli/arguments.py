@@ -229,7 +229,6 @@ def _scene_options(function: Decorated) -> Decorated:
         ),
         click.option(
             "--reference",
-            type=int,
             metavar="LANELET",
             help="In a recorded scene: the lanelet whose middle is the line along the road.  "
             "[default: the one ego is on]",
@@ -244,7 +243,6 @@ def _scene_options(function: Decorated) -> Decorated:
         ),
         click.option(
             "--ego",
-            type=int,
             metavar="ID",
             help="In a recorded scene: the planning problem or the vehicle that is ego.  "
             "[default: the first planning problem]",

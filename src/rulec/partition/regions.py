@@ -34,10 +34,15 @@ STATIONS = ("behind", "beside", "in_front_of")
 LATERALS = ("right_of", "same_lane", "left_of")
 
 
-def station_and_lateral(code: int) -> tuple[str, str]:
-    """The pair that a code of the fine partition stands for."""
-    row, column = divmod(code - ord("0"), 3)
-    return STATIONS[column], LATERALS[row]
+STATION_OF: Mapping[int, str] = MappingProxyType(
+    {code: STATIONS[i % 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say along the road."""
+
+LATERAL_OF: Mapping[int, str] = MappingProxyType(
+    {code: LATERALS[i // 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say across the road."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,7 +152,7 @@ class Account:
     there goes on as before; ``derived`` says how each derived signal came about.
     """
 
-    reference: int
+    reference: str
     recorded: int
     left_out: int
     until_s: float

@@ -13,6 +13,7 @@ from rulec.scenario.recorded.reference_line import reference_line
 
 def lanes_of(lanelets, way, ego_s=10.0):
     made = recording(lanelets)
+    way = [str(number) for number in way]
     line = reference_line(np.concatenate([made.lanelets[n].centre for n in way]))
     return lanes_along(made, way, line, ego_s)
 

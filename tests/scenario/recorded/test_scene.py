@@ -147,7 +147,7 @@ def test_egos_own_recording_is_no_obstacle():
 def test_a_recorded_vehicle_as_ego_from_a_moment_on():
     scenario = scene(drive(7, 40, 10, y=4), drive(8, 60, 10), choice=Choice(ego=7, at_s=2.0))
     assert (scenario.ego.s, scenario.ego.d) == (0, 0)
-    assert scenario.account.reference == 2
+    assert scenario.account.reference == "2"
     assert scenario.road.lanes == pytest.approx((-6, -2, 2))
     body = swept(only(scenario), 0, 0)
     assert ((body.s_min + body.s_max) / 2, body.d_max) == pytest.approx((20, -3))

@@ -28,9 +28,9 @@ def participants_of(scenario: Any) -> Iterator[Participant]:
         yield _participant(one, _states_of(one), standing=False)
     for one in scenario.environment_obstacle:
         outline = _corners(one.occupancy_at_time(0))
-        yield Participant(one.obstacle_id, one.obstacle_type.value, True, {}, {0: outline})
+        yield Participant(str(one.obstacle_id), one.obstacle_type.value, True, {}, {0: outline})
     for one in scenario.phantom_obstacle:
-        yield Participant(one.obstacle_id, "unknown", False, {}, dict(_predicted(one)))
+        yield Participant(str(one.obstacle_id), "unknown", False, {}, dict(_predicted(one)))
 
 
 def _states_of(obstacle: Any) -> list[Any]:
@@ -51,7 +51,7 @@ def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Par
     if not standing and not hasattr(obstacle.prediction, "trajectory"):
         outlines.update(_predicted(obstacle))
     return Participant(
-        obstacle.obstacle_id, obstacle.obstacle_type.value, standing, known, outlines
+        str(obstacle.obstacle_id), obstacle.obstacle_type.value, standing, known, outlines
     )
 
 
@@ -107,7 +107,7 @@ def _number(value: Any) -> float:
     return number
 
 
-def problem_of(problem: Any, lanelets: Mapping[int, Lanelet]) -> Problem:
+def problem_of(problem: Any, lanelets: Mapping[str, Lanelet]) -> Problem:
     """A planning problem of the library's."""
     start = problem.initial_state
     outline = (
@@ -116,10 +116,12 @@ def problem_of(problem: Any, lanelets: Mapping[int, Lanelet]) -> Problem:
     goals = [point for state in problem.goal.state_list for point in _goal(state)]
     for numbers in (problem.goal.lanelets_of_goal_position or {}).values():
         goals += [
-            lanelets[i].centre[len(lanelets[i].centre) // 2] for i in numbers if i in lanelets
+            lanelet.centre[len(lanelet.centre) // 2]
+            for number in numbers
+            if (lanelet := lanelets.get(str(number))) is not None
         ]
     return Problem(
-        problem.planning_problem_id,
+        str(problem.planning_problem_id),
         int(start.time_step),
         _state(start, outline),
         np.array(goals, dtype=float).reshape(-1, 2),

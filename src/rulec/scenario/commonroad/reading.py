@@ -89,7 +89,9 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
         for light in scenario.lanelet_network.traffic_lights
         if light.active
     }
-    lanelets = {x.lanelet_id: _lanelet(x, signs, lights) for x in scenario.lanelet_network.lanelets}
+    lanelets = {
+        str(x.lanelet_id): _lanelet(x, signs, lights) for x in scenario.lanelet_network.lanelets
+    }
     step_s = float(scenario.dt)
     if not 0 < step_s < inf:
         raise ValueError(f"a time step of {step_s:g} s is none")
@@ -125,19 +127,23 @@ def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]
         if element.traffic_sign_element_id.name == "MAX_SPEED" and element.additional_values
     ]
     return Lanelet(
-        lanelet.lanelet_id,
+        str(lanelet.lanelet_id),
         _points(lanelet.left_vertices),
         _points(lanelet.right_vertices),
         _points(lanelet.center_vertices),
-        tuple(lanelet.successor or ()),
-        tuple(lanelet.predecessor or ()),
-        lanelet.adj_left if lanelet.adj_left_same_direction else None,
-        lanelet.adj_right if lanelet.adj_right_same_direction else None,
+        tuple(map(str, lanelet.successor or ())),
+        tuple(map(str, lanelet.predecessor or ())),
+        _id(lanelet.adj_left) if lanelet.adj_left_same_direction else None,
+        _id(lanelet.adj_right) if lanelet.adj_right_same_direction else None,
         frozenset(kind.value for kind in lanelet.lanelet_type or ()),
         frozenset(element.traffic_sign_element_id.name for element in elements),
         min(limits, default=None),
         tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
     )
+
+
+def _id(number: int | None) -> str | None:
+    return None if number is None else str(number)
 
 
 def _points(vertices: Any) -> Points:

@@ -19,11 +19,11 @@ class Choice:
     time of the file that becomes time 0; None is the planning problem's, the participant's first.
     ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
     ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
-    is ``congested`` below a median speed.
+    is ``congested`` below a median speed. Ids are those of the file; numbers will do.
     """
 
-    ego: int | None = None
+    ego: str | int | None = None
     at_s: float | None = None
-    reference: int | None = None
+    reference: str | int | None = None
     prediction: Prediction = "recorded"
     congested_below_kmh: float = CONGESTED_BELOW_KMH

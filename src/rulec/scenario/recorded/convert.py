@@ -80,7 +80,7 @@ def _traffic_signals(
 
 
 def _map_signals(
-    view: View, way: Sequence[int], own: int, step: int
+    view: View, way: Sequence[str], own: str, step: int
 ) -> dict[str, tuple[SignalValue, str]]:
     ahead = [view.recording.lanelets[number] for number in way[way.index(own) :]]
     return signals_of(ahead, view.lanes.count_at(view.ego_s), view.recording.step_s, step)

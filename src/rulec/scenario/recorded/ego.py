@@ -23,7 +23,7 @@ class Start:
     ``participant`` is the one whose part it takes over, if any.
     """
 
-    participant: int | None
+    participant: str | None
     step: int
     state: State
     targets: Points
@@ -38,7 +38,7 @@ def start_of(recording: Recording, choice: Choice, file: str) -> Start:
     if choice.ego is None and not problems:
         message = "the file has no planning problem, which would say where ego is"
         raise unfit(message, f"choose one of its vehicles with --ego: {listed(moving)}", file)
-    number = min(problems) if choice.ego is None else choice.ego
+    number = recording.problems[0].id if choice.ego is None else str(choice.ego)
     if number in problems:
         return _of_problem(problems[number], recording, choice, listed(moving), file)
     if number not in moving:
@@ -76,13 +76,14 @@ def _is_ego(one: Participant, problem: Problem) -> bool:
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
-def reference_of(recording: Recording, choice: Choice, state: State, file: str) -> int:
+def reference_of(recording: Recording, choice: Choice, state: State, file: str) -> str:
     """The lanelet whose centre line is the reference line. Raises RulecError R0612."""
     if choice.reference is not None:
-        if choice.reference not in recording.lanelets:
-            message = f"there is no lanelet {choice.reference}"
+        reference = str(choice.reference)
+        if reference not in recording.lanelets:
+            message = f"there is no lanelet {reference}"
             raise unfit(message, f"choose one of {listed(recording.lanelets)}", file)
-        return choice.reference
+        return reference
     own = lanelet_of(recording, state)
     if own is None:
         message = f"ego is on no lanelet, at x = {state.x:g}, y = {state.y:g}"
@@ -98,9 +99,9 @@ def _step(recording: Recording, at_s: float, file: str) -> int:
     return step
 
 
-def listed(numbers: Iterable[int]) -> str:
+def listed(ids: Iterable[str]) -> str:
     """Ids for people."""
-    return named([str(number) for number in numbers])
+    return named(list(ids))
 
 
 def unfit(message: str, way_out: str, file: str) -> RulecError:

@@ -89,7 +89,7 @@ class Lanes:
 
 
 def lanes_along(
-    recording: Recording, way: Sequence[int], line: ReferenceLine, ego_s: float
+    recording: Recording, way: Sequence[str], line: ReferenceLine, ego_s: float
 ) -> Lanes:
     """The lanes beside those of the way that lead the same way.
 

@@ -15,6 +15,11 @@ Points = NDArray[float64]
 """Places: one row each, x and y."""
 
 
+def in_order(identifier: str) -> tuple[int, str]:
+    """A key by which ids come in an order, and those that are numbers in that of the numbers."""
+    return len(identifier), identifier
+
+
 @dataclass(frozen=True, slots=True)
 class Light:
     """A traffic light's programme: colours, each for so many time steps, from a step on."""
@@ -40,14 +45,14 @@ class Lanelet:
     the names of those that hold here; ``lights`` are those that have a programme.
     """
 
-    id: int
+    id: str
     left: Points
     right: Points
     centre: Points
-    successors: tuple[int, ...]
-    predecessors: tuple[int, ...]
-    left_of: int | None
-    right_of: int | None
+    successors: tuple[str, ...]
+    predecessors: tuple[str, ...]
+    left_of: str | None
+    right_of: str | None
     types: frozenset[str]
     signs: frozenset[str]
     limit_mps: float | None
@@ -72,7 +77,7 @@ class Participant:
     ``standing``: it is there all the time, in its only state.
     """
 
-    id: int
+    id: str
     type: str
     standing: bool
     states: Mapping[int, State]
@@ -83,7 +88,7 @@ class Participant:
 class Problem:
     """A planning problem: where ego is at a time step, and places where it wants to go."""
 
-    id: int
+    id: str
     step: int
     start: State
     goals: Points
@@ -95,6 +100,6 @@ class Recording:
 
     name: str
     step_s: float
-    lanelets: Mapping[int, Lanelet]
+    lanelets: Mapping[str, Lanelet]
     participants: tuple[Participant, ...]
     problems: tuple[Problem, ...]

@@ -9,7 +9,7 @@ from math import atan2, pi
 import numpy as np
 import shapely
 
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording, State
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording, State, in_order
 
 REACH_M = 300.0
 """The road is followed this far ahead of ego and behind it, where the file has so much of it."""
@@ -19,7 +19,7 @@ NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_
 
 _NEAR_M = 3.0
 _LOOK_M = 30.0
-_Next = Callable[[Lanelet], Iterable[int]]
+_Next = Callable[[Lanelet], Iterable[str]]
 
 
 def is_lane(lanelet: Lanelet) -> bool:
@@ -27,7 +27,7 @@ def is_lane(lanelet: Lanelet) -> bool:
     return not lanelet.types & NO_LANES
 
 
-def lanelet_of(recording: Recording, state: State) -> int | None:
+def lanelet_of(recording: Recording, state: State) -> str | None:
     """The lanelet that a vehicle is on: of those in its place the one that leads its way best.
 
     The nearest one if it is beside all of them by no more than 3 m.
@@ -38,14 +38,14 @@ def lanelet_of(recording: Recording, state: State) -> int | None:
     near = [x for x in lanes if far[x.id] <= _NEAR_M]
     inside = [x for x in near if far[x.id] == 0.0]
 
-    def rank(lanelet: Lanelet) -> tuple[float, float, int]:
+    def rank(lanelet: Lanelet) -> tuple[float, float, tuple[int, str]]:
         error = abs(_turn(_heading_beside(lanelet, state), state.heading))
-        return (0.0 if inside else far[lanelet.id], round(error, 6), lanelet.id)
+        return (0.0 if inside else far[lanelet.id], round(error, 6), in_order(lanelet.id))
 
     return min(inside or near, key=rank).id if near else None
 
 
-def lanelets_at(recording: Recording, places: Points) -> frozenset[int]:
+def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
     """The lanes that hold one of the places, and those beside them that lead the same way."""
     points = shapely.points(places)
     found = {
@@ -60,9 +60,9 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[int]:
     )
 
 
-def beside(recording: Recording, start: int, *, left: bool) -> tuple[int, ...]:
+def beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
     """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
-    found: list[int] = []
+    found: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
         number = lanelet.left_of if left else lanelet.right_of
@@ -74,7 +74,7 @@ def beside(recording: Recording, start: int, *, left: bool) -> tuple[int, ...]:
         found.append(number)
 
 
-def route(recording: Recording, start: int, targets: frozenset[int]) -> tuple[int, ...]:
+def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[str, ...]:
     """The lanelets along ego's road, in their order, each followed by one of its successors.
 
     Where the road branches: towards a target if one can be reached, else as straight as possible.
@@ -86,9 +86,9 @@ def route(recording: Recording, start: int, targets: frozenset[int]) -> tuple[in
     return (*behind[:0:-1], *ahead)
 
 
-def _way_to(lanelets: Mapping[int, Lanelet], start: int, targets: frozenset[int]) -> list[int]:
+def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
     """The way through the fewest lanelets; only the start if there is none."""
-    came_from: dict[int, int | None] = {start: None}
+    came_from: dict[str, str | None] = {start: None}
     waiting = deque([start])
     while waiting:
         here = waiting.popleft()
@@ -105,13 +105,13 @@ def _way_to(lanelets: Mapping[int, Lanelet], start: int, targets: frozenset[int]
 
 
 def _straight_on(
-    lanelets: Mapping[int, Lanelet],
-    way: list[int],
+    lanelets: Mapping[str, Lanelet],
+    way: list[str],
     following: _Next,
     *,
     backwards: bool,
-    taken: Iterable[int] = (),
-) -> list[int]:
+    taken: Iterable[str] = (),
+) -> list[str]:
     way = list(way)
     seen = {*way, *taken}
     reach = sum(_length(lanelets[number]) for number in way[1:])
@@ -123,7 +123,8 @@ def _straight_on(
             break
         leaving = _end_heading(here, backwards)
         chosen = min(
-            options, key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), x.id)
+            options,
+            key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), in_order(x.id)),
         )
         way.append(chosen.id)
         seen.add(chosen.id)

@@ -80,7 +80,7 @@ class View:
         return [box if box.overlaps(wide) else None for box in boxes]
 
 
-def obstacles(view: View, ego: int | None, prediction: Prediction) -> Iterator[Obstacle]:
+def obstacles(view: View, ego: str | None, prediction: Prediction) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     others = [one for one in view.recording.participants if one.id != ego]
     since = [
@@ -96,7 +96,7 @@ def obstacles(view: View, ego: int | None, prediction: Prediction) -> Iterator[O
         first = next(box for box in own if box is not None)
         words = WORDS.get(one.type, WORDS["unknown"])
         yield Obstacle(
-            str(one.id),
+            one.id,
             words[0],
             first.s_max - first.s_min,
             first.d_max - first.d_min,
