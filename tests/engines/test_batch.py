@@ -11,7 +11,7 @@ import pytest
 from books import always, both, compile_here, eventually, far, implies, near, no, rule
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from recorded import OBJECTS, rulebooks, states
+from recorded import chunks, rulebooks, told
 from timed import TIMED_VOCABULARY
 
 from rulec.automata.machine import NumberRead, Threshold
@@ -32,33 +32,6 @@ from rulec.runtime.numbers import exact
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
-
-
-@st.composite
-def chunks(draw):
-    """Traces of a few shapes that meet again in the same states, some of them odd."""
-    found = []
-    for shape in range(draw(st.integers(1, 2))):
-        objects = {name: OBJECTS[name] for name in sorted(draw(st.sets(st.sampled_from("abc"))))}
-        odd = draw(st.booleans())
-        pool = draw(st.lists(states(objects, odd), min_size=1, max_size=4))
-        present = {}
-        shortest = 1
-        for name in objects:
-            if draw(st.booleans()):
-                first = draw(st.integers(0, 2))
-                present[name] = (first, first + draw(st.integers(0, 2)))
-                shortest = max(shortest, present[name][1] + 1)
-        lengths = st.integers(shortest if not odd else 0, 6)
-        for number in range(draw(st.integers(1, 6))):
-            n_states = draw(lengths)
-            word = draw(st.lists(st.sampled_from(pool), min_size=n_states, max_size=n_states))
-            found.append(Trace(f"{shape}.{number}", 1.0, objects, tuple(word), present))
-    return draw(st.permutations(found))
-
-
-def told(answer):
-    return (answer.trace, answer.error.diagnostics) if isinstance(answer, NotJudged) else answer
 
 
 @given(rulebooks(), chunks())

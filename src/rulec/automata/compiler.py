@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from fractions import Fraction
 
 from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
-from rulec.automata.compiler_messages import no_machine, no_multiple, no_spot
+from rulec.automata.compiler_messages import no_machine, no_spot
 from rulec.automata.facts import fact_groups, fact_instances
 from rulec.automata.letters import propositions_of, reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
@@ -23,6 +23,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import time_in_words
 from rulec.logic.timing import NotAMultipleError, in_steps, speaks_of_seconds
 from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.step_messages import no_multiple
 from rulec.version import __version__
 
 CPU_LIMIT_S = 5
@@ -91,6 +92,7 @@ def compile_rulebook(
         rulec=__version__,
         spot=spot,
         semantics=rulebook.semantics,
+        traffic=rulebook.traffic,
         facts=tuple(
             CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
         ),

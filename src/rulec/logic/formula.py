@@ -8,6 +8,8 @@ from enum import Enum
 from fractions import Fraction
 from typing import Literal
 
+from rulec.diagnostics import Span
+
 
 class UnaryOperator(Enum):
     """Value: the operator in words, as a rulebook spells it."""
@@ -126,12 +128,13 @@ class Bound:
     """How far ahead or back a temporal operator looks: from ``low`` to ``high``, both inclusive.
 
     In seconds or in steps of the trace; ``high`` is None where there is no end. For ``next`` and
-    ``previously`` both are the distance.
+    ``previously`` both are the distance. ``span`` is where it is written.
     """
 
     low: Fraction
     high: Fraction | None
     unit: Literal["s", "steps"]
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

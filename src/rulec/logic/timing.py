@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
+from rulec.diagnostics import Span
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -55,12 +56,16 @@ DISTANCE: frozenset[UnaryOperator | BinaryOperator] = frozenset(
 
 
 class NotAMultipleError(ValueError):
-    """A bound in seconds, ``offending``, falls between two instants of a trace."""
+    """A bound in seconds, ``offending``, falls between two instants of a trace.
 
-    def __init__(self, offending: Fraction, step_s: Fraction) -> None:
+    ``span`` is where it is written.
+    """
+
+    def __init__(self, offending: Fraction, step_s: Fraction, span: Span | None) -> None:
         super().__init__(f"{offending} s is not a multiple of {step_s} s")
         self.offending = offending
         self.step_s = step_s
+        self.span = span
 
 
 class Range(NamedTuple):
@@ -117,6 +122,8 @@ def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
 def in_steps(formula: Formula, step_s: Fraction) -> Formula:
     """The formula for traces whose states are ``step_s`` seconds apart, every bound in steps.
 
+    It no longer says where its bounds are written.
+
     Raises:
         NotAMultipleError: for the first bound, from left to right, that is no multiple of the step.
         ValueError: if the step is not above 0.
@@ -136,13 +143,15 @@ def in_steps(formula: Formula, step_s: Fraction) -> Formula:
 
 
 def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
-    if bound is None or bound.unit == "steps":
-        return bound
+    if bound is None:
+        return None
+    if bound.unit == "steps":
+        return replace(bound, span=None)
     for seconds in (bound.low, bound.high):
         if seconds is not None and (seconds / step_s).denominator != 1:
-            raise NotAMultipleError(seconds, step_s)
+            raise NotAMultipleError(seconds, step_s, bound.span)
     high = None if bound.high is None else bound.high / step_s
-    return replace(bound, low=bound.low / step_s, high=high, unit="steps")
+    return replace(bound, low=bound.low / step_s, high=high, unit="steps", span=None)
 
 
 def reach(formula: Formula) -> int:

@@ -12,10 +12,13 @@ from typing import TYPE_CHECKING
 
 from rulec.maneuvers.terms import SUPPLIED
 from rulec.trace import State, TraceGraph, Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.trace.fitting import could_mean, known_types
+from rulec.vocabulary import Declaration, Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+
+_Said = Value | Mapping[str, Value]
 
 RECORDED_UNIT = "km/h"
 """The unit of the quantities that recorded scenes supply."""
@@ -26,38 +29,62 @@ def fitted(vocabulary: Vocabulary, graph: NavigationGraph) -> TraceGraph:
     traces = graph.trace_graph()
     if graph.scenario.account is None:
         return traces
-    objects: dict[str, str] = {}
-    for name, obstacle in graph.objects.items():
-        words = (word for word in (obstacle.type, *obstacle.broader) if word in vocabulary.types)
-        if (known := next(words, None)) is not None:
-            objects[name] = known
+    objects = known_types(
+        {name: (one.type, *one.broader) for name, one in graph.objects.items()}, vocabulary
+    )
+    fit = _Fit(vocabulary, objects)
     return replace(
         traces,
         objects=objects,
         present={name: there for name, there in traces.present.items() if name in objects},
-        states=tuple(
-            tuple([_state(vocabulary, objects, state) for state in layer])
-            for layer in traces.states
-        ),
+        states=tuple(tuple(map(fit.state, layer)) for layer in traces.states),
     )
 
 
-def _state(vocabulary: Vocabulary, objects: Mapping[str, str], state: State) -> State:
-    kept: dict[str, Value | Mapping[str, Value]] = {}
-    for name, value in state.items():
-        declaration = vocabulary.declarations.get(name)
+class _Fit:
+    """What a vocabulary knows of states. What states say alike is looked at once, and stays one."""
+
+    def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
+        self._vocabulary = vocabulary
+        self._objects = objects
+        self._about: dict[str | None, frozenset[str]] = {}
+        self._known: dict[tuple[str, int], tuple[_Said, _Said | None]] = {}
+
+    def state(self, state: State) -> State:
+        """A state, with what the vocabulary knows of it."""
+        kept: dict[str, _Said] = {}
+        for name, value in state.items():
+            key = (name, id(value))
+            if key not in self._known:
+                # Beside its value, so that no other value is given its number
+                self._known[key] = (value, self._fitted(name, value))
+            fitting = self._known[key][1]
+            if fitting is not None:
+                kept[name] = fitting
+        return kept
+
+    def _fitted(self, name: str, value: _Said) -> _Said | None:
+        """What the vocabulary knows of what is said of a name; None if nothing."""
+        declaration = self._vocabulary.declarations.get(name)
         if name not in SUPPLIED and not _fits(value, declaration):
-            continue
-        if isinstance(value, Mapping):
-            about = declaration.parameters[0] if declaration and declaration.parameters else None
-            value = {
-                item: inner
-                for item, inner in value.items()
-                if item in objects
-                and (about is None or vocabulary.is_subtype(objects[item], about))
-            }
-        kept[name] = value
-    return kept
+            return None
+        if not isinstance(value, Mapping):
+            return value
+        known = self._of(
+            declaration.parameters[0] if declaration and declaration.parameters else None
+        )
+        if known.issuperset(value):
+            return value
+        return {one: inner for one, inner in value.items() if one in known}
+
+    def _of(self, kind: str | None) -> frozenset[str]:
+        if kind not in self._about:
+            self._about[kind] = frozenset(
+                item
+                for item, own in self._objects.items()
+                if kind is None or self._vocabulary.is_subtype(own, kind)
+            )
+        return self._about[kind]
 
 
 def _fits(value: Value | Mapping[str, Value], declaration: Declaration | None) -> bool:
@@ -65,11 +92,4 @@ def _fits(value: Value | Mapping[str, Value], declaration: Declaration | None) -
     if declaration is None or isinstance(value, Mapping) != bool(declaration.parameters):
         return False
     values = value.values() if isinstance(value, Mapping) else (value,)
-    match declaration:
-        case Signal():
-            return all(isinstance(one, bool) for one in values)
-        case Enumeration():
-            return all(one in declaration.values for one in values)
-        case Quantity():
-            plain = all(isinstance(one, float) for one in values)
-            return plain and declaration.unit == RECORDED_UNIT
+    return could_mean(values, declaration, RECORDED_UNIT)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rulec.partition.regions import PartitionName, station_and_lateral
+from rulec.partition.regions import LATERAL_OF, STATION_OF, PartitionName
 from rulec.scenario import Box
 from rulec.scenario.model import Surface
 
@@ -46,7 +46,7 @@ class Cell:
         if self.partition == "paper":
             return dict(zip(self.objects, self.code.decode("ascii"), strict=True))
         return {
-            name: station_and_lateral(code)
+            name: (STATION_OF[code], LATERAL_OF[code])
             for name, code in zip(self.objects, self.code, strict=True)
         }
 

@@ -20,7 +20,7 @@ PartitionName = Literal["paper", "fine"]
 OCCUPIED = ord("o")
 
 # The paper's figure 3, turned with the direction in which a pedestrian walks.
-_PAPER: Mapping[Facing, bytes] = MappingProxyType(
+PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
     {
         "along": b"rrrboflll",
         "against": b"lllfobrrr",
@@ -34,10 +34,15 @@ STATIONS = ("behind", "beside", "in_front_of")
 LATERALS = ("right_of", "same_lane", "left_of")
 
 
-def station_and_lateral(code: int) -> tuple[str, str]:
-    """The pair that a code of the fine partition stands for."""
-    row, column = divmod(code - ord("0"), 3)
-    return STATIONS[column], LATERALS[row]
+STATION_OF: Mapping[int, str] = MappingProxyType(
+    {code: STATIONS[i % 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say along the road."""
+
+LATERAL_OF: Mapping[int, str] = MappingProxyType(
+    {code: LATERALS[i // 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say across the road."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +70,9 @@ def region_of(
     if partition == "fine":
         return Region(index, lane_wide, _FINE)
     if not obstacle.walks:
-        return Region(index, lane_wide, _PAPER["along"])
+        return Region(index, lane_wide, PAPER_TABLES["along"])
     direction = facing(obstacle, *interval)
     if direction in ("along", "against"):
-        return Region(index, lane_wide, _PAPER[direction])
+        return Region(index, lane_wide, PAPER_TABLES[direction])
     across = Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
-    return Region(index, across, _PAPER[direction])
+    return Region(index, across, PAPER_TABLES[direction])

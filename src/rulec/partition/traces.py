@@ -9,7 +9,7 @@ from math import lcm
 from rulec.partition.graph import NavigationGraph
 from rulec.partition.margin import Margins
 from rulec.partition.model import Cell
-from rulec.partition.regions import station_and_lateral
+from rulec.partition.regions import LATERAL_OF, STATION_OF
 from rulec.scenario import Obstacle
 from rulec.trace.model import State, TraceGraph, Value
 
@@ -56,10 +56,9 @@ def _relations(cell: Cell) -> dict[str, Value | dict[str, Value]]:
             "position": dict(zip(cell.objects, letters, strict=True)),
             "surface": PAPER_SURFACE[cell.surface],
         }
-    pairs = [station_and_lateral(code) for code in cell.code]
     return {
-        "station": {name: pair[0] for name, pair in zip(cell.objects, pairs, strict=True)},
-        "lateral": {name: pair[1] for name, pair in zip(cell.objects, pairs, strict=True)},
+        "station": dict(zip(cell.objects, map(STATION_OF.__getitem__, cell.code), strict=True)),
+        "lateral": dict(zip(cell.objects, map(LATERAL_OF.__getitem__, cell.code), strict=True)),
         "surface": cell.surface,
     }
 

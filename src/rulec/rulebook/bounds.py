@@ -52,7 +52,7 @@ def bound_of(
     if high is not None and high < low:
         scope.report(say.empty_bound(bound))
         return False
-    return Bound(low, high, unit)
+    return Bound(low, high, unit, bound.span)
 
 
 def _time(side: tree.Amount, scope: Scope, evaluate: Evaluate) -> _Time | None:

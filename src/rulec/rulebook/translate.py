@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic.timing import NotAMultipleError, in_steps
 from rulec.rulebook import exception_messages as say
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import Declared
@@ -26,6 +27,7 @@ from rulec.rulebook.numerals import exact_value
 from rulec.rulebook.overlay import RuleEntry
 from rulec.rulebook.provisions import Provisions
 from rulec.rulebook.scope import Scope
+from rulec.rulebook.step_messages import no_multiple
 from rulec.rulebook.variables import variables_of
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
@@ -83,6 +85,11 @@ def translate_rule(
         parts.exemptions,
         parts.condition,
     )
+    if rule.examples:
+        try:
+            in_steps(formula, step)
+        except NotAMultipleError as error:
+            return None, [*mistakes, no_multiple(rule, error)]
     return rule, mistakes
 
 

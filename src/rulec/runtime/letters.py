@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
+from typing import Any
 
 from rulec.automata.compiled import CompiledFact, CompiledRule
 from rulec.automata.machine import IMPOSSIBLE, Read
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.logic.one_state import Unknown, total
 from rulec.runtime.facts import impossible
-from rulec.runtime.moment import Moment, value_in
+from rulec.runtime.moment import Moment
 from rulec.runtime.numbers import Scale, scale
 from rulec.trace import State, Value
-from rulec.vocabulary import Declaration, Vocabulary
+from rulec.vocabulary import Vocabulary
 
 NOBODY: Mapping[str, str] = MappingProxyType({})
 ALWAYS_THERE: Mapping[str, tuple[int, int]] = MappingProxyType({})
@@ -50,6 +51,7 @@ class Columns:
         self._facts = facts
         self._values: dict[tuple[object, ...], list[Value]] = {}
         self._known: dict[tuple[object, ...], Digits] = {}
+        self._given: dict[str, list[Any]] = {}
         self._one: dict[str, bool] = {}
         self._moments: dict[int, Moment] = {}
 
@@ -112,12 +114,22 @@ class Columns:
         """What states say of a name; one value for all, if they say the very same."""
         key = (name, items, first, last)
         if key not in self._values:
-            declaration = self._vocabulary.declarations[name]
-            self._values[key] = [
-                self._value(name, items, number, declaration, rule)
-                for number in self._telling((name,), first, last)
-            ]
+            numbers = self._telling((name,), first, last)
+            found: Iterable[Any] = self._said(name)[numbers.start : numbers.stop]
+            for item in items:
+                found = [None if inner is None else inner.get(item) for inner in found]
+            default = self._vocabulary.declarations[name].default
+            values: list[Any] = [default if value is None else value for value in found]
+            if None in values:
+                raise self._missing(name, items, numbers[values.index(None)], rule)
+            self._values[key] = values
         return self._values[key]
+
+    def _said(self, name: str) -> list[Any]:
+        """What each state gives for a name, None if nothing."""
+        if name not in self._given:
+            self._given[name] = [state.get(name) for state in self._states]
+        return self._given[name]
 
     def _counted_off(
         self, read: Scale, objects: Mapping[str, str], first: int, last: int, rule: str
@@ -146,7 +158,7 @@ class Columns:
     def _is_one(self, name: str) -> bool:
         """Do all states say the very same of a name, or nothing? As cells do of a whole scene."""
         if name not in self._one:
-            self._one[name] = len({id(state.get(name)) for state in self._states}) <= 1
+            self._one[name] = len(set(map(id, self._said(name)))) <= 1
         return self._one[name]
 
     def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
@@ -154,14 +166,6 @@ class Columns:
         if isinstance(found, Unknown):
             raise self._missing(found.name, found.objects, number, rule)
         return read.read.digit(found)
-
-    def _value(
-        self, name: str, items: tuple[str, ...], number: int, declaration: Declaration, rule: str
-    ) -> Value:
-        value = value_in(self._states[number], name, items, declaration)
-        if value is None:
-            raise self._missing(name, items, number, rule)
-        return value
 
     def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
         of = f" of `{', '.join(items)}`" if items else ""

@@ -9,7 +9,7 @@ from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.recorded.convert import to_scenario
 from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.safe_xml import XmlFormat, root_of, short
+from rulec.scenario.safe_xml import XmlFormat, is_xml, root_of, short
 
 RECORDING = XmlFormat(
     "recorded traffic",
@@ -50,6 +50,11 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
     from rulec.scenario.commonroad.reading import read_commonroad
 
     return read_commonroad(path)
+
+
+def is_recording(file: str) -> bool:
+    """Does a file hold recorded traffic, by its name or its first bytes?"""
+    return is_xml(Path(file))
 
 
 def read_scene(path: Path, choice: Choice) -> Scenario:

@@ -143,6 +143,8 @@ def is_xml(path: Path) -> bool:
     if path.name.lower().endswith(_SUFFIXES):
         return True
     try:
+        if not path.is_file():
+            return False  # what comes through a pipe can be read only once
         with path.open("rb") as stream, _unpacked(stream) as content:
             start = content.read(64)
     except (OSError, ValueError, EOFError, zlib.error):

@@ -79,4 +79,8 @@ class Vocabulary:
 
     def is_subtype(self, type_name: str, of: str) -> bool:
         """Is every ``type_name`` also an ``of``? Every type is one of itself."""
-        return of in self.ancestors(type_name)
+        return of in self._above[type_name]
+
+    @cached_property
+    def _above(self) -> Mapping[str, frozenset[str]]:
+        return {name: frozenset(self.ancestors(name)) for name in self.types}

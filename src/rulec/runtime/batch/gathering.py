@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import repeat
+from operator import eq
 from typing import Any
 
 import numpy as np
 
+from rulec.runtime.batch.naming import Names
 from rulec.trace.columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
@@ -19,8 +22,12 @@ class OddError(Exception):
     """Some state does not fit the vocabulary, or leaves out what has no default."""
 
 
-def gathered(traces: TraceCells, vocabulary: Vocabulary) -> TraceColumns:
+def gathered(
+    traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names] = ()
+) -> TraceColumns:
     """The same traces as columns.
+
+    ``names`` has for each state what the objects are called there, unless they have their names.
 
     Raises:
         OddError: if ``check_state`` would refuse a state, or a value is given in some states only
@@ -28,7 +35,7 @@ def gathered(traces: TraceCells, vocabulary: Vocabulary) -> TraceColumns:
     """
     if not set(map(type, traces.states)) <= {dict}:
         raise OddError
-    gathering = _Gathering(traces, vocabulary)
+    gathering = _Gathering(traces, vocabulary, names)
     for name in set().union(*traces.states):
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
@@ -41,8 +48,9 @@ def gathered(traces: TraceCells, vocabulary: Vocabulary) -> TraceColumns:
 
 
 class _Gathering:
-    def __init__(self, traces: TraceCells, vocabulary: Vocabulary) -> None:
+    def __init__(self, traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names]) -> None:
         self.columns: dict[Key, Array] = {}
+        self._names = names
         self._traces = traces
         self._vocabulary = vocabulary
 
@@ -60,12 +68,29 @@ class _Gathering:
         maps = [_EMPTY if value is _NOT_GIVEN else value for value in values]
         if not set(map(type, maps)) <= {dict}:
             raise OddError
-        for item in set().union(*maps):
+        for item, inner in self._by_object(maps):
             kind = self._traces.objects.get(item)
             if kind is None or not self._vocabulary.is_subtype(kind, parameters[0]):
                 raise OddError
-            inner = [one.get(item, _NOT_GIVEN) for one in maps]
             self.add(inner, declaration, parameters[1:], (*items, item))
+
+    def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Iterable[tuple[str, Sequence[Any]]]:
+        """What states say of each object that any of them speaks of."""
+        objects = tuple(self._traces.objects)
+        first = tuple(maps[0])
+        if not self._names:
+            if all(map(eq, map(tuple, maps), repeat(first))):
+                return zip(first, _turned(maps), strict=True)
+        else:
+            own_names = set(self._names)
+            places = [self._names[0].index(name) for name in first if name in self._names[0]]
+            expected = {own: tuple([own[place] for place in places]) for own in own_names}
+            if all(map(eq, map(tuple, maps), map(expected.__getitem__, self._names))):
+                return zip([objects[place] for place in places], _turned(maps), strict=True)
+            meant = {own: dict(zip(own, objects, strict=True)) for own in own_names}
+            maps = list(map(_under, maps, map(meant.__getitem__, self._names)))
+        every = set().union(*maps)
+        return ((item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every)
 
     def _column(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
@@ -109,6 +134,18 @@ class _Gathering:
     def _is_needless(self, cell: int, items: tuple[str, ...]) -> bool:
         there = self._traces.there
         return bool(there) and not all(item in there[cell] for item in items)
+
+
+def _turned(maps: Sequence[Mapping[str, Any]]) -> Iterable[tuple[Any, ...]]:
+    """The values of maps with the same keys, key by key."""
+    return zip(*[one.values() for one in maps], strict=True)
+
+
+def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, Any]:
+    try:
+        return {names[item]: value for item, value in about.items()}
+    except KeyError:
+        raise OddError from None
 
 
 def _places(values: Sequence[Any]) -> list[int]:

@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain, pairwise
+from dataclasses import dataclass, replace
+from itertools import chain, pairwise, repeat
 from typing import Any
 
 import numpy as np
 
+from rulec.runtime.batch.naming import Names, renamed_state
 from rulec.runtime.letters import present_in
 from rulec.trace import Trace
 from rulec.trace.columns import TraceCells, layout_of, smallest_unsigned
 
-Shape = tuple[object, ...]
-
-
-def shape_of(trace: Trace) -> Shape:
-    """What traces have in common that are judged together: step, objects, and presence."""
-    return trace.step_s, tuple(trace.objects.items()), tuple(trace.present.items())
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group:
-    """Traces of one shape as cells; ``order`` are their places in the order of the layout."""
+    """Traces of one shape as cells; ``order`` are their places in the order of the layout.
+
+    The objects are the first trace's. ``names`` has for each state what they are called there, in
+    their order; it is empty if all traces have the same.
+    """
 
     cells: TraceCells
     order: Sequence[int]
+    names: Sequence[Names] = ()
 
 
 def grouped(traces: Sequence[Trace]) -> Group:
@@ -42,17 +41,13 @@ def grouped(traces: Sequence[Trace]) -> Group:
     states = list(chain.from_iterable([trace.states for trace in ordered]))
     scenes, scene_of_step = _scenes(one, layout.n_steps)
     steps_of = layout.lengths.tolist()
-    keys: list[Any] = (
-        list(map(id, states))
-        if len(scenes) == 1
-        else list(
-            zip(
-                map(id, states),
-                chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of]),
-                strict=True,
-            )
-        )
-    )
+    names = [tuple(trace.objects) for trace in ordered]
+    are_alike = names.count(names[0]) == len(names)
+    keys: list[Any] = list(map(id, states))
+    if len(scenes) > 1 or not are_alike:
+        now = chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of])
+        whose = chain.from_iterable(map(repeat, names, steps_of))
+        keys = list(zip(keys, now, whose, strict=True))
     known = dict(zip(keys, states, strict=True))
     numbers = {key: number for number, key in enumerate(known)}
     found = np.fromiter(map(numbers.__getitem__, keys), np.int64, layout.n_states)
@@ -66,7 +61,16 @@ def grouped(traces: Sequence[Trace]) -> Group:
     walks = TraceCells(
         layout, cells, tuple(known.values()), one.objects, one.present, there, one.step_s
     )
-    return Group(walks, order.tolist())
+    return Group(walks, order.tolist(), () if are_alike else [key[2] for key in known])
+
+
+def under_one_name(group: Group) -> TraceCells:
+    """The group's cells, their states renamed; None in place of one that ``renamed`` refuses."""
+    if not group.names:
+        return group.cells
+    meant = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
+    states: Any = map(renamed_state, group.cells.states, map(meant.__getitem__, group.names))
+    return replace(group.cells, states=tuple(states))
 
 
 def _scenes(trace: Trace, n_steps: int) -> tuple[list[Mapping[str, str]], list[int]]:

@@ -1,21 +1,24 @@
 """Many traces judged together; each verdict is the one that ``verify`` gives of the trace alone.
 
-Traces that share their shape run through the machines together. Whatever is odd about a trace, from
-an unknown name to a missing value, is left to ``verify``, which says it best.
+Traces that are alike but for their objects' names run through the machines together. Whatever is
+odd about a trace, from an unknown name to a missing value, is left to ``verify``, which says it
+best.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.facts import counts
 from rulec.diagnostics import RulecError
 from rulec.runtime.batch.gathering import OddError, gathered
-from rulec.runtime.batch.grouping import Shape, grouped, shape_of
+from rulec.runtime.batch.grouping import grouped, under_one_name
 from rulec.runtime.batch.judged import Judged
 from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.naming import Names, Shape, in_own_names, shape_of
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.checking import check_objects, check_state
 from rulec.runtime.facts import check_counting_facts
@@ -66,8 +69,8 @@ def judge_chunk(
         if isinstance(item, Trace):
             try:
                 shapes.setdefault(shape_of(item), []).append(place)
-            except (TypeError, AttributeError):  # it is no trace, which ``verify`` will say
-                continue
+            except (TypeError, AttributeError, KeyError):
+                continue  # it is no trace, which ``verify`` will say
     for places in shapes.values():
         if len(places) >= fewest:
             _judge_group(items, places, rulebook, answers)
@@ -95,43 +98,58 @@ def _judge_group(
         rules = _rules_for(sound[0][1], rulebook)
     except RulecError:
         return
-    judged, found, order = _judged(sound, rules)
-    unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
-    violations = _violations(judged)
-    for number, place in enumerate(order):
+    group = _judged(sound, rules)
+    if group is None:
+        return
+    unread = set(chain.from_iterable(one.unread.tolist() for one in group.judged))
+    violations = _violations(group.judged)
+    for number, place in enumerate(group.order):
         if number not in unread:
-            where, trace = found[place]
-            answers[where] = Verdict(trace.id, tuple(violations.get(number, ())))
+            where, trace = group.traces[place]
+            found = violations.get(number, ())
+            told = in_own_names(found, group.objects, tuple(trace.objects))
+            answers[where] = Verdict(trace.id, told)
 
 
 _Placed = tuple[int, Trace]
 
 
-def _judged(
-    traces: Sequence[_Placed], rules: CompiledRulebook
-) -> tuple[list[Judged], Sequence[_Placed], Sequence[int]]:
-    """What the engine says, of which of the traces, and in which order it does."""
+@dataclass(frozen=True, slots=True)
+class _JudgedGroup:
+    """What the engine says of the objects of a group, of which traces, and in which order."""
+
+    judged: Sequence[Judged]
+    traces: Sequence[_Placed]
+    order: Sequence[int]
+    objects: Names
+
+
+def _judged(traces: Sequence[_Placed], rules: CompiledRulebook) -> _JudgedGroup | None:
     group = grouped([trace for _, trace in traces])
     cells = group.cells
     if len(cells.states) * _SHARED > cells.layout.n_states:
         if any(counts(fact.formula) for fact in rules.facts):
-            return [], (), ()
+            return None
         try:
-            return judge_columns(gathered(cells, rules.vocabulary), rules), traces, group.order
+            columns = gathered(cells, rules.vocabulary, group.names)
+            judged = judge_columns(columns, rules)
         except (OddError, NotGivenError):
-            return [], (), ()
+            return None
+        return _JudgedGroup(judged, traces, group.order, tuple(cells.objects))
+    cells = under_one_name(group)
     scenes = cells.there or (cells.objects,) * len(cells.states)
     odd = {
         id(state)
-        for state, there in zip(cells.states, scenes, strict=True)
-        if not _fits(state, cells.objects, there, rules)
+        for state, known, there in zip(group.cells.states, cells.states, scenes, strict=True)
+        if not _fits(known, cells.objects, there, rules)
     }
     if odd:
         traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
         if not traces:
-            return [], (), ()
+            return None
         group = grouped([trace for _, trace in traces])
-    return judge_cells(group.cells, rules), traces, group.order
+        cells = under_one_name(group)
+    return _JudgedGroup(judge_cells(cells, rules), traces, group.order, tuple(cells.objects))
 
 
 def _is_framed(trace: Trace) -> bool:

@@ -19,6 +19,7 @@ from xml.parsers.expat import XMLParserType
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.scenario.commonroad.countries import side_in
 from rulec.scenario.commonroad.moving import participants_of, problem_of
 from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Points, Recording
 from rulec.scenario.safe_xml import XmlFormat, is_packed, scan, short
@@ -128,6 +129,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
             problem_of(problem, lanelets)
             for _, problem in sorted(problems.planning_problem_dict.items())
         ),
+        side=side_in(name),
     )
 
 
