@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from rulec.trace.formats import Format
 
     Rules = CompiledRulebook | RulebookFor
-    Answer = tuple[Trace | RulecError, Verdict | NotJudged]
+    Items = Sequence[Trace | RulecError]
+    Answer = tuple[Items, int, Verdict | NotJudged]
 
 
 @click.command()
@@ -56,9 +57,9 @@ def command(
     """
     from rulec.report import verdicts
     from rulec.report.console import Complaints, print_diagnostics, print_result
+    from rulec.runtime.batch.blocks import rulebook_for
     from rulec.runtime.explanation import explain
-    from rulec.runtime.verdict import NotJudged, Verdict
-    from rulec.runtime.verify import made_for
+    from rulec.runtime.verdict import Verdict
     from rulec.settings import search_path
     from rulec.trace import Trace
     from rulec.workflow import machines
@@ -67,19 +68,24 @@ def command(
     satisfied = violated = not_judged = 0
     complaints = Complaints()
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    for trace, answer in _answers(files, form, rules):
-        if isinstance(answer, Verdict) and isinstance(trace, Trace):
+    for traces, place, answer in _answers(files, form, rules):
+        if isinstance(answer, Verdict):
             satisfied += answer.satisfied
             violated += not answer.satisfied
-            chosen = answer.violations[:to_explain]
-            to_explain -= len(chosen)
-            used = made_for(trace, rules)
-            explained = [explain(violation, trace, used) for violation in chosen]
-            if json_output:
-                print_result(verdicts.as_json(answer, used, explained))
-            elif answer.violations:
-                print_result(verdicts.as_text(answer, used, explained))
-        elif isinstance(answer, NotJudged):
+            if not (answer.violations or json_output):
+                continue
+            used = rulebook_for(traces, place, rules)
+            explained = []
+            if answer.violations and to_explain:
+                chosen = answer.violations[:to_explain]
+                to_explain -= len(chosen)
+                trace = traces[place]
+                explained = [
+                    explain(one, trace, used) for one in chosen if isinstance(trace, Trace)
+                ]
+            as_printed = verdicts.as_json if json_output else verdicts.as_text
+            print_result(as_printed(answer, used, explained))
+        else:
             not_judged += 1
             complaints.add(answer.error)
             if json_output:
@@ -93,7 +99,7 @@ def command(
 
 
 def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Iterator[Answer]:
-    """Every trace, or why there is none, with its verdict, or why there is none."""
+    """Traces, which of them, and its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
@@ -109,18 +115,20 @@ def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Itera
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
                 yield from _judged(stream, file, form or format_of(file), size, rules)
         except RulecError as error:
-            yield error, NotJudged(None, error)
+            yield [error], 0, NotJudged(None, error)
 
 
 def _judged(
     stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
 ) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.batch.verifying import judge_chunk
+    from rulec.runtime.batch.blocks import judge_items
     from rulec.trace.formats import read_chunks
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            yield from zip(traces, judge_chunk(traces, rules), strict=True)
+            found, answers = judge_items(traces, rules)
+            for place, answer in enumerate(answers):
+                yield found, place, answer
             if size is not None:
                 tell(stream.tell())
