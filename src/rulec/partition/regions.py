@@ -20,7 +20,7 @@ PartitionName = Literal["paper", "fine"]
 OCCUPIED = ord("o")
 
 # The paper's figure 3, turned with the direction in which a pedestrian walks.
-_PAPER: Mapping[Facing, bytes] = MappingProxyType(
+PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
     {
         "along": b"rrrboflll",
         "against": b"lllfobrrr",
@@ -70,9 +70,9 @@ def region_of(
     if partition == "fine":
         return Region(index, lane_wide, _FINE)
     if not obstacle.walks:
-        return Region(index, lane_wide, _PAPER["along"])
+        return Region(index, lane_wide, PAPER_TABLES["along"])
     direction = facing(obstacle, *interval)
     if direction in ("along", "against"):
-        return Region(index, lane_wide, _PAPER[direction])
+        return Region(index, lane_wide, PAPER_TABLES[direction])
     across = Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
-    return Region(index, across, _PAPER[direction])
+    return Region(index, across, PAPER_TABLES[direction])
