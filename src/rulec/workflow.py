@@ -25,12 +25,8 @@ from rulec.trace import Trace
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
-    from rulec.analysis.difference import Difference
-    from rulec.analysis.history import Inheritance
-    from rulec.analysis.matrix import Matrix
     from rulec.automata.any_step import AnyStep
     from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName
-    from rulec.rulebook.loader import Loaded
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
@@ -131,78 +127,6 @@ def run_examples(
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 
-def compare_rulebooks(
-    first: str | Path,
-    second: str | Path,
-    search_path: Sequence[str | Path] = (),
-    at: str = "",
-    patterns: Sequence[str] = (),
-    step_s: Fraction | None = None,
-    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
-    tell: Callable[[float], object] = lambda _: None,
-    most: int = 1,
-) -> Difference:
-    """Compare the rules of two rulebooks, given by name or by their sources' paths.
-
-    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
-    as for ``rulec.analysis.difference.difference``. Raises RulecError.
-    """
-    from rulec.analysis.difference import difference, setting_pairs
-
-    (one, ours), (other, theirs) = (
-        read_with_inheritance(each, search_path, at) for each in (first, second)
-    )
-    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
-    # What rules that were not asked for depend on is not asked for either.
-    return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
-
-
-def compare_all(
-    rulebooks: Sequence[Rulebook],
-    patterns: Sequence[str] = (),
-    step_s: Fraction | None = None,
-    tell: Callable[[float], object] = lambda _: None,
-) -> Matrix:
-    """Compare every two of some rulebooks, as for ``rulec.analysis.matrix.matrix``."""
-    from rulec.analysis.matrix import matrix
-
-    return matrix(rulebooks, patterns, step_s, tell)
-
-
-def analyze_rulebook(
-    reference: str | Path,
-    search_path: Sequence[str | Path] = (),
-    at: str = "",
-    tell: Callable[[float], object] = lambda _: None,
-) -> tuple[Diagnostic, ...]:
-    """What the automata of its rules tell about a rulebook, given by name or by its source's path.
-
-    ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
-    RulecError.
-    """
-    from rulec.analysis.findings import findings
-    from rulec.rulebook.loader import read_rulebook
-
-    folders = [Path(folder) for folder in search_path]
-    loaded = read_rulebook(reference, folders, at)
-    book = loaded.rulebook
-    above = [one.span.source.name for one in loaded.books[-2:-1]]
-    bases = [read_rulebook(Path(file), folders, book.at).rulebook for file in above]
-    return findings(book, bases, tell)
-
-
-def read_with_inheritance(
-    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> tuple[Loaded, Inheritance]:
-    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
-    from rulec.analysis.inheritance import inheritance
-    from rulec.rulebook.loader import read_rulebook
-
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
-    return loaded, inheritance(loaded.books, loaded.rulebook.at)
-
-
 def audit_rulebook(
     reference: str | Path,
     search_path: Sequence[str | Path] = (),
@@ -217,6 +141,7 @@ def audit_rulebook(
     ``at``: as for ``load_rulebook``. Raises RulecError.
     """
     from rulec.analysis.audit import audit
+    from rulec.analysis.inheritance import read_with_inheritance
 
     loaded, inherited = read_with_inheritance(reference, search_path, at)
     warn(loaded.warnings)

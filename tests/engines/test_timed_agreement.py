@@ -4,7 +4,7 @@ import pytest
 import spot
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
-from past_in_spot import in_spot, spot_automaton
+from past_in_spot import in_spot, is_easy, spot_automaton
 from timed import (
     CARS,
     GAP,
@@ -15,7 +15,6 @@ from timed import (
     letters_of,
     timed_formulas,
     timed_words,
-    without_bounds,
 )
 
 from rulec.automata.letters import count_letters, knowledge, propositions_of, reads_of
@@ -24,15 +23,8 @@ from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.logic.semantics import holds
-from rulec.logic.timing import PAST, operations_of
 
 both_semantics = st.sampled_from(["stutter", "finite"])
-
-
-def is_easy(formula):
-    """Spot's own way takes for ever with many operators unrolled, and many past ones guessed."""
-    operations = list(operations_of(without_bounds(formula)))
-    return len(operations) <= 20 and sum(one.operator in PAST for one in operations) <= 3
 
 
 def machine_of(formula, semantics):

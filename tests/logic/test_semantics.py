@@ -3,10 +3,10 @@
 from fractions import Fraction
 
 import pytest
+from definition import by_definition
 from hypothesis import example, given
 from hypothesis import strategies as st
 from timed import (
-    by_definition,
     comparison,
     letters_of,
     timed_formulas,

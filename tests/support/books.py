@@ -3,7 +3,8 @@
 from words import VOCABULARY
 
 from rulec.automata import compiler
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.compiled import CompiledFact, CompiledRulebook
+from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Rule, Rulebook, Variable
 
@@ -65,6 +66,11 @@ def compile_here(rulebook, step_s=None):
         "",
         spot_bridge.VERSION,
         semantics=rulebook.semantics,
+        levels=rulebook.levels,
+        priorities=rulebook.priorities,
+        facts=tuple(
+            CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
+        ),
     )
 
 

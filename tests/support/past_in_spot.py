@@ -10,6 +10,7 @@ from timed import without_bounds
 from rulec.automata.letters import names_of
 from rulec.automata.spot_bridge.wording import Wording
 from rulec.logic.formula import Atom, Binary, Unary, atoms_of
+from rulec.logic.timing import PAST, operations_of
 
 DEFINITIONS = {
     "previously": "!{p} & G(({a} -> X{p}) & ({a} | X!{p}))",
@@ -58,3 +59,9 @@ def _named(formula, definitions, fresh, alive):
     definitions.append(f"({DEFINITIONS[operator.value].format(**texts)})")
     definitions.append(f"({BEFORE.format(**texts)})")
     return Atom(value)
+
+
+def is_easy(formula):
+    """Spot's own way takes for ever with many operators unrolled, and many past ones guessed."""
+    operations = list(operations_of(without_bounds(formula)))
+    return len(operations) <= 20 and sum(one.operator in PAST for one in operations) <= 3

@@ -1,28 +1,32 @@
-"""``rulec verify``: traces judged by a rulebook."""
+"""``rulec verify``: traces and recorded traffic judged by a rulebook."""
 
 from __future__ import annotations
 
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
 from rulec.cli.arguments import at_option, json_option, rulebook_option, traces_format_option
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.recorded_arguments import drives_options, given, wanted_drives
 
 if TYPE_CHECKING:
+    from rulec.automata.any_step import AnyStep
     from rulec.automata.compiled import CompiledRulebook
     from rulec.diagnostics import RulecError
+    from rulec.drives.judging import Wanted
+    from rulec.report.console import Complaints
     from rulec.runtime.verdict import NotJudged, Verdict
-    from rulec.runtime.verify import RulebookFor
     from rulec.trace import Trace
     from rulec.trace.formats import Format
 
-    Rules = CompiledRulebook | RulebookFor
+    Rules = CompiledRulebook | AnyStep
     Answer = tuple[Trace | RulecError, Verdict | NotJudged]
 
 
@@ -37,6 +41,7 @@ if TYPE_CHECKING:
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @traces_format_option
+@drives_options
 @json_option
 @at_option
 def command(
@@ -46,53 +51,128 @@ def command(
     form: Format | None,
     json_output: bool,
     at: str,
+    **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
+    FILE may also be recorded traffic (.xml). Then every vehicle is judged by what it did, and a
+    table says who violated what.
+
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
-    from rulec.report import verdicts
-    from rulec.report.console import Complaints, print_diagnostics, print_result
-    from rulec.runtime.explanation import explain
-    from rulec.runtime.verdict import NotJudged, Verdict
-    from rulec.runtime.verify import made_for
+    from rulec.automata.compiled import CompiledRulebook
+    from rulec.report.console import Complaints, print_diagnostics
+    from rulec.scenario.recordings import is_recording
     from rulec.settings import search_path
-    from rulec.trace import Trace
     from rulec.workflow import machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    satisfied = violated = not_judged = 0
-    complaints = Complaints()
+    recordings = [file for file in files if is_recording(file)]
+    if not recordings and (option := given(options)):
+        raise click.UsageError(f"{option} is for recorded traffic (.xml), and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    for trace, answer in _answers(files, form, rules):
-        if isinstance(answer, Verdict) and isinstance(trace, Trace):
-            satisfied += answer.satisfied
-            violated += not answer.satisfied
-            chosen = answer.violations[:to_explain]
-            to_explain -= len(chosen)
-            used = made_for(trace, rules)
-            explained = [explain(violation, trace, used) for violation in chosen]
-            if json_output:
-                print_result(verdicts.as_json(answer, used, explained))
-            elif answer.violations:
-                print_result(verdicts.as_text(answer, used, explained))
-        elif isinstance(answer, NotJudged):
-            not_judged += 1
-            complaints.add(answer.error)
-            if json_output:
-                print_result(verdicts.not_judged_as_json(answer))
-    complaints.close()
-    if not json_output:
-        print_result(verdicts.summary(satisfied, violated, not_judged))
-    if not_judged:
+    run = _Run(rules, json_output, Complaints(), to_explain)
+    if recordings:
+        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+        wanted = wanted_drives(options, book.vocabulary)
+        for file in recordings:
+            run.recording(file, wanted)
+    if len(recordings) < len(files):
+        run.traces([file for file in files if file not in recordings], form)
+    run.complaints.close()
+    if run.not_answered:
         return ExitStatus.NOT_ANSWERED
-    return ExitStatus.VIOLATED if violated else ExitStatus.OK
+    return ExitStatus.VIOLATED if run.violated else ExitStatus.OK
 
 
-def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Iterator[Answer]:
+@dataclass
+class _Run:
+    """What is asked of every file, and what has become of those so far."""
+
+    rules: Rules
+    json_output: bool
+    complaints: Complaints
+    to_explain: int
+    violated: bool = False
+    not_answered: bool = False
+
+    def traces(self, files: Sequence[str], form: Format | None) -> None:
+        """Judge the traces of files, with one summary for all of them."""
+        from rulec.report import verdicts
+        from rulec.report.console import print_result
+        from rulec.runtime.explanation import explain
+        from rulec.runtime.verdict import NotJudged, Verdict
+        from rulec.runtime.verify import made_for
+        from rulec.trace import Trace
+
+        satisfied = violated = not_judged = 0
+        for trace, answer in _answers(files, form, self.rules):
+            if isinstance(answer, Verdict) and isinstance(trace, Trace):
+                satisfied += answer.satisfied
+                violated += not answer.satisfied
+                chosen = answer.violations[: self.to_explain]
+                self.to_explain -= len(chosen)
+                used = made_for(trace, self.rules)
+                explained = [explain(violation, trace, used) for violation in chosen]
+                if self.json_output:
+                    print_result(verdicts.as_json(answer, used, explained))
+                elif answer.violations:
+                    print_result(verdicts.as_text(answer, used, explained))
+            elif isinstance(answer, NotJudged):
+                not_judged += 1
+                self.complaints.add(answer.error)
+                if self.json_output:
+                    print_result(verdicts.not_judged_as_json(answer))
+        if not self.json_output:
+            print_result(verdicts.summary(satisfied, violated, not_judged))
+        self.violated |= violated > 0
+        self.not_answered |= not_judged > 0
+
+    def recording(self, file: str, wanted: Wanted) -> None:
+        """Judge every drive of a recording."""
+        from rulec.diagnostics import RulecError
+        from rulec.drives.judging import Judged, JudgedRecording
+        from rulec.drives.tally import Tally
+        from rulec.report import recorded_verdicts as report
+        from rulec.report.console import print_result, progress
+        from rulec.runtime.explanation import explain
+        from rulec.runtime.verdict import NotJudged, Verdict
+        from rulec.scenario.recordings import read_recording
+
+        try:
+            judged = JudgedRecording(read_recording(Path(file)), self.rules, wanted, file)
+        except RulecError as error:
+            self.complaints.add(error)
+            self.not_answered = True
+            return
+        tally = Tally()
+        blocks = []
+        with progress(f"judging {file}", len(judged.egos)) as tell:
+            for number, one in enumerate(judged.answers(), 1):
+                tell(number)
+                tally.add(one)
+                explained = []
+                if isinstance(one, Judged) and isinstance(one.answer, Verdict):
+                    chosen = one.answer.violations[: self.to_explain]
+                    self.to_explain -= len(chosen)
+                    explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
+                    if explained:
+                        blocks.append(report.in_detail(one, judged, explained))
+                elif isinstance(one, Judged) and isinstance(one.answer, NotJudged):
+                    self.complaints.add(one.answer.error)
+                    self.not_answered = True
+                if self.json_output:
+                    print_result(report.as_json(one, judged, explained))
+        if not self.json_output:
+            print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
+        self.violated |= bool(tally.violated)
+        self.not_answered |= not tally.judged
+
+
+def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
     """Every trace, or why there is none, with its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from rulec.maneuvers.terms import SUPPLIED
 from rulec.trace import State, TraceGraph, Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.trace.fitting import could_mean, known_types
+from rulec.vocabulary import Declaration, Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
@@ -28,11 +29,9 @@ def fitted(vocabulary: Vocabulary, graph: NavigationGraph) -> TraceGraph:
     traces = graph.trace_graph()
     if graph.scenario.account is None:
         return traces
-    objects: dict[str, str] = {}
-    for name, obstacle in graph.objects.items():
-        words = (word for word in (obstacle.type, *obstacle.broader) if word in vocabulary.types)
-        if (known := next(words, None)) is not None:
-            objects[name] = known
+    objects = known_types(
+        {name: (one.type, *one.broader) for name, one in graph.objects.items()}, vocabulary
+    )
     fit = _Fit(vocabulary, objects)
     return replace(
         traces,
@@ -93,11 +92,4 @@ def _fits(value: Value | Mapping[str, Value], declaration: Declaration | None) -
     if declaration is None or isinstance(value, Mapping) != bool(declaration.parameters):
         return False
     values = value.values() if isinstance(value, Mapping) else (value,)
-    match declaration:
-        case Signal():
-            return all(isinstance(one, bool) for one in values)
-        case Enumeration():
-            return all(one in declaration.values for one in values)
-        case Quantity():
-            plain = all(isinstance(one, float) for one in values)
-            return plain and declaration.unit == RECORDED_UNIT
+    return could_mean(values, declaration, RECORDED_UNIT)

@@ -24,7 +24,7 @@ ExtentName = Literal["lane", "body"]
 OCCUPIED = ord("o")
 
 # The paper's figure 3, turned with the direction in which a pedestrian walks.
-_PAPER: Mapping[Facing, bytes] = MappingProxyType(
+PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
     {
         "along": b"rrrboflll",
         "against": b"lllfobrrr",
@@ -78,9 +78,9 @@ def region_of(
     if partition == "fine":
         return Region(index, taken, _FINE)
     if not obstacle.walks:
-        return Region(index, taken, _PAPER["along"])
+        return Region(index, taken, PAPER_TABLES["along"])
     direction = facing(obstacle, *interval)
     if direction in ("along", "against"):
-        return Region(index, taken, _PAPER[direction])
+        return Region(index, taken, PAPER_TABLES[direction])
     across = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
-    return Region(index, across, _PAPER[direction])
+    return Region(index, across, PAPER_TABLES[direction])

@@ -10,6 +10,13 @@ from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.recorded.convert import to_scenario
 
+__all__ = ["is_recording", "read_recording", "read_scene"]
+
+
+def is_recording(file: str) -> bool:
+    """Does a file's name say that it holds recorded traffic?"""
+    return file.lower().endswith((".xml", ".xml.gz"))
+
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
     """The scenario in a recording, seen from the chosen ego.

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.scenario.commonroad.countries import side_in
 from rulec.scenario.commonroad.moving import FARTHEST_M, participants_of, problem_of
 from rulec.scenario.commonroad.safe_xml import check_commonroad, refused
 from rulec.scenario.recorded.recording import Lanelet, Light, Points, Recording
@@ -104,6 +105,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
             problem_of(problem, lanelets)
             for _, problem in sorted(problems.planning_problem_dict.items())
         ),
+        side=side_in(name),
     )
 
 

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from numpy import float64
 from numpy.typing import NDArray
 
 Points = NDArray[float64]
 """Places: one row each, x and y."""
+
+Side = Literal["left", "right"]
 
 
 def in_order(identifier: str) -> tuple[int, str]:
@@ -96,10 +99,14 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A file: one time step takes ``step_s`` seconds."""
+    """A file: one time step takes ``step_s`` seconds.
+
+    ``side`` is the one on which traffic keeps, None if the file does not say.
+    """
 
     name: str
     step_s: float
     lanelets: Mapping[str, Lanelet]
     participants: tuple[Participant, ...]
     problems: tuple[Problem, ...]
+    side: Side | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import atan2, pi
 
 import numpy as np
@@ -84,6 +84,21 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     ahead = _straight_on(lanelets, ahead, lambda x: x.successors, backwards=False)
     behind = _straight_on(lanelets, [start], lambda x: x.predecessors, backwards=True, taken=ahead)
     return (*behind[:0:-1], *ahead)
+
+
+def extended(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
+    """A way with the road before and after it, as straight as possible where that branches."""
+    ahead = _straight_on(
+        recording.lanelets, [way[-1]], lambda x: x.successors, backwards=False, taken=way
+    )
+    behind = _straight_on(
+        recording.lanelets,
+        [way[0]],
+        lambda x: x.predecessors,
+        backwards=True,
+        taken=(*way, *ahead),
+    )
+    return (*behind[:0:-1], *way, *ahead[1:])
 
 
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:

@@ -1,0 +1,119 @@
+"""Recorded drives, judged: each vehicle as ego in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
+from rulec.drives.extract import Drive, Drives, NoDrive, Telling
+from rulec.drives.mirror import mirrored
+from rulec.drives.thresholds import USUAL, Thresholds
+from rulec.runtime.batch.verifying import judge_chunk
+from rulec.runtime.numbers import exact
+from rulec.runtime.terms import names_in
+from rulec.runtime.verdict import NotJudged, Verdict
+from rulec.runtime.verify import RulebookFor
+from rulec.scenario.recorded.recording import Recording
+from rulec.trace import Value
+
+MOST_STATES = 1 << 13
+"""Drives with so many states together are judged together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What can be chosen: whose drives, by which thresholds, and what is taken for granted.
+
+    No ``egos`` is everybody. ``assumed`` holds in every state. ``as_recorded``: a recording of
+    traffic on the other side than the rulebook's is not mirrored.
+    """
+
+    egos: tuple[str, ...] = ()
+    thresholds: Thresholds = USUAL
+    assumed: Mapping[str, Value] = field(default_factory=dict)
+    as_recorded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A drive and what the rulebook says of it."""
+
+    drive: Drive
+    answer: Verdict | NotJudged
+
+
+class JudgedRecording:
+    """A recording's drives before a rulebook; they are worked out when they are asked for.
+
+    Raises:
+        RulecError: R0407 if the rulebook has bounds that are no multiples of the recording's step,
+            R0507 if it was compiled for another step, R0612 for a vehicle that is not there.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        rulebook: CompiledRulebook | RulebookFor,
+        wanted: Wanted,
+        file: str,
+    ) -> None:
+        step = exact(recording.step_s)
+        self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
+        own, side = recording.side, self.rules.traffic or recording.side or "right"
+        self.mirrored = own is not None and own != side and not wanted.as_recorded
+        self.recording = mirrored(recording) if self.mirrored else recording
+        telling = Telling(self.rules.vocabulary, _read_by(self.rules), wanted.assumed)
+        self._drives = Drives(self.recording, side, wanted.thresholds, telling)
+        self.egos = _chosen(self._drives.egos(), wanted.egos, file)
+
+    def answers(self) -> Iterator[Judged | NoDrive]:
+        """What each vehicle did, in the order of the file."""
+        waiting: list[Drive] = []
+        for ego in self.egos:
+            for one in self._drives.of(ego):
+                if isinstance(one, NoDrive):
+                    yield one
+                else:
+                    waiting.append(one)
+            if sum(len(one.trace.states) for one in waiting) >= MOST_STATES:
+                yield from self._judged(waiting)
+                waiting = []
+        yield from self._judged(waiting)
+
+    def _judged(self, drives: list[Drive]) -> Iterator[Judged]:
+        answers = judge_chunk([one.trace for one in drives], self.rules)
+        for drive, answer in zip(drives, answers, strict=True):
+            yield Judged(drive, answer)
+
+    def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
+        """For every rule what it reads beyond these words, so that it has its default all along.
+
+        In the order of the vocabulary.
+        """
+        declared = self.rules.vocabulary.declarations
+        found = {}
+        for rule in self.rules.rules:
+            read = set(names_in(rule.formula))
+            found[rule.name] = tuple(x for x in declared if x in read and x not in words)
+        return found
+
+
+def _read_by(rules: CompiledRulebook) -> frozenset[str]:
+    formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.facts]
+    return frozenset(name for formula in formulas for name in names_in(formula))
+
+
+def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
+    for ego in wanted:
+        if ego not in known:
+            raise RulecError(
+                Diagnostic(
+                    "R0612",
+                    f"there is no vehicle `{ego}` that drives",
+                    Place(file),
+                    help=did_you_mean(ego, known) or f"choose one of {named(known)}",
+                )
+            )
+    return tuple(ego for ego in known if not wanted or ego in wanted)

@@ -1,0 +1,20 @@
+"""What has been thought out by hand, every engine says."""
+
+import pytest
+from cases import CASES
+from engine import is_right
+from engine_table import ENGINES
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("name", CASES)
+def test_a_case(name, engine):
+    case, judges = CASES[name], ENGINES[engine]
+    asked = [
+        (trace, expected)
+        for trace, expected in zip(case.traces, case.expected, strict=True)
+        if judges.takes(trace, expected)
+    ]
+    found = judges.judge(case.rulebook, case.compiled, [trace for trace, _ in asked])
+    for (trace, expected), answer in zip(asked, found, strict=True):
+        assert is_right(answer, judges.says(expected)), (trace, answer, expected)

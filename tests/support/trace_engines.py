@@ -1,0 +1,147 @@
+"""Engines that judge whole traces: one by one, many together, out of files, on bits."""
+
+import io
+import json
+import tempfile
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import replace
+from pathlib import Path
+
+import oracle
+from engine import each, told
+from oracle import Refused, Said
+from present import there
+from reading import below
+
+from rulec.automata.compiled_file import from_json, to_json
+from rulec.cli.main import main
+from rulec.runtime.batch.gathering import gathered
+from rulec.runtime.batch.grouping import grouped
+from rulec.runtime.batch.verifying import verify_many
+from rulec.runtime.bits.judging import judge_on_bits
+from rulec.runtime.verify import judge
+from rulec.trace.formats import read_chunks, write_traces
+from rulec.trace.tables import kinds_in
+from rulec.vocabulary import Enumeration, Quantity, Signal
+
+
+@each
+def by_oracle(rulebook, compiled, trace):
+    found = oracle.judged(rulebook, trace)
+    return min(found.codes) if isinstance(found, Refused) else found
+
+
+def one_by_one(rulebook, compiled, traces):
+    return [told(judge(trace, compiled)) for trace in traces]
+
+
+def compiled_file(rulebook, compiled, traces):
+    again = from_json(to_json(compiled).encode(), "book.json")
+    return one_by_one(rulebook, again, traces)
+
+
+def command(rulebook, compiled, traces):
+    """``rulec verify``, with its files."""
+    with tempfile.TemporaryDirectory() as folder:
+        rules, file = Path(folder, "book.json"), Path(folder, "traces.jsonl")
+        rules.write_text(to_json(compiled), encoding="utf-8")
+        with file.open("wb") as stream:
+            write_traces(traces, stream, str(file), "jsonl", {})
+        out = io.StringIO()
+        with redirect_stdout(out), redirect_stderr(io.StringIO()):
+            main(["verify", str(file), "-r", str(rules), "--json"])
+    return [answered(json.loads(line)) for line in out.getvalue().splitlines()]
+
+
+def answered(line):
+    if "error" in line:
+        return line["error"]["code"]
+    return tuple(
+        sorted(
+            Said(
+                one["rule"],
+                tuple(one["binding"].values()),
+                -1 if one["step"] is None else one["step"],
+                one["strength"],
+            )
+            for one in line["violations"]
+        )
+    )
+
+
+def repeated(copy):
+    """Many together: each trace eight times, among the others."""
+
+    def judge_all(rulebook, compiled, traces):
+        many = [copy(trace) for _ in range(8) for trace in traces]
+        answers = list(map(told, verify_many(many, compiled)))
+        first = answers[: len(traces)]
+        assert answers == first * 8
+        return first
+
+    return judge_all
+
+
+def with_own_states(trace):
+    """As if read from columns: no state is met again."""
+    return replace(trace, states=tuple(json.loads(json.dumps(trace.states))))
+
+
+def through(form):
+    """Written to a file of a format, and read back."""
+
+    def judge_all(rulebook, compiled, traces):
+        stream = io.BytesIO()
+        kinds = kinds_in(state for trace in traces for state in trace.states)
+        write_traces(traces, stream, "file", form, kinds)
+        stream.seek(0)
+        again = [one for chunk in read_chunks(stream, "file", form) for one in chunk]
+        return one_by_one(rulebook, compiled, again)
+
+    return judge_all
+
+
+def across(rulebook, compiled, traces):
+    """On bits, 64 traces in a word: those of one shape together."""
+    shapes = {}
+    for trace in traces:
+        full = replace(
+            trace,
+            states=tuple(filled(trace, n, compiled.vocabulary) for n in range(len(trace.states))),
+        )
+        shape = repr((trace.step_s, trace.objects, trace.present))
+        shapes.setdefault(shape, []).append(full)
+    strengths = {rule.name: rule.strength for rule in compiled.rules}
+    found = {trace.id: [] for trace in traces}
+    for alike in shapes.values():
+        group = grouped(alike)
+        columns = gathered(group.cells, compiled.vocabulary)
+        for task, kept in judge_on_bits(columns, compiled):
+            for place, keeps in zip(group.order, kept.tolist(), strict=True):
+                if not keeps:
+                    rule, objects = task.rule.name, tuple(task.objects.values())
+                    found[alike[place].id].append(Said(rule, objects, None, strengths[rule]))
+    return [tuple(sorted(found[trace.id])) for trace in traces]
+
+
+def filled(trace, n, vocabulary):
+    """A state that says something of every name; what it has left out, nothing reads."""
+    objects, state = there(trace, n), {}
+    for name, declaration in vocabulary.declarations.items():
+        anything = declaration.default
+        if anything is None:
+            anything = {Signal: False, Quantity: 0}.get(type(declaration), "")
+        if isinstance(declaration, Enumeration):
+            anything = anything or declaration.values[0]
+        groups = [
+            [one for one, own in objects.items() if below(own, kind, vocabulary.types)]
+            for kind in declaration.parameters
+        ]
+        state[name] = full(trace.states[n].get(name), anything, groups)
+    return state
+
+
+def full(value, anything, groups):
+    if not groups:
+        return anything if value is None else value
+    return {name: full((value or {}).get(name), anything, groups[1:]) for name in groups[0]}
