@@ -19,7 +19,9 @@ class Choice:
     time of the file that becomes time 0; None is the planning problem's, the participant's first.
     ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
     ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
-    is ``congested`` below a median speed. Ids are those of the file; numbers will do.
+    is ``congested`` below a median speed. ``ego_width_m``: None is what the participant has whose
+    part ego takes, if it takes one's; else ego is a point. Ids are those of the file; numbers will
+    do.
     """
 
     ego: str | int | None = None
@@ -27,3 +29,4 @@ class Choice:
     reference: str | int | None = None
     prediction: Prediction = "recorded"
     congested_below_kmh: float = CONGESTED_BELOW_KMH
+    ego_width_m: float | None = None
