@@ -233,6 +233,14 @@ def _scene_options(function: Decorated) -> Decorated:
             help="In a recorded scene: traffic counts as congested below this median speed.",
         ),
         click.option(
+            "--ego-width",
+            "ego_width_m",
+            type=click.FloatRange(min=0, max=100),
+            metavar="M",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+            "[default: as wide as the vehicle that it is, if any; else a point]",
+        ),
+        click.option(
             "--prediction",
             type=click.Choice(["recorded", "constant"]),
             default="recorded",
@@ -285,6 +293,14 @@ def graph_options(function: Decorated) -> Decorated:
             show_default=True,
             help="Which cells are neighbours: those that meet in a point, along a border, "
             "or along a border and not only behind.",
+        ),
+        click.option(
+            "--extent",
+            type=click.Choice(["lane", "body"]),
+            default="lane",
+            show_default=True,
+            help="How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+            "and half of ego's width to either side.",
         ),
         click.option(
             "--partition",

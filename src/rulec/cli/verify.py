@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from rulec.trace.formats import Format
 
     Rules = CompiledRulebook | AnyStep
-    Answer = tuple[Trace | RulecError, Verdict | NotJudged]
+    Items = Sequence[Trace | RulecError]
+    Answer = tuple[Items, int, Verdict | NotJudged]
 
 
 @click.command()
@@ -111,25 +112,29 @@ class _Run:
         """Judge the traces of files, with one summary for all of them."""
         from rulec.report import verdicts
         from rulec.report.console import print_result
+        from rulec.runtime.batch.blocks import rulebook_for
         from rulec.runtime.explanation import explain
-        from rulec.runtime.verdict import NotJudged, Verdict
-        from rulec.runtime.verify import made_for
+        from rulec.runtime.verdict import Verdict
         from rulec.trace import Trace
 
         satisfied = violated = not_judged = 0
-        for trace, answer in _answers(files, form, self.rules):
-            if isinstance(answer, Verdict) and isinstance(trace, Trace):
+        for traces, place, answer in _answers(files, form, self.rules):
+            if isinstance(answer, Verdict):
                 satisfied += answer.satisfied
                 violated += not answer.satisfied
+                if not (answer.violations or self.json_output):
+                    continue
+                used = rulebook_for(traces, place, self.rules)
+                explained = []
                 chosen = answer.violations[: self.to_explain]
-                self.to_explain -= len(chosen)
-                used = made_for(trace, self.rules)
-                explained = [explain(violation, trace, used) for violation in chosen]
-                if self.json_output:
-                    print_result(verdicts.as_json(answer, used, explained))
-                elif answer.violations:
-                    print_result(verdicts.as_text(answer, used, explained))
-            elif isinstance(answer, NotJudged):
+                if chosen:
+                    self.to_explain -= len(chosen)
+                    trace = traces[place]
+                    assert isinstance(trace, Trace), "what has a verdict is a trace"
+                    explained = [explain(violation, trace, used) for violation in chosen]
+                as_printed = verdicts.as_json if self.json_output else verdicts.as_text
+                print_result(as_printed(answer, used, explained))
+            else:
                 not_judged += 1
                 self.complaints.add(answer.error)
                 if self.json_output:
@@ -181,7 +186,7 @@ class _Run:
 
 
 def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
-    """Every trace, or why there is none, with its verdict, or why there is none."""
+    """Traces, which of them, and its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
@@ -197,18 +202,20 @@ def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterato
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
                 yield from _judged(stream, file, form or format_of(file), size, rules)
         except RulecError as error:
-            yield error, NotJudged(None, error)
+            yield [error], 0, NotJudged(None, error)
 
 
 def _judged(
     stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
 ) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.batch.verifying import judge_chunk
+    from rulec.runtime.batch.blocks import judge_items
     from rulec.trace.formats import read_chunks
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            yield from zip(traces, judge_chunk(traces, rules), strict=True)
+            found, answers = judge_items(traces, rules)
+            for place, answer in enumerate(answers):
+                yield found, place, answer
             if size is not None:
                 tell(stream.tell())

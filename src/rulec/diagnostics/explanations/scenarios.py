@@ -105,8 +105,9 @@ SCENARIOS = {
         "scenario",
     ),
     "R0608": Explanation(
-        "a partition or an adjacency is unknown",
-        "The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`.",
+        "a partition, an adjacency or an extent is unknown",
+        "The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`, the "
+        "extents `lane` and `body`.",
         'import rulec\n\nrulec.navigation_graph("s1", partition="papre")\n',
         'import rulec\n\nrulec.navigation_graph("s1", partition="paper")\n',
         "python",
