@@ -67,8 +67,8 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every vehicle is judged by what it did, and a
-    table says who violated what.
+    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
+    vehicle is judged by what it did, and a table says who violated what.
 
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
