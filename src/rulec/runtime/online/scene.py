@@ -14,6 +14,7 @@ from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns
 from rulec.runtime.online.columns import Items, OneStateColumns
 from rulec.runtime.online.gate import Gate
+from rulec.runtime.online.memory import Memory
 from rulec.runtime.online.prefix import Edge
 from rulec.runtime.online.reading import Reading, World
 from rulec.runtime.online.team import Node, Ready, Team, Teams
@@ -51,6 +52,7 @@ class Scene:
     ) -> None:
         self.objects = dict(objects)
         self.teams = teams
+        self.memory = Memory(rulebook.vocabulary, teams.floors)
         self._rulebook = rulebook
         self._gate = Gate(rulebook.vocabulary, self.objects)
         self._careful = any(counts(fact.formula) for fact in rulebook.facts)
