@@ -12,7 +12,13 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, json_option, rulebook_option, traces_format_option
+from rulec.cli.arguments import (
+    at_option,
+    json_option,
+    net_option,
+    rulebook_option,
+    traces_format_option,
+)
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.recorded_arguments import drives_options, given, wanted_drives
 
@@ -43,6 +49,7 @@ if TYPE_CHECKING:
 )
 @traces_format_option
 @drives_options
+@net_option
 @json_option
 @at_option
 def command(
@@ -52,6 +59,7 @@ def command(
     form: Format | None,
     json_output: bool,
     at: str,
+    net: Path | None,
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -59,8 +67,8 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic (.xml). Then every vehicle is judged by what it did, and a
-    table says who violated what.
+    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
+    vehicle is judged by what it did, and a table says who violated what.
 
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
@@ -72,15 +80,15 @@ def command(
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     recordings = [file for file in files if is_recording(file)]
-    if not recordings and (option := given(options)):
-        raise click.UsageError(f"{option} is for recorded traffic (.xml), and there is none.")
+    if not recordings and (option := "--net" if net else given(options)):
+        raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain)
     if recordings:
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
         wanted = wanted_drives(options, book.vocabulary)
         for file in recordings:
-            run.recording(file, wanted)
+            run.recording(file, net, wanted)
     if len(recordings) < len(files):
         run.traces([file for file in files if file not in recordings], form)
     run.complaints.close()
@@ -136,7 +144,7 @@ class _Run:
         self.violated |= violated > 0
         self.not_answered |= not_judged > 0
 
-    def recording(self, file: str, wanted: Wanted) -> None:
+    def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
         """Judge every drive of a recording."""
         from rulec.diagnostics import RulecError
         from rulec.drives.judging import Judged, JudgedRecording
@@ -148,7 +156,7 @@ class _Run:
         from rulec.scenario.recordings import read_recording
 
         try:
-            judged = JudgedRecording(read_recording(Path(file)), self.rules, wanted, file)
+            judged = JudgedRecording(read_recording(Path(file), net), self.rules, wanted, file)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True
