@@ -26,7 +26,7 @@ from rulec.trace import Trace
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
     from rulec.automata.any_step import AnyStep
-    from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
+    from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
@@ -178,6 +178,7 @@ def navigation_graph(
     *,
     partition: PartitionName = "paper",
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
@@ -191,21 +192,26 @@ def navigation_graph(
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
     if step_s is None and scenario.account is not None:
-        step_s = _longest_step(scenario, partition, horizon_s)
+        step_s = _longest_step(scenario, partition, extent, horizon_s)
     return build(
-        scenario, partition=partition, adjacency=adjacency, step_s=step_s, horizon_s=horizon_s
+        scenario,
+        partition=partition,
+        adjacency=adjacency,
+        extent=extent,
+        step_s=step_s,
+        horizon_s=horizon_s,
     )
 
 
 def _longest_step(
-    scenario: Scenario, partition: PartitionName, horizon_s: float | None
+    scenario: Scenario, partition: PartitionName, extent: ExtentName, horizon_s: float | None
 ) -> float | None:
     """The scenario's own step, or the half of it, and so on; None if none will do."""
     from rulec.partition.start import step_that_leaves_room
     from rulec.scenario.timing import timing
 
     times = timing(scenario.horizon_s if horizon_s is None else horizon_s, scenario.step_s)
-    found = step_that_leaves_room(scenario, times, partition)
+    found = step_that_leaves_room(scenario, times, partition, extent)
     return None if found is None else float(found.step)
 
 
@@ -215,6 +221,7 @@ def find_maneuvers(
     *,
     partition: PartitionName | None = None,
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
     after: Before | None = None,
@@ -231,6 +238,7 @@ def find_maneuvers(
         scenario,
         partition=partition_for(source, partition),
         adjacency=adjacency,
+        extent=extent,
         step_s=step_s,
         horizon_s=horizon_s,
     )

@@ -208,9 +208,21 @@ def traces_format_option(function: Decorated) -> Decorated:
     )(function)
 
 
+def net_option(function: Decorated) -> Decorated:
+    """``--net FILE``: the roads of SUMO's floating-car data."""
+    return click.option(
+        "--net",
+        type=click.Path(dir_okay=False, path_type=Path),
+        metavar="FILE",
+        help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
+        "ending in .net.xml beside them]",
+    )(function)
+
+
 def _scene_options(function: Decorated) -> Decorated:
     """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
     for decorate in (
+        net_option,
         click.option(
             "--congested-below",
             "congested_below_kmh",
@@ -219,6 +231,14 @@ def _scene_options(function: Decorated) -> Decorated:
             show_default=True,
             metavar="KMH",
             help="In a recorded scene: traffic counts as congested below this median speed.",
+        ),
+        click.option(
+            "--ego-width",
+            "ego_width_m",
+            type=click.FloatRange(min=0, max=100),
+            metavar="M",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+            "[default: as wide as the vehicle that it is, if any; else a point]",
         ),
         click.option(
             "--prediction",
@@ -273,6 +293,14 @@ def graph_options(function: Decorated) -> Decorated:
             show_default=True,
             help="Which cells are neighbours: those that meet in a point, along a border, "
             "or along a border and not only behind.",
+        ),
+        click.option(
+            "--extent",
+            type=click.Choice(["lane", "body"]),
+            default="lane",
+            show_default=True,
+            help="How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+            "and half of ego's width to either side.",
         ),
         click.option(
             "--partition",

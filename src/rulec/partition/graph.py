@@ -19,7 +19,7 @@ from rulec.partition.continuation import continuations
 from rulec.partition.margin import Edges, Margins, edges
 from rulec.partition.model import Layer
 from rulec.partition.occupancy import scene
-from rulec.partition.regions import PartitionName
+from rulec.partition.regions import ExtentName, PartitionName
 from rulec.partition.snap import snapped
 from rulec.partition.start import start_cell
 from rulec.scenario import Obstacle, Scenario
@@ -43,6 +43,7 @@ class NavigationGraph:
     scenario: Scenario
     partition: PartitionName
     adjacency: AdjacencyName
+    extent: ExtentName
     step: Fraction
     objects: Mapping[str, Obstacle]
     present: Mapping[str, tuple[int, int]]
@@ -85,6 +86,7 @@ def navigation_graph(
     *,
     partition: PartitionName = "paper",
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
@@ -94,25 +96,27 @@ def navigation_graph(
         scenario: the scene and its prediction.
         partition: ``paper`` (behind, in front, left, right) or ``fine`` (station and lateral).
         adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
+        extent: how wide obstacles are: ``lane`` (all of the lanes that they touch) or ``body``.
         step_s: planning interval in seconds, instead of the scenario's.
         horizon_s: planning horizon in seconds, instead of the scenario's.
 
     Raises:
         RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-            R0608 for an unknown partition or adjacency.
+            R0608 for an unknown partition, adjacency or extent.
     """
     _check_choice("partition", partition, get_args(PartitionName))
     _check_choice("adjacency", adjacency, get_args(AdjacencyName))
+    _check_choice("extent", extent, get_args(ExtentName))
     times = timing(
         scenario.horizon_s if horizon_s is None else horizon_s,
         scenario.step_s if step_s is None else step_s,
     )
-    places = scene(scenario, times, partition)
+    places = scene(scenario, times, partition, extent)
     planes = [
         plane(places.roadway, regions, partition, names)
         for regions, names in zip(places.swept, places.names, strict=True)
     ]
-    start = start_cell(planes[0], places, scenario, times, partition)
+    start = start_cell(planes[0], places, scenario, times, partition, extent)
     instants = [
         plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
         for regions in places.instants
@@ -131,6 +135,7 @@ def navigation_graph(
         scenario,
         partition,
         adjacency,
+        extent,
         times.step,
         places.obstacle_of,
         places.present,

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count, pairwise
 
-from rulec.partition.regions import PartitionName, Region, region_of
+from rulec.partition.regions import ExtentName, PartitionName, Region, region_of
 from rulec.partition.roadway import Roadway, coordinates, roadway
 from rulec.partition.snap import Snap, snap_table, snapped
 from rulec.scenario import Box, Obstacle, Scenario
@@ -36,7 +36,9 @@ class Scene:
     d: Snap
 
 
-def scene(scenario: Scenario, timing: Timing, partition: PartitionName) -> Scene:
+def scene(
+    scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
+) -> Scene:
     """Where everything is, in every layer and at every instant between two."""
     obstacles = scenario.obstacles
     starts = [timing.start(p) for p in range(timing.layers + 1)]
@@ -48,12 +50,23 @@ def scene(scenario: Scenario, timing: Timing, partition: PartitionName) -> Scene
         for interval in (*layers, *moments)
         if (body := swept(obstacle, *interval)) is not None
     }
-    s, d = _snaps(scenario, list(bodies.values()))
-    road = roadway(scenario.road, s, d)
+    half = scenario.ego.width / 2 if extent == "body" else 0.0
+    wide = {key: _wider(body, half) for key, body in bodies.items()} if extent == "body" else {}
+    free = _narrower(scenario.road.outline, half, scenario.ego.d)
+    s, d = _snaps(scenario, [*bodies.values(), *wide.values(), free])
+    road = roadway(scenario.road, free, s, d)
 
     def regions(interval: tuple[float, float], looking: tuple[float, float]) -> tuple[Region, ...]:
         found = (
-            region_of(obstacles[i], i, snapped(body, s, d), looking, partition, road)
+            region_of(
+                obstacles[i],
+                i,
+                snapped(body, s, d),
+                looking,
+                partition,
+                road,
+                snapped(wide[i, interval], s, d) if wide else None,
+            )
             for i in range(len(obstacles))
             if (body := bodies.get((i, interval))) is not None
         )
@@ -66,6 +79,24 @@ def scene(scenario: Scenario, timing: Timing, partition: PartitionName) -> Scene
     )
     names, obstacle_of, present = _appearances(obstacles, layer_regions)
     return Scene(road, layer_regions, names, instants, obstacle_of, present, s, d)
+
+
+def _wider(body: Box, half: float) -> Box:
+    """Where ego's centre is when the two are not side by side; ``half`` is half of ego's width."""
+    return Box(body.s_min, body.s_max, body.d_min - half, body.d_max + half)
+
+
+def _narrower(outline: Box, half: float, start: float) -> Box:
+    """Where ego's centre may be: not so close to the verge that its width reaches beyond.
+
+    Where it stands closer than that at the start, it may stay as close.
+    """
+    return Box(
+        outline.s_min,
+        outline.s_max,
+        max(outline.d_min, min(outline.d_min + half, start)),
+        min(outline.d_max, max(outline.d_max - half, start)),
+    )
 
 
 def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:

@@ -49,6 +49,7 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
         "rulebook": found.rules.name,
         "partition": graph.partition,
         "adjacency": graph.adjacency,
+        "extent": graph.extent,
         "step_s": graph.step_s,
         "horizon_s": _horizon_s(graph),
         "nodes": graph.nodes,
@@ -85,6 +86,7 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
     horizon = f"{_horizon_s(graph):g} s in steps of {graph.step_s:g} s"
     how = f"partition {graph.partition}, adjacency {graph.adjacency}"
+    how += f", extent {graph.extent}" if graph.extent != "lane" else ""
     lines = [
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
         *_scene(found),

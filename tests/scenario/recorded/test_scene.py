@@ -43,6 +43,16 @@ def test_ego_is_at_0_of_a_road_with_its_lanes():
     assert (scenario.name, scenario.horizon_s, scenario.step_s) == ("made by hand", 4, 0.5)
 
 
+def test_ego_is_as_large_as_the_vehicle_whose_part_it_takes():
+    """4.6 m long and 1.9 m wide, on a heading of 0.3; a planning problem alone has no size."""
+    car = drive(7, 20, 0, y=0.5, length=4.6, width=1.9, heading=0.3)
+    for choice in (CHOICE, replace(CHOICE, ego=7)):
+        ego = scene(car, choice=choice).ego
+        assert (ego.length, ego.width) == pytest.approx((4.6, 1.9))
+    assert scene(car, choice=replace(CHOICE, ego_width_m=2.5)).ego.width == 2.5
+    assert (scene().ego.length, scene().ego.width) == (0, 0)
+
+
 def test_a_recorded_vehicle_is_where_it_was():
     obstacle = only(scene(drive(7, 40, 10)))
     assert (obstacle.id, obstacle.type, obstacle.broader[0]) == ("7", "car", "vehicle")

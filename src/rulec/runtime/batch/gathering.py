@@ -7,19 +7,13 @@ from itertools import repeat
 from operator import eq
 from typing import Any
 
-import numpy as np
-
+from rulec.runtime.batch.meaning import OddError, meant
 from rulec.runtime.batch.naming import Names
-from rulec.trace.columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.trace.columns import Array, Key, TraceCells, TraceColumns
+from rulec.vocabulary import Declaration, Vocabulary
 
 _NOT_GIVEN = object()
-_EXACT_IN_FLOATS = 1 << 53
 _EMPTY: Mapping[str, Any] = {}
-
-
-class OddError(Exception):
-    """Some state does not fit the vocabulary, or leaves out what has no default."""
 
 
 def gathered(
@@ -97,27 +91,7 @@ class _Gathering:
     ) -> Array:
         if _NOT_GIVEN in values:
             values = self._filled(values, declaration, items)
-        kinds = set(map(type, values))
-        if isinstance(declaration, Enumeration):
-            places = {value: place for place, value in enumerate(declaration.values)}
-            if kinds != {str} or not places.keys() >= set(values):
-                raise OddError
-            dtype = smallest_unsigned(len(places))
-            distinct = np.fromiter(map(places.__getitem__, values), dtype, len(values))
-        elif isinstance(declaration, Signal):
-            if kinds != {bool}:
-                raise OddError
-            distinct = np.array(values, dtype=bool)
-        else:
-            if not kinds <= {int, float}:
-                raise OddError
-            whole = [value for value in values if type(value) is int] if int in kinds else []
-            if any(abs(value) > _EXACT_IN_FLOATS for value in whole):
-                raise OddError
-            distinct = np.array(values, dtype=np.float64)
-            if not np.isfinite(distinct).all():
-                raise OddError
-        return distinct.take(self._traces.cells)
+        return meant(values, declaration).take(self._traces.cells)
 
     def _filled(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]

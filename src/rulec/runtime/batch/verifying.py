@@ -14,10 +14,11 @@ from itertools import chain
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.facts import counts
 from rulec.diagnostics import RulecError
-from rulec.runtime.batch.gathering import OddError, gathered
+from rulec.runtime.batch.gathering import gathered
 from rulec.runtime.batch.grouping import grouped, under_one_name
 from rulec.runtime.batch.judged import Judged
 from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.meaning import OddError
 from rulec.runtime.batch.naming import Names, Shape, in_own_names, shape_of
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.checking import check_objects, check_state
@@ -95,14 +96,14 @@ def _judge_group(
     if not sound:
         return
     try:
-        rules = _rules_for(sound[0][1], rulebook)
+        rules = rules_for(sound[0][1], rulebook)
     except RulecError:
         return
     group = _judged(sound, rules)
     if group is None:
         return
     unread = set(chain.from_iterable(one.unread.tolist() for one in group.judged))
-    violations = _violations(group.judged)
+    violations = violations_in(group.judged)
     for number, place in enumerate(group.order):
         if number not in unread:
             where, trace = group.traces[place]
@@ -162,7 +163,7 @@ def _is_framed(trace: Trace) -> bool:
     return True
 
 
-def _rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
+def rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
     """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
     rules = made_for(trace, rulebook)
     for rule in rules.rules:
@@ -186,7 +187,7 @@ def _fits(
     return True
 
 
-def _violations(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
+def violations_in(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
     """The violations of each trace that has some, in the order of rules and objects."""
     found: dict[int, list[Violation]] = {}
     for one in judged:
