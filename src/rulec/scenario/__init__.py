@@ -9,6 +9,7 @@ each in its place, which ``toml_places`` finds. ``commonroad`` reads recorded sc
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     Account,
+    Alternative,
     ConstantAcceleration,
     Ego,
     Footprints,
@@ -24,6 +25,7 @@ from rulec.scenario.recorded.choice import Choice
 
 __all__ = [
     "Account",
+    "Alternative",
     "Box",
     "Choice",
     "ConstantAcceleration",
