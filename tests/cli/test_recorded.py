@@ -52,7 +52,8 @@ def test_json(answer):
         "congested": False,
         "lanes": "one_lane",
     }
-    assert scene == {"reference": "1", "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
+    counted = {"reference": "1", "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
+    assert scene == {**counted, "remarks": []}
 
 
 def test_congestion_is_configurable(tmp_path, capsys):

@@ -208,9 +208,21 @@ def traces_format_option(function: Decorated) -> Decorated:
     )(function)
 
 
+def net_option(function: Decorated) -> Decorated:
+    """``--net FILE``: the roads of SUMO's floating-car data."""
+    return click.option(
+        "--net",
+        type=click.Path(dir_okay=False, path_type=Path),
+        metavar="FILE",
+        help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
+        "ending in .net.xml beside them]",
+    )(function)
+
+
 def _scene_options(function: Decorated) -> Decorated:
     """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
     for decorate in (
+        net_option,
         click.option(
             "--congested-below",
             "congested_below_kmh",

@@ -12,7 +12,13 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, json_option, rulebook_option, traces_format_option
+from rulec.cli.arguments import (
+    at_option,
+    json_option,
+    net_option,
+    rulebook_option,
+    traces_format_option,
+)
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.recorded_arguments import drives_options, given, wanted_drives
 
@@ -27,7 +33,8 @@ if TYPE_CHECKING:
     from rulec.trace.formats import Format
 
     Rules = CompiledRulebook | AnyStep
-    Answer = tuple[Trace | RulecError, Verdict | NotJudged]
+    Items = Sequence[Trace | RulecError]
+    Answer = tuple[Items, int, Verdict | NotJudged]
 
 
 @click.command()
@@ -42,6 +49,7 @@ if TYPE_CHECKING:
 )
 @traces_format_option
 @drives_options
+@net_option
 @json_option
 @at_option
 def command(
@@ -51,6 +59,7 @@ def command(
     form: Format | None,
     json_output: bool,
     at: str,
+    net: Path | None,
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -58,8 +67,8 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic (.xml). Then every vehicle is judged by what it did, and a
-    table says who violated what.
+    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
+    vehicle is judged by what it did, and a table says who violated what.
 
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
@@ -71,15 +80,15 @@ def command(
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     recordings = [file for file in files if is_recording(file)]
-    if not recordings and (option := given(options)):
-        raise click.UsageError(f"{option} is for recorded traffic (.xml), and there is none.")
+    if not recordings and (option := "--net" if net else given(options)):
+        raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain)
     if recordings:
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
         wanted = wanted_drives(options, book.vocabulary)
         for file in recordings:
-            run.recording(file, wanted)
+            run.recording(file, net, wanted)
     if len(recordings) < len(files):
         run.traces([file for file in files if file not in recordings], form)
     run.complaints.close()
@@ -103,25 +112,29 @@ class _Run:
         """Judge the traces of files, with one summary for all of them."""
         from rulec.report import verdicts
         from rulec.report.console import print_result
+        from rulec.runtime.batch.blocks import rulebook_for
         from rulec.runtime.explanation import explain
-        from rulec.runtime.verdict import NotJudged, Verdict
-        from rulec.runtime.verify import made_for
+        from rulec.runtime.verdict import Verdict
         from rulec.trace import Trace
 
         satisfied = violated = not_judged = 0
-        for trace, answer in _answers(files, form, self.rules):
-            if isinstance(answer, Verdict) and isinstance(trace, Trace):
+        for traces, place, answer in _answers(files, form, self.rules):
+            if isinstance(answer, Verdict):
                 satisfied += answer.satisfied
                 violated += not answer.satisfied
+                if not (answer.violations or self.json_output):
+                    continue
+                used = rulebook_for(traces, place, self.rules)
+                explained = []
                 chosen = answer.violations[: self.to_explain]
-                self.to_explain -= len(chosen)
-                used = made_for(trace, self.rules)
-                explained = [explain(violation, trace, used) for violation in chosen]
-                if self.json_output:
-                    print_result(verdicts.as_json(answer, used, explained))
-                elif answer.violations:
-                    print_result(verdicts.as_text(answer, used, explained))
-            elif isinstance(answer, NotJudged):
+                if chosen:
+                    self.to_explain -= len(chosen)
+                    trace = traces[place]
+                    assert isinstance(trace, Trace), "what has a verdict is a trace"
+                    explained = [explain(violation, trace, used) for violation in chosen]
+                as_printed = verdicts.as_json if self.json_output else verdicts.as_text
+                print_result(as_printed(answer, used, explained))
+            else:
                 not_judged += 1
                 self.complaints.add(answer.error)
                 if self.json_output:
@@ -131,7 +144,7 @@ class _Run:
         self.violated |= violated > 0
         self.not_answered |= not_judged > 0
 
-    def recording(self, file: str, wanted: Wanted) -> None:
+    def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
         """Judge every drive of a recording."""
         from rulec.diagnostics import RulecError
         from rulec.drives.judging import Judged, JudgedRecording
@@ -143,7 +156,7 @@ class _Run:
         from rulec.scenario.recordings import read_recording
 
         try:
-            judged = JudgedRecording(read_recording(Path(file)), self.rules, wanted, file)
+            judged = JudgedRecording(read_recording(Path(file), net), self.rules, wanted, file)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True
@@ -173,7 +186,7 @@ class _Run:
 
 
 def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
-    """Every trace, or why there is none, with its verdict, or why there is none."""
+    """Traces, which of them, and its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
@@ -189,18 +202,20 @@ def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterato
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
                 yield from _judged(stream, file, form or format_of(file), size, rules)
         except RulecError as error:
-            yield error, NotJudged(None, error)
+            yield [error], 0, NotJudged(None, error)
 
 
 def _judged(
     stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
 ) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.batch.verifying import judge_chunk
+    from rulec.runtime.batch.blocks import judge_items
     from rulec.trace.formats import read_chunks
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            yield from zip(traces, judge_chunk(traces, rules), strict=True)
+            found, answers = judge_items(traces, rules)
+            for place, answer in enumerate(answers):
+                yield found, place, answer
             if size is not None:
                 tell(stream.tell())

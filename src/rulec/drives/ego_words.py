@@ -41,7 +41,6 @@ def ego_words(view: View) -> Words:
             "can_stop_at_once": speed <= limits.stops_at_once_kmh,
             "lane": named(_from_kerb(view, lane, there), _LANES),
             "lanes": named(np.clip(there.sum(axis=1) - 1, 0, 2), _COUNTS),
-            "lane_change": np.append(False, lane[1:] != lane[:-1]),
             "straddling": _straddling(view, there),
             "lane_position": named(_place_in_lane(view, lane), _PLACES),
         }

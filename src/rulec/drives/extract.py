@@ -10,10 +10,14 @@ from typing import Any
 import numpy as np
 
 from rulec.drives.company import Presence, presences
+from rulec.drives.crossing_words import crossing_words
 from rulec.drives.ego_words import ego_words
 from rulec.drives.everyone import Everyone, everyone
 from rulec.drives.fitting import fitted, named_types
 from rulec.drives.flow import flow_words
+from rulec.drives.junction_words import junction_words
+from rulec.drives.junctions import in_junctions
+from rulec.drives.lane_change_words import lane_change_words
 from rulec.drives.map_words import map_words
 from rulec.drives.nearness import near
 from rulec.drives.other_words import other_words
@@ -90,6 +94,7 @@ class Drives:
         self._telling = telling
         self._side: Side = side
         self._people = everyone(recording, thresholds)
+        self._junctions = in_junctions(recording)
         self._moments = whereabouts(recording, self._people)
         self._roads: dict[tuple[str, ...], tuple[Road, Placed] | str] = {}
 
@@ -142,7 +147,7 @@ class Drives:
     def _road(self, way: tuple[str, ...]) -> tuple[Road, Placed] | str:
         if way not in self._roads:
             try:
-                road = road_along(self.recording, way)
+                road = road_along(self.recording, way, self._junctions)
                 self._roads[way] = road, placed(self._people, road)
             except ValueError as reason:
                 self._roads[way] = f"its road makes no sense, {reason}"
@@ -157,7 +162,8 @@ def _unbroken(people: Everyone, row: int, moments: Moments) -> Iterator[Moments]
 
 
 def _told(seen: View, ego: str, name: str, telling: Telling) -> Drive:
-    words = ego_words(seen) | other_words(seen) | map_words(seen) | flow_words(seen)
+    words = ego_words(seen) | other_words(seen) | map_words(seen) | junction_words(seen)
+    words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen)
     types = [WORDS.get(one.type, WORDS["unknown"]) for one in seen.people.participants]
     if telling.vocabulary is not None:
         words = fitted(words, types, telling.vocabulary, telling.names)

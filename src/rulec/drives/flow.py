@@ -22,15 +22,17 @@ def flow_words(view: View) -> Words:
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(view)
     there = view.road.lanes_at(view.own.s[0])
+    dense = np.all(np.logical_or(queues, ~there), axis=1)
     return Words(
         {
             "congested": congested,
             "CONGESTED": congested,
             "walking_pace_flow": enough & (speeds < limits.walking_pace_kmh),
-            "dense_all_lanes": np.all(np.logical_or(queues, ~there), axis=1),
+            "dense_all_lanes": dense,
             "far_lane_queue": _beside(view, queues & (queue_speeds < limits.slow_queue_kmh)),
             "overtaking": _overtaking(view),
-            "being_overtaken": _being_overtaken(view),
+            # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
+            "being_overtaken": ~dense & _being_overtaken(view),
         }
     )
 

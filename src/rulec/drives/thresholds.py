@@ -52,12 +52,14 @@ class Thresholds:
     queue_headway_s: float = 2.0
     queue_gap_m: float = 20.0
     """In a queue neighbours are no farther apart than either of these two."""
-    crossing_zone_m: float = 5.0
-    """Immediately before a crossing is so near."""
+    zone_m: float = 5.0
+    """Immediately before a crossing or a junction is so near."""
     kerb_m: float = 2.0
     """Who stands at the kerb is no farther from the lanes."""
     about_to_s: float = 2.0
     """Who walks is about to cross if it will be on the crossing so soon."""
+    entering_s: float = 0.5
+    """And it sets foot on it if it will be there so soon."""
     turned_deg: float = 45.0
     """Ego turns at a junction if its road does by more than this."""
     light_reach_m: float = 50.0

@@ -40,7 +40,11 @@ def as_json(
         by_rule = judged.by_default(drive.words)
         for violation in data["violations"]:
             violation["by_default"] = list(by_rule[violation["rule"]])
-    about |= {"start_s": drive.start_s, "step_s": drive.trace.step_s}
+    about |= {
+        "start_s": drive.start_s,
+        "step_s": drive.trace.step_s,
+        "by_default": _everything(judged, drive.words),
+    }
     return json.dumps({**data, **about}, ensure_ascii=False)
 
 
@@ -57,6 +61,9 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
             f"mirrored    recorded where traffic keeps to the {before}, "
             f"judged as if it kept to the {recording.side}"
         )
+    defaults = _everything(judged, tally.words or frozenset())
+    if defaults:
+        lines.append(f"by default  {_some(defaults)}: the recording does not say")
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
 
@@ -73,6 +80,12 @@ def _vehicles(egos: Sequence[str]) -> str:
     if len(egos) <= MOST_VEHICLES:
         return ", ".join(egos)
     return f"{', '.join(egos[:MOST_VEHICLES])} and {len(egos) - MOST_VEHICLES} more"
+
+
+def _everything(judged: JudgedRecording, words: frozenset[str]) -> list[str]:
+    """What rules read and these words leave out, in the order of the vocabulary."""
+    missing = {name for names in judged.by_default(words).values() for name in names}
+    return [name for name in judged.rules.vocabulary.declarations if name in missing]
 
 
 def _table(judged: JudgedRecording, tally: Tally) -> Iterator[str]:

@@ -2,7 +2,8 @@
 
 The way through: ``read`` a TOML file -> ``schema``, ``fields``: its tables, field by field ->
 ``convert``, ``obstacles``, ``check``: the ``model``. What is wrong is collected in ``Findings``,
-each in its place, which ``toml_places`` finds. ``commonroad`` reads recorded scenes.
+each in its place, which ``toml_places`` finds. ``recordings`` reads recorded scenes:
+``commonroad`` and ``sumo`` know their formats, ``recorded`` makes scenarios of them.
 ``motion`` says where an obstacle is at what time.
 """
 

@@ -163,7 +163,8 @@ class Account:
 
     ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
     lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
-    there goes on as before; ``derived`` says how each derived signal came about.
+    there goes on as before; ``derived`` says how each derived signal came about,
+    ``remarks`` what the file leaves open, and is taken to be.
     """
 
     reference: str
@@ -171,6 +172,7 @@ class Account:
     left_out: int
     until_s: float
     derived: Mapping[str, str]
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 Prediction = Literal["recorded", "constant"]
@@ -20,8 +21,8 @@ class Choice:
     ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
     ``prediction``: others move as recorded, or from time 0 on with constant acceleration. Traffic
     is ``congested`` below a median speed. ``ego_width_m``: None is what the participant has whose
-    part ego takes, if it takes one's; else ego is a point. Ids are those of the file; numbers will
-    do.
+    part ego takes, if it takes one's; else ego is a point. ``net`` is the file with the roads, for
+    formats that keep them apart. Ids are those of the file; numbers will do.
     """
 
     ego: str | int | None = None
@@ -29,4 +30,5 @@ class Choice:
     reference: str | int | None = None
     prediction: Prediction = "recorded"
     congested_below_kmh: float = CONGESTED_BELOW_KMH
+    net: Path | None = None
     ego_width_m: float | None = None

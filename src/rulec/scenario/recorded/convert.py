@@ -60,13 +60,14 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         found,
         {name: value for name, (value, _) in told.items()},
         step_s=STEP_S,
-        about=f"CommonRoad scenario {recording.name}",
+        about=f"{recording.form} {recording.name}",
         account=Account(
             own,
             others,
             others - len(found),
             view.until_s,
             {name: how for name, (_, how) in told.items()},
+            recording.remarks,
         ),
     )
 
