@@ -1,48 +1,20 @@
-"""What an obstacle of a scenario file may do: one motion, or several with their weights."""
+"""What an obstacle of a scenario file may do: one thing, or one or another."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 import msgspec
 
+from rulec.scenario.alternatives import Weighted, adds_up, weighted
 from rulec.scenario.fields import Findings, read_table
-from rulec.scenario.model import Alternative, Motion
+from rulec.scenario.model import Motion
 from rulec.scenario.schema import RawObstacle, RawPrediction
 from rulec.scenario.toml_places import Table
 
-_ROUNDING = Fraction(1, 1000)
-
 ReadMotion = Callable[[RawObstacle, Mapping[str, object], Table, Findings], Motion | None]
 """Gives the motion of a table's fields; the mapping is what the file has there."""
-
-
-@dataclass(frozen=True, slots=True)
-class Weighted:
-    """The likeliest motion with its weight, and the others; the weights add up to 1."""
-
-    motion: Motion
-    weight: Fraction = Fraction(1)
-    alternatives: tuple[Alternative, ...] = ()
-
-
-def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
-    """Motions in order of their weights, which become probabilities; those that are equal as one.
-
-    Of equally likely ones the first stays first.
-    """
-    together: dict[Motion, Fraction] = {}
-    for weight, motion in motions:
-        together[motion] = together.get(motion, Fraction(0)) + weight
-    whole = sum(together.values(), Fraction(0))
-    (first, likeliest), *rest = sorted(together.items(), key=lambda item: -item[1])
-    return Weighted(
-        first,
-        likeliest / whole,
-        tuple(Alternative(weight / whole, motion) for motion, weight in rest),
-    )
 
 
 def read_predictions(
@@ -88,7 +60,7 @@ def read_predictions(
     if len(found) < len(table.prediction):
         return None
     total = sum((weight for weight, _ in found), Fraction(0))
-    if abs(total - 1) > _ROUNDING:
+    if not adds_up(total):
         findings.add(
             "R0605",
             f"the weights of {place.words}'s predictions add up to {float(total):g}",
