@@ -1,5 +1,7 @@
 """Recordings made by hand, judged by books of law, with verdicts thought through."""
 
+from math import pi
+
 import pytest
 from roads import recording, straight, vehicle
 
@@ -51,6 +53,16 @@ def test_overtaking_on_the_right_on_a_motorway():
     assert found["8"] == {"near_side_passing": 3.5}
     # 7 is on the left of two lanes with nobody to overtake
     assert set(found["7"]) == {"keep_near_side"}
+
+
+@pytest.mark.parametrize(("y", "heading", "passed"), [(8, pi, False), (4, pi, True), (4, 0, True)])
+def test_a_queue_on_the_other_side_of_the_road_is_not_overtaken(y, heading, passed):
+    # 8 stands on a lane that leads the other way; or on the left one of ego's, either way round.
+    # Ego's rear, 18 + 20 t, is level with its end, 102, after 4.2 s.
+    lanes = [*two_lanes(), straight(3, 1000, 0, y=8.0)]
+    cars = [going(7, 20, 0.0, 20.0), going(8, 100, y, 0.0, heading=heading)]
+    found = violated(recording(lanes, cars), GERMAN, egos=("7",))
+    assert found["7"].get("near_side_passing") == (4.5 if passed else None)
 
 
 def test_overtaking_on_the_left():

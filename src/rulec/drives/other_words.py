@@ -31,7 +31,7 @@ def other_words(view: View) -> Words:
             "speed_difference": rounded(own.along * KMH - view.speeds()),
             "safe_gap": np.logical_or(~follows, gap >= safe_distance(view)),
             "precedes": _precedes(view, follows, gap),
-            "oncoming": comes(view),
+            "oncoming": comes(view) | _waits_to_come(view),
             "stopped": np.abs(others.along) * KMH < limits.standing_kmh,
             "parked": _for_good(view, [one.standing for one in view.people.participants]),
             "two_wheeled": _for_good(
@@ -59,7 +59,24 @@ def comes(view: View) -> Flags:
     """Who moves against ego's direction?"""
     moves = np.abs(view.others.along) * KMH >= view.thresholds.standing_kmh
     against: Flags = moves & (view.others.along < 0)
-    return against & (np.cos(view.others.turned) < -0.5)
+    return against & _faces_ego(view)
+
+
+def _waits_to_come(view: View) -> Flags:
+    """Which vehicles stand on lanes that lead against ego's way, as in a queue there?
+
+    Ego does not overtake them, no more than those that move. Who stands in ego's own lanes the
+    wrong way round is an obstacle there.
+    """
+    stands = np.abs(view.others.along) * KMH < view.thresholds.standing_kmh
+    vehicles = np.array(view.people.of_kind("vehicle"), dtype=bool)[:, None]
+    waits: Flags = stands & vehicles & ~view.touched.any(axis=-1)
+    return waits & _faces_ego(view)
+
+
+def _faces_ego(view: View) -> Flags:
+    faces: Flags = np.cos(view.others.turned) < -0.5
+    return faces
 
 
 def _precedes(view: View, follows: Flags, gap: Values) -> Flags:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.machine import Machine
 from rulec.runtime.batch.joint import Joint
+from rulec.runtime.batch.long import is_long, visited
 from rulec.trace.columns import Array, Layout, smallest_unsigned
 
 _BYTE = 256
@@ -31,6 +32,8 @@ def run(
         For each trace a joint verdict, as in ``Joint``.
     """
     n_states, n_cells = len(joint.following), len(joint.letters)
+    if is_long(layout.n_traces, layout.n_steps - first, n_states):
+        return _run_long(joint, cells, layout, first, last)
     if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
         # What the cells mean is worked into the tables.
         return _run_bytes(joint, joint.letters, cells, layout, first, last)
@@ -85,6 +88,19 @@ def _run_wide(
         entry = state[:now] + column[part]
         found[onward:now] = verdicts.take(entry[onward:])
         state = following.take(entry[:onward])
+    return found
+
+
+def _run_long(
+    joint: Joint, cells: Array, layout: Layout, first: int, last: int | None
+) -> NDArray[np.uint8]:
+    """The same for a few long traces, one after the other."""
+    meant = np.array(joint.letters)
+    found = np.empty(layout.n_traces, dtype=np.uint8)
+    for trace in range(layout.n_traces):
+        letters = meant.take(cells[layout.places(trace, first, last)])
+        state = visited(joint.following, letters)[-1]
+        found[trace] = joint.verdicts[state][letters[-1]]
     return found
 
 

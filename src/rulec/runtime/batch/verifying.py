@@ -36,6 +36,9 @@ MOST_STATES = 1 << 18
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
 
+_LONG = 1 << 9
+"""Fewer of them are judged together, too, if they have so many states."""
+
 _SHARED = 4
 """Where a state is met so many times, on average, what it means is worked out once."""
 
@@ -73,12 +76,18 @@ def judge_chunk(
             except (TypeError, AttributeError, KeyError):
                 continue  # it is no trace, which ``verify`` will say
     for places in shapes.values():
-        if len(places) >= fewest:
+        if len(places) >= fewest or _are_long(items, places):
             _judge_group(items, places, rulebook, answers)
     return [
         judge(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
+
+
+def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
+    """Have traces so many states together that it does not matter how few they are?"""
+    traces = [items[place] for place in places]
+    return sum(len(one.states) for one in traces if isinstance(one, Trace)) >= _LONG
 
 
 def _judge_group(
