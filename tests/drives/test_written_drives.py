@@ -109,10 +109,16 @@ def test_a_drive_can_be_drawn(road, tmp_path, capsys):
         (["traces", "FILE", "-o", "-", "--as-recorded"], "add --recorded"),
         (["traces", "FILE", "-o", "-", "--recorded", "--assume", "wet=true"], "needs a rulebook"),
         (["verify", "FILE", "-r", "vienna", "--ego", "5x"], "there is no vehicle `5x` that drives"),
-        (["verify", "FILE", "-r", "vienna", "--assume", "wet"], "not written as in `built_up=true`"),
+        (
+            ["verify", "FILE", "-r", "vienna", "--assume", "wet"],
+            "not written as in `built_up=true`",
+        ),
         (["verify", "FILE", "-r", "vienna", "--assume", "wett=true"], "has no `wett`"),
         (["verify", "FILE", "-r", "vienna", "--assume", "wet=yes"], "`wet` is `true` or `false`"),
-        (["verify", "FILE", "-r", "vienna", "--assume", "light=rot"], "`light` is one of `no_light`"),
+        (
+            ["verify", "FILE", "-r", "vienna", "--assume", "light=rot"],
+            "`light` is one of `no_light`",
+        ),
         (["verify", "FILE", "-r", "vienna", "--assume", "limit=50 kg"], "number such as `50 km/h`"),
         (["verify", "FILE", "-r", "vienna", "--assume", "stopped=true"], "is about objects"),
         (["verify", "FILE", "-r", "vienna", "--threshold", "near=9"], "no threshold `near`"),
