@@ -81,7 +81,7 @@ def judged(walk: Walk) -> Iterator[Judged]:
     first, last = walk.tasks[0].stretch
     unread = [_unread(walk, letters) for letters in walk.letters]
     spelled = [
-        letters if not len(traces) else [max(letter, 0) for letter in letters]
+        tuple(letters) if not len(traces) else tuple([max(letter, 0) for letter in letters])
         for letters, traces in zip(walk.letters, unread, strict=True)
     ]
     machines = [task.rule.machine for task in walk.tasks]
