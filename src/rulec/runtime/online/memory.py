@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NoReturn
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Any
 
 from rulec.runtime.online.outline import Key, Outline
 from rulec.runtime.online.told import Told
@@ -85,5 +86,6 @@ class Memory:
         self._n_learned = 0
 
 
-def _of_none(_: Any) -> NoReturn:
-    raise LookupError
+def _of_none(_: Any) -> Hashable:
+    """The key of no state."""
+    return None
