@@ -127,9 +127,11 @@ class Monitor:
             scene = Scene(self._rulebook, self._teams, objects)
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
-        after, changes = onward(here, scene, scene.letters(state, number, place))
-        if scene is here.scene and after.n_violations == here.n_violations:
-            after = scene.memory.learn(state, number, here, after, changes)
+        letters, known = scene.read(state, number, place)
+        after, changes = onward(here, scene, letters)
+        same = scene is here.scene and after.n_violations == here.n_violations
+        if same and known is not None:
+            after = scene.memory.learn(known, number, here, after, changes)
         if after.n_violations > here.n_violations:
             self._note_violations(here.n_violations, number, changes)
         # All at once: whatever interrupts this, the state has been taken or it has not.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from operator import attrgetter
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
@@ -12,6 +12,8 @@ import msgspec
 from rulec.runtime.online.prefix import Edge, Prefix, together
 from rulec.runtime.online.scene import Letters, Scene
 from rulec.runtime.online.team import Node, Ready
+
+_VERDICTS = attrgetter("verdicts")
 
 
 class Change(NamedTuple):
@@ -42,8 +44,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
     changes: tuple[Change, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class Standing(msgspec.Struct, frozen=True, eq=False):
     """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
 
     ``nodes`` say where the machines of each team stand for each binding, in the order of the
@@ -56,7 +57,7 @@ class Standing:
     verdict: Prefix
     rules: Mapping[str, Prefix]
     n_violations: int
-    after: dict[Hashable, Onward] = field(default_factory=dict)
+    after: dict[Hashable, Onward] = msgspec.field(default_factory=dict)
 
 
 Onward: TypeAlias = tuple[Standing, tuple[Change, ...]]
@@ -136,12 +137,7 @@ def carried_over(
 def _differ(before: Sequence[Node], after: Sequence[Node]) -> bool:
     """Has any binding another verdict than before?"""
     # Nodes that are alike are identical: then no machine has moved.
-    if before == after:
-        return False
-    for old, new in zip(before, after, strict=True):
-        if old is not new and old.verdicts != new.verdicts:
-            return True
-    return False
+    return before != after and [*map(_VERDICTS, before)] != [*map(_VERDICTS, after)]
 
 
 def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
