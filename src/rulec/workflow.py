@@ -25,12 +25,8 @@ from rulec.trace import Trace
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
-    from rulec.analysis.difference import Difference
-    from rulec.analysis.history import Inheritance
-    from rulec.analysis.matrix import Matrix
     from rulec.automata.any_step import AnyStep
-    from rulec.partition import AdjacencyName, NavigationGraph, PartitionName
-    from rulec.rulebook.loader import Loaded
+    from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
@@ -131,78 +127,6 @@ def run_examples(
     return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 
-def compare_rulebooks(
-    first: str | Path,
-    second: str | Path,
-    search_path: Sequence[str | Path] = (),
-    at: str = "",
-    patterns: Sequence[str] = (),
-    step_s: Fraction | None = None,
-    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
-    tell: Callable[[float], object] = lambda _: None,
-    most: int = 1,
-) -> Difference:
-    """Compare the rules of two rulebooks, given by name or by their sources' paths.
-
-    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
-    as for ``rulec.analysis.difference.difference``. Raises RulecError.
-    """
-    from rulec.analysis.difference import difference, setting_pairs
-
-    (one, ours), (other, theirs) = (
-        read_with_inheritance(each, search_path, at) for each in (first, second)
-    )
-    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
-    # What rules that were not asked for depend on is not asked for either.
-    return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
-
-
-def compare_all(
-    rulebooks: Sequence[Rulebook],
-    patterns: Sequence[str] = (),
-    step_s: Fraction | None = None,
-    tell: Callable[[float], object] = lambda _: None,
-) -> Matrix:
-    """Compare every two of some rulebooks, as for ``rulec.analysis.matrix.matrix``."""
-    from rulec.analysis.matrix import matrix
-
-    return matrix(rulebooks, patterns, step_s, tell)
-
-
-def analyze_rulebook(
-    reference: str | Path,
-    search_path: Sequence[str | Path] = (),
-    at: str = "",
-    tell: Callable[[float], object] = lambda _: None,
-) -> tuple[Diagnostic, ...]:
-    """What the automata of its rules tell about a rulebook, given by name or by its source's path.
-
-    ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
-    RulecError.
-    """
-    from rulec.analysis.findings import findings
-    from rulec.rulebook.loader import read_rulebook
-
-    folders = [Path(folder) for folder in search_path]
-    loaded = read_rulebook(reference, folders, at)
-    book = loaded.rulebook
-    above = [one.span.source.name for one in loaded.books[-2:-1]]
-    bases = [read_rulebook(Path(file), folders, book.at).rulebook for file in above]
-    return findings(book, bases, tell)
-
-
-def read_with_inheritance(
-    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> tuple[Loaded, Inheritance]:
-    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
-    from rulec.analysis.inheritance import inheritance
-    from rulec.rulebook.loader import read_rulebook
-
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
-    return loaded, inheritance(loaded.books, loaded.rulebook.at)
-
-
 def audit_rulebook(
     reference: str | Path,
     search_path: Sequence[str | Path] = (),
@@ -217,6 +141,7 @@ def audit_rulebook(
     ``at``: as for ``load_rulebook``. Raises RulecError.
     """
     from rulec.analysis.audit import audit
+    from rulec.analysis.inheritance import read_with_inheritance
 
     loaded, inherited = read_with_inheritance(reference, search_path, at)
     warn(loaded.warnings)
@@ -253,6 +178,7 @@ def navigation_graph(
     *,
     partition: PartitionName = "paper",
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
@@ -266,21 +192,26 @@ def navigation_graph(
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
     if step_s is None and scenario.account is not None:
-        step_s = _longest_step(scenario, partition, horizon_s)
+        step_s = _longest_step(scenario, partition, extent, horizon_s)
     return build(
-        scenario, partition=partition, adjacency=adjacency, step_s=step_s, horizon_s=horizon_s
+        scenario,
+        partition=partition,
+        adjacency=adjacency,
+        extent=extent,
+        step_s=step_s,
+        horizon_s=horizon_s,
     )
 
 
 def _longest_step(
-    scenario: Scenario, partition: PartitionName, horizon_s: float | None
+    scenario: Scenario, partition: PartitionName, extent: ExtentName, horizon_s: float | None
 ) -> float | None:
     """The scenario's own step, or the half of it, and so on; None if none will do."""
     from rulec.partition.start import step_that_leaves_room
     from rulec.scenario.timing import timing
 
     times = timing(scenario.horizon_s if horizon_s is None else horizon_s, scenario.step_s)
-    found = step_that_leaves_room(scenario, times, partition)
+    found = step_that_leaves_room(scenario, times, partition, extent)
     return None if found is None else float(found.step)
 
 
@@ -290,6 +221,7 @@ def find_maneuvers(
     *,
     partition: PartitionName | None = None,
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
     after: Before | None = None,
@@ -306,6 +238,7 @@ def find_maneuvers(
         scenario,
         partition=partition_for(source, partition),
         adjacency=adjacency,
+        extent=extent,
         step_s=step_s,
         horizon_s=horizon_s,
     )

@@ -19,8 +19,8 @@ from rulec.diagnostics import RulecError
 from rulec.maneuvers import judged
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import Choice
-from rulec.scenario.commonroad.reading import read_recording
 from rulec.scenario.recorded.convert import to_scenario
+from rulec.scenario.recordings import read_recording
 from rulec.workflow import compile_rulebook, navigation_graph
 
 Result = TypeVar("Result")

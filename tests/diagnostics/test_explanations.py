@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from rulec.analysis.asking import analyze_rulebook
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.codes import EXPLANATIONS, STAGES
 from rulec.partition import navigation_graph
@@ -16,7 +17,6 @@ from rulec.runtime.exercise import unexercised
 from rulec.runtime.verify import judge
 from rulec.scenario.read import read_scenario
 from rulec.workflow import (
-    analyze_rulebook,
     compile_rulebook,
     find_maneuvers,
     read_traces,

@@ -14,6 +14,7 @@ from rulec.partition import navigation_graph
 from rulec.scenario import load_scenario
 
 partitions = st.sampled_from(["paper", "fine"])
+extents = st.sampled_from(["lane", "body"])
 adjacencies = st.sampled_from(["touch", "edge", "forward"])
 
 
@@ -35,30 +36,30 @@ def key(cell):
     return book.BookCell(cell.surface, signature, cell.polygon).key
 
 
-@given(scenarios(), partitions)
-def test_cells_are_those_of_the_definition(scenario, partition):
-    graph = graph_of(scenario, partition=partition)
+@given(scenarios(), partitions, extents)
+def test_cells_are_those_of_the_definition(scenario, partition, extent):
+    graph = graph_of(scenario, partition=partition, extent=extent)
     for p, layer in enumerate(graph.layers):
-        expected = book.cells(scenario, *layer_interval(graph, p), partition)
+        expected = book.cells(scenario, *layer_interval(graph, p), partition, extent)
         assert sorted(key(cell) for cell in layer.cells) == sorted(cell.key for cell in expected)
 
 
-@given(scenarios(), partitions)
-def test_cells_are_connected_disjoint_and_cover_the_free_space(scenario, partition):
-    graph = graph_of(scenario, partition=partition)
+@given(scenarios(), partitions, extents)
+def test_cells_are_connected_disjoint_and_cover_the_free_space(scenario, partition, extent):
+    graph = graph_of(scenario, partition=partition, extent=extent)
     for p, layer in enumerate(graph.layers):
         polygons = [cell.polygon for cell in layer.cells]
         assert all(polygon.geom_type == "Polygon" and polygon.is_valid for polygon in polygons)
-        free = book.free_space(scenario, *layer_interval(graph, p), partition)
+        free = book.free_space(scenario, *layer_interval(graph, p), partition, extent)
         together = shapely.union_all(polygons)
         assert abs(sum(x.area for x in polygons) - together.area) < 1e-6
         assert together.symmetric_difference(free).area < 1e-2
 
 
-@given(scenarios(), partitions, st.data())
-def test_a_point_has_the_signature_of_its_cell(scenario, partition, data):
+@given(scenarios(), partitions, extents, st.data())
+def test_a_point_has_the_signature_of_its_cell(scenario, partition, extent, data):
     """Read off coordinates alone: no polygon, no cell but the one the point is in."""
-    graph = graph_of(scenario, partition=partition)
+    graph = graph_of(scenario, partition=partition, extent=extent)
     p = data.draw(st.integers(0, len(graph.layers) - 1))
     s = data.draw(st.floats(0, 40))
     d = data.draw(st.floats(scenario.road.lanes[0], scenario.road.lanes[-1]))
@@ -68,7 +69,7 @@ def test_a_point_has_the_signature_of_its_cell(scenario, partition, data):
         for cell in layer.cells
         if any(b.s_min < s < b.s_max and b.d_min < d < b.d_max for b in cell.boxes)
     ]
-    by_hand = classified(scenario, layer_interval(graph, p), partition, s, d)
+    by_hand = classified(scenario, layer_interval(graph, p), partition, extent, s, d)
     if by_hand == "border":
         return
     if by_hand is None:
@@ -77,16 +78,23 @@ def test_a_point_has_the_signature_of_its_cell(scenario, partition, data):
         assert [(cell.surface, list(cell.signature.values())) for cell in holding] == [by_hand]
 
 
-def classified(scenario, interval, partition, s, d):
+def classified(scenario, interval, partition, extent, s, d):
     road = scenario.road
     near = [abs(s - x) for stretch in (*road.surfaces, *road.missing) for x in stretch.s]
     near += [abs(d - x) for x in road.lanes] + [s, abs(40 - s)]
+    off_the_verge = []
+    for verge in (road.lanes[0], road.lanes[-1]):
+        closest = min(book.width(scenario, extent), abs(scenario.ego.d - verge))
+        near.append(abs(abs(d - verge) - closest))
+        off_the_verge.append(abs(d - verge) > closest)
+    if not all(off_the_verge):
+        return None if min(near) > 1e-3 else "border"
     lane = sum(bound < d for bound in road.lanes)
     if any(gap.lane == lane and gap.s[0] < s < gap.s[1] for gap in road.missing):
         return None if min(near) > 1e-3 else "border"
     values = []
     for obstacle in scenario.obstacles:
-        found = book.extent(scenario, obstacle, *interval, partition)
+        found = book.taken(scenario, obstacle, *interval, partition, extent)
         if found is None:
             continue
         (s0, s1, d0, d1), angle = found
@@ -114,10 +122,12 @@ def letter(station, lateral, angle):
     return "f" if own[0] > 0 else "b"
 
 
-@given(scenarios(most=3), partitions, adjacencies)
-@example(load_scenario("s2"), "paper", "touch")
-def test_adjacency_edges_and_margins_are_those_of_the_definition(scenario, partition, adjacency):
-    graph = graph_of(scenario, partition=partition, adjacency=adjacency)
+@given(scenarios(most=3), partitions, adjacencies, extents)
+@example(load_scenario("s2"), "paper", "touch", "lane")
+def test_adjacency_edges_and_margins_are_those_of_the_definition(
+    scenario, partition, adjacency, extent
+):
+    graph = graph_of(scenario, partition=partition, adjacency=adjacency, extent=extent)
     polygons = [[cell.polygon for cell in layer.cells] for layer in graph.layers]
 
     @cache
@@ -132,7 +142,7 @@ def test_adjacency_edges_and_margins_are_those_of_the_definition(scenario, parti
     goes_on = []
     for p in range(len(graph.layers) - 1):
         moment = float(graph.step * (p + 1))
-        instant = book.cells(scenario, moment, moment, partition)
+        instant = book.cells(scenario, moment, moment, partition, extent)
         goes_on.append(
             {
                 (i, j)
@@ -190,12 +200,14 @@ def test_adjacency_edges_and_margins_are_those_of_the_definition(scenario, parti
             assert graph.margins[p][a] == tuple(expected.values())
 
 
-@given(scenarios(), partitions)
-def test_each_adjacency_is_part_of_the_next_wider_one(scenario, partition):
+@given(scenarios(), partitions, extents)
+def test_each_adjacency_is_part_of_the_next_wider_one(scenario, partition, extent):
     forward, edge, touch = (
         {
             (p, i, j)
-            for p, layer in enumerate(graph_of(scenario, partition=partition, adjacency=a).layers)
+            for p, layer in enumerate(
+                graph_of(scenario, partition=partition, extent=extent, adjacency=a).layers
+            )
             for i, row in enumerate(layer.neighbours)
             for j in row
         }

@@ -20,9 +20,10 @@ from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
 from rulec.runtime.batch import verifying
-from rulec.runtime.batch.gathering import OddError, gathered
+from rulec.runtime.batch.gathering import gathered
 from rulec.runtime.batch.grouping import grouped
 from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.meaning import OddError
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.batch.sums import digits_of_sum
 from rulec.runtime.batch.verifying import judge_chunk, verify_many

@@ -13,6 +13,7 @@ from rulec.logic.formula import Constant
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.monitor import Monitor
 from rulec.runtime.online.replay import replayed
+from rulec.runtime.online.standing import SoFar
 from rulec.runtime.verdict import Violation
 from rulec.trace import Trace
 
@@ -246,7 +247,7 @@ def restored(data):
 
 def test_a_snapshot_is_json_and_says_all():
     judge = restored(json.loads(json.dumps(saved())))
-    assert judge.so_far == (
+    assert judge.so_far == SoFar(
         1,
         "violated",
         {"never_far": "violated", "comes_near": "violated", "answered": "holds so far"},

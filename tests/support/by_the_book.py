@@ -10,7 +10,7 @@ import shapely
 from shapely import Polygon
 from shapely.affinity import translate
 
-from rulec.scenario import Obstacle, Scenario, Trajectory
+from rulec.scenario import Footprints, Obstacle, Scenario, Trajectory
 
 HAIR = 1e-5
 FAR = 1000.0
@@ -51,9 +51,34 @@ def centre(obstacle: Obstacle, t: float):
     return s, d
 
 
+def footprint(motion: Footprints, t: float):
+    """Bounds at a time; None if one of those that they lie between is not known."""
+    known = dict(zip(motion.times, motion.boxes, strict=True))
+    before = max((x for x in known if x <= t), default=None)
+    after = min((x for x in known if x >= t), default=None)
+    if before is None or after is None or known[before] is None or known[after] is None:
+        return None
+    one, other = (
+        (box.s_min, box.s_max, box.d_min, box.d_max) for box in (known[before], known[after])
+    )
+    part = 0.0 if before == after else (t - before) / (after - before)
+    return tuple((1 - part) * x + part * y for x, y in zip(one, other, strict=True))
+
+
 def body(obstacle: Obstacle, start: float, end: float):
     """Bounds of what is swept, from the centre where a piece of the motion begins or ends."""
     times = {start, end}
+    if isinstance(obstacle.motion, Footprints):
+        times |= {t for t in obstacle.motion.times if start <= t <= end}
+        boxes = [box for t in times if (box := footprint(obstacle.motion, t)) is not None]
+        if not boxes:
+            return None
+        lows, highs = zip(*[((b[0], b[2]), (b[1], b[3])) for b in boxes], strict=True)
+        low, high = (
+            [min(x) for x in zip(*lows, strict=True)],
+            [max(x) for x in zip(*highs, strict=True)],
+        )
+        return low[0], high[0], low[1], high[1]
     if isinstance(obstacle.motion, Trajectory):
         times |= {p[0] for p in obstacle.motion.points if start <= p[0] <= end}
     centres = [c for t in times if (c := centre(obstacle, t)) is not None]
@@ -75,8 +100,26 @@ def lanes(scenario: Scenario):
         yield right, left, piece
 
 
-def extent(scenario: Scenario, obstacle: Obstacle, start: float, end: float, partition: str):
-    """Widened rectangle and direction ("s" or a walking angle); None if it is not on the road."""
+def width(scenario: Scenario, extent: str):
+    """How far from its centre ego keeps what is beside it."""
+    return scenario.ego.width / 2 if extent == "body" else 0.0
+
+
+def road_for(scenario: Scenario, extent: str):
+    """Where ego's centre may be: the road, without what is too close to the verge for ego.
+
+    Where ego starts closer to a verge than that, it may stay as close.
+    """
+    low, high = scenario.road.lanes[0], scenario.road.lanes[-1]
+    wide = width(scenario, extent)
+    right = low + min(wide, scenario.ego.d - low)
+    left = high - min(wide, high - scenario.ego.d)
+    road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
+    return road.intersection(rectangle(-FAR, FAR, right, left))
+
+
+def taken(scenario, obstacle, start: float, end: float, partition: str, extent: str):
+    """Rectangle and direction ("s" or a walking angle); None if it is not on the road."""
     swept = body(obstacle, start, end)
     if swept is None:
         return None
@@ -90,16 +133,19 @@ def extent(scenario: Scenario, obstacle: Obstacle, start: float, end: float, par
     if not touched:
         return None
     wide = (s0, s1, min(x[0] for x in touched), max(x[1] for x in touched))
+    half = width(scenario, extent)
+    if extent == "body":
+        wide = (s0, s1, d0 - half, d1 + half)
     if partition == "fine" or obstacle.type != "pedestrian":
         return wide, 0
     turned = {0: 0, 45: 90, 90: 90, 180: 180, -90: -90, -135: -90}[obstacle.walking_direction]
     if turned in (0, 180):
         return wide, turned
-    for stretch in scenario.road.surfaces:
+    for stretch in scenario.road.surfaces if extent == "lane" else ():
         c0, c1 = stretch.s
         if min(c1, s1) - max(c0, s0) > HAIR:
             s0, s1 = min(s0, c0), max(s1, c1)
-    return (s0, s1, d0, d1), turned
+    return (s0, s1, d0 - half, d1 + half), turned
 
 
 def regions(box, angle, partition):
@@ -131,17 +177,19 @@ def parts(geometry):
     return [p for p in getattr(geometry, "geoms", [geometry]) if p.area > HAIR]
 
 
-def free_space(scenario: Scenario, start: float, end: float, partition: str):
-    road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
+def free_space(scenario: Scenario, start: float, end: float, partition: str, extent: str):
+    road = road_for(scenario, extent)
     for obstacle in scenario.obstacles:
-        found = extent(scenario, obstacle, start, end, partition)
+        found = taken(scenario, obstacle, start, end, partition, extent)
         if found is not None:
             road = road.difference(rectangle(*found[0]))
     return road
 
 
-def cells(scenario: Scenario, start: float, end: float, partition: str) -> list[BookCell]:
-    road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
+def cells(
+    scenario: Scenario, start: float, end: float, partition: str, extent: str
+) -> list[BookCell]:
+    road = road_for(scenario, extent)
     crossings = shapely.union_all(
         [rectangle(*x.s, -FAR, FAR) for x in scenario.road.surfaces] or [Polygon()]
     )
@@ -149,7 +197,7 @@ def cells(scenario: Scenario, start: float, end: float, partition: str) -> list[
         ("crossing", (), p) for p in parts(road.intersection(crossings))
     ]
     for obstacle in scenario.obstacles:
-        found = extent(scenario, obstacle, start, end, partition)
+        found = taken(scenario, obstacle, start, end, partition, extent)
         if found is None:
             continue
         pieces = [

@@ -1,11 +1,16 @@
 """Scenarios for property tests: anything on or near a short road, moving in any way."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 from hypothesis import strategies as st
 
 from rulec.scenario import (
+    Alternative,
     Box,
     ConstantAcceleration,
     Ego,
+    Footprints,
     MissingLane,
     Obstacle,
     Road,
@@ -61,6 +66,18 @@ def motions(draw):
 
 
 @st.composite
+def footprints(draw):
+    """As recordings have them: bounds that come and go, and change as a vehicle turns."""
+    times = sorted(draw(st.sets(st.sampled_from([0.0, 0.4, 0.5, 1.0, 1.6, 2.0]), min_size=1)))
+    boxes = []
+    for _ in times:
+        s, d = draw(numbers(-5, 40)), draw(numbers(-4, 10))
+        box = Box(s, s + draw(numbers(1, 5)), d, d + draw(numbers(1, 3)))
+        boxes.append(None if draw(st.integers(0, 4)) == 0 else box)
+    return Footprints(tuple(times), tuple(boxes))
+
+
+@st.composite
 def obstacles(draw, name: str):
     kind = draw(st.sampled_from(["vehicle", "vehicle", "cyclist", "pedestrian"]))
     walking = draw(st.sampled_from([0, 45, 90, 180, -90, -135])) if kind == "pedestrian" else None
@@ -69,7 +86,7 @@ def obstacles(draw, name: str):
         kind,
         draw(st.sampled_from([0.5, 2.0, 5.0])),
         draw(st.sampled_from([0.5, 2.0, 4.0])),
-        draw(motions()),
+        draw(motions() | footprints()),
         walking,
     )
 
@@ -79,7 +96,8 @@ def scenarios(draw, most: int = 4):
     count = draw(st.integers(0, most))
     road = draw(roads())
     ego = Ego(draw(numbers(0, LENGTH)), draw(numbers(road.lanes[0], road.lanes[-1])))
-    ego = Ego(ego.s, min(max(ego.d, road.lanes[0]), road.lanes[-1]))
+    width = draw(st.sampled_from([0.0, 0.6, 1.8]))
+    ego = Ego(ego.s, min(max(ego.d, road.lanes[0]), road.lanes[-1]), 0.0, width)
     goal = Box(20.0, 40.0, -2.0, 1.0) if draw(st.booleans()) else None
     return Scenario(
         "random",
@@ -91,3 +109,24 @@ def scenarios(draw, most: int = 4):
         horizon_s=draw(st.sampled_from([1.0, 2.0])),
         step_s=draw(st.sampled_from([0.5, 1.0])),
     )
+
+
+@st.composite
+def with_predictions(draw, most: int = 3):
+    """A scenario whose obstacles may do one thing or another."""
+    scenario = draw(scenarios(most))
+    several = []
+    for one in scenario.obstacles:
+        motions_of = [one.motion, *draw(st.lists(motions() | footprints(), max_size=2))]
+        parts = [draw(st.integers(1, 5)) for _ in motions_of]
+        parts[0] = max(parts)
+        whole = Fraction(1, sum(parts))
+        (_, *rest) = zip(motions_of, parts, strict=True)
+        several.append(
+            replace(
+                one,
+                weight=parts[0] * whole,
+                alternatives=tuple(Alternative(part * whole, motion) for motion, part in rest),
+            )
+        )
+    return replace(scenario, obstacles=tuple(several))

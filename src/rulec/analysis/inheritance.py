@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from rulec.analysis.history import (
     Inheritance,
@@ -19,6 +19,7 @@ from rulec.analysis.history import (
     Step,
 )
 from rulec.rulebook.descriptions import description
+from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.overlay import merged
 from rulec.rulebook.provisions import in_force
 from rulec.rulebook.uses import names_used
@@ -47,6 +48,14 @@ def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
             for name, one in told.provisions.items()
         ),
     )
+
+
+def read_with_inheritance(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> tuple[Loaded, Inheritance]:
+    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
+    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    return loaded, inheritance(loaded.books, loaded.rulebook.at)
 
 
 def _used(told: _Tale) -> set[str]:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from rulec.automata.machine import Machine
 from rulec.diagnostics import Place
 from rulec.logic.formula import Formula
-from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
+from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Traffic, Variable
 from rulec.vocabulary import Vocabulary
 
 
@@ -67,3 +67,4 @@ class CompiledRulebook:
     extends: tuple[str, ...] = ()
     at: str = ""
     facts: tuple[CompiledFact, ...] = ()
+    traffic: Traffic = ""

@@ -51,6 +51,7 @@ def checked(read: schema.File) -> CompiledRulebook:
         tuple(read.extends),
         read.at,
         tuple(_fact(fact, vocabulary) for fact in read.facts),
+        read.traffic,
     )
 
 

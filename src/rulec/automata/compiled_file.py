@@ -40,6 +40,7 @@ def to_json(rulebook: CompiledRulebook) -> str:
         "as_of": rulebook.as_of,
         "sources": rulebook.sources,
         "semantics": rulebook.semantics,
+        "traffic": rulebook.traffic,
         "levels": rulebook.levels,
         "priorities": sorted(rulebook.priorities),
         "extends": rulebook.extends,

@@ -139,3 +139,4 @@ class File(msgspec.Struct, forbid_unknown_fields=True):
     vocabulary: Vocabulary
     facts: list[Fact]
     rules: list[Rule]
+    traffic: Literal["", "left", "right"] = ""

@@ -92,6 +92,7 @@ def compile_rulebook(
         rulec=__version__,
         spot=spot,
         semantics=rulebook.semantics,
+        traffic=rulebook.traffic,
         facts=tuple(
             CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
         ),

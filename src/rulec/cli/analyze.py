@@ -57,10 +57,10 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
 
 def _findings(rulebook: str, at: str) -> tuple[Diagnostic, ...] | RulecError:
     """What is found in a rulebook, or why it cannot be looked at."""
+    from rulec.analysis.asking import analyze_rulebook
     from rulec.diagnostics import RulecError
     from rulec.report.console import progress
     from rulec.settings import search_path
-    from rulec.workflow import analyze_rulebook
 
     try:
         with progress(f"analyzing {rulebook}", None) as tell:

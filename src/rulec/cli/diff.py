@@ -114,9 +114,9 @@ def _difference(
     at: str,
     most: int,
 ) -> Difference:
+    from rulec.analysis.asking import compare_rulebooks
     from rulec.report.console import print_diagnostics, progress
     from rulec.settings import search_path
-    from rulec.workflow import compare_rulebooks
 
     with progress("comparing", None) as tell:
         return compare_rulebooks(
@@ -132,10 +132,9 @@ def _all(
     output: str | None,
     at: str,
 ) -> int:
-    from rulec.analysis.matrix import steps
+    from rulec.analysis.matrix import matrix, steps
     from rulec.report.console import print_aside, progress, put_result
     from rulec.report.matrix import render
-    from rulec.workflow import compare_all
 
     books, failed = _read_all(names, at)
     alone = [] if names else _alone(books)
@@ -144,7 +143,7 @@ def _all(
         print_aside("there are no two rulebooks to compare")
         return ExitStatus.NOT_ANSWERED
     with progress("comparing", steps(books, patterns)) as tell:
-        found = compare_all(books, patterns, step_s, tell)
+        found = matrix(books, patterns, step_s, tell)
     if alone:
         print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
     put_result(render(found, output_format), output)

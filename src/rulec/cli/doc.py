@@ -32,11 +32,11 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
     It has every rule with its provision, in plain English, as a formula and by its examples; what
     was changed of inherited rules and what was left out; values, definitions, words and an index.
     """
+    from rulec.analysis.inheritance import read_with_inheritance
     from rulec.report.book_page import CONTENTS, as_markdown, title_of
     from rulec.report.console import print_diagnostics, put_result
     from rulec.report.html_page import as_html
     from rulec.settings import search_path
-    from rulec.workflow import read_with_inheritance
 
     only_sources([rulebook], "be made a document of")
     if output_format is None:

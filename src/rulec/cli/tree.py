@@ -57,8 +57,8 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
 
 
 def _inheritance(rulebook: str, at: str) -> Inheritance:
+    from rulec.analysis.inheritance import read_with_inheritance
     from rulec.settings import search_path
-    from rulec.workflow import read_with_inheritance
 
     return read_with_inheritance(rulebook, search_path(), at)[1]
 

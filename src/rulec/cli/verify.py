@@ -1,29 +1,40 @@
-"""``rulec verify``: traces judged by a rulebook."""
+"""``rulec verify``: traces and recorded traffic judged by a rulebook."""
 
 from __future__ import annotations
 
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, json_option, rulebook_option, traces_format_option
+from rulec.cli.arguments import (
+    at_option,
+    json_option,
+    net_option,
+    rulebook_option,
+    traces_format_option,
+)
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.recorded_arguments import drives_options, egos_option, given, wanted
 
 if TYPE_CHECKING:
+    from rulec.automata.any_step import AnyStep
     from rulec.automata.compiled import CompiledRulebook
     from rulec.diagnostics import RulecError
+    from rulec.drives.wanted import Wanted
+    from rulec.report.console import Complaints
     from rulec.runtime.verdict import NotJudged, Verdict
-    from rulec.runtime.verify import RulebookFor
     from rulec.trace import Trace
     from rulec.trace.formats import Format
 
-    Rules = CompiledRulebook | RulebookFor
-    Answer = tuple[Trace | RulecError, Verdict | NotJudged]
+    Rules = CompiledRulebook | AnyStep
+    Items = Sequence[Trace | RulecError]
+    Answer = tuple[Items, int, Verdict | NotJudged]
 
 
 @click.command()
@@ -37,6 +48,9 @@ if TYPE_CHECKING:
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @traces_format_option
+@egos_option
+@drives_options
+@net_option
 @json_option
 @at_option
 def command(
@@ -46,54 +60,135 @@ def command(
     form: Format | None,
     json_output: bool,
     at: str,
+    net: Path | None,
+    egos: tuple[str, ...],
+    **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
+    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
+    vehicle is judged by what it did, and a table says who violated what.
+
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
-    from rulec.report import verdicts
-    from rulec.report.console import Complaints, print_diagnostics, print_result
-    from rulec.runtime.explanation import explain
-    from rulec.runtime.verdict import NotJudged, Verdict
-    from rulec.runtime.verify import made_for
+    from rulec.automata.compiled import CompiledRulebook
+    from rulec.report.console import Complaints, print_diagnostics
+    from rulec.scenario.recordings import is_recording
     from rulec.settings import search_path
-    from rulec.trace import Trace
     from rulec.workflow import machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
-    satisfied = violated = not_judged = 0
-    complaints = Complaints()
+    recordings = [file for file in files if is_recording(file)]
+    if not recordings and (option := "--net" if net else "--ego" if egos else given(options)):
+        raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    for trace, answer in _answers(files, form, rules):
-        if isinstance(answer, Verdict) and isinstance(trace, Trace):
-            satisfied += answer.satisfied
-            violated += not answer.satisfied
-            chosen = answer.violations[:to_explain]
-            to_explain -= len(chosen)
-            used = made_for(trace, rules)
-            explained = [explain(violation, trace, used) for violation in chosen]
-            if json_output:
-                print_result(verdicts.as_json(answer, used, explained))
-            elif answer.violations:
-                print_result(verdicts.as_text(answer, used, explained))
-        elif isinstance(answer, NotJudged):
-            not_judged += 1
-            complaints.add(answer.error)
-            if json_output:
-                print_result(verdicts.not_judged_as_json(answer))
-    complaints.close()
-    if not json_output:
-        print_result(verdicts.summary(satisfied, violated, not_judged))
-    if not_judged:
+    run = _Run(rules, json_output, Complaints(), to_explain)
+    if recordings:
+        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+        about = wanted(egos, options, book.vocabulary)
+        for file in recordings:
+            run.recording(file, net, about)
+    if len(recordings) < len(files):
+        run.traces([file for file in files if file not in recordings], form)
+    run.complaints.close()
+    if run.not_answered:
         return ExitStatus.NOT_ANSWERED
-    return ExitStatus.VIOLATED if violated else ExitStatus.OK
+    return ExitStatus.VIOLATED if run.violated else ExitStatus.OK
 
 
-def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Iterator[Answer]:
-    """Every trace, or why there is none, with its verdict, or why there is none."""
+@dataclass
+class _Run:
+    """What is asked of every file, and what has become of those so far."""
+
+    rules: Rules
+    json_output: bool
+    complaints: Complaints
+    to_explain: int
+    violated: bool = False
+    not_answered: bool = False
+
+    def traces(self, files: Sequence[str], form: Format | None) -> None:
+        """Judge the traces of files, with one summary for all of them."""
+        from rulec.report import verdicts
+        from rulec.report.console import print_result
+        from rulec.runtime.batch.blocks import rulebook_for
+        from rulec.runtime.explanation import explain
+        from rulec.runtime.verdict import Verdict
+        from rulec.trace import Trace
+
+        satisfied = violated = not_judged = 0
+        for traces, place, answer in _answers(files, form, self.rules):
+            if isinstance(answer, Verdict):
+                satisfied += answer.satisfied
+                violated += not answer.satisfied
+                if not (answer.violations or self.json_output):
+                    continue
+                used = rulebook_for(traces, place, self.rules)
+                explained = []
+                chosen = answer.violations[: self.to_explain]
+                if chosen:
+                    self.to_explain -= len(chosen)
+                    trace = traces[place]
+                    assert isinstance(trace, Trace), "what has a verdict is a trace"
+                    explained = [explain(violation, trace, used) for violation in chosen]
+                as_printed = verdicts.as_json if self.json_output else verdicts.as_text
+                print_result(as_printed(answer, used, explained))
+            else:
+                not_judged += 1
+                self.complaints.add(answer.error)
+                if self.json_output:
+                    print_result(verdicts.not_judged_as_json(answer))
+        if not self.json_output:
+            print_result(verdicts.summary(satisfied, violated, not_judged))
+        self.violated |= violated > 0
+        self.not_answered |= not_judged > 0
+
+    def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
+        """Judge every drive of a recording."""
+        from rulec.diagnostics import RulecError
+        from rulec.drives.judging import Judged, JudgedRecording
+        from rulec.drives.tally import Tally
+        from rulec.report import recorded_verdicts as report
+        from rulec.report.console import print_result, progress
+        from rulec.runtime.explanation import explain
+        from rulec.runtime.verdict import NotJudged, Verdict
+        from rulec.scenario.recordings import read_recording
+
+        try:
+            judged = JudgedRecording(read_recording(Path(file), net), self.rules, wanted, file)
+        except RulecError as error:
+            self.complaints.add(error)
+            self.not_answered = True
+            return
+        tally = Tally()
+        blocks = []
+        with progress(f"judging {file}", len(judged.egos)) as tell:
+            for number, one in enumerate(judged.answers(), 1):
+                tell(number)
+                tally.add(one)
+                explained = []
+                if isinstance(one, Judged) and isinstance(one.answer, Verdict):
+                    chosen = one.answer.violations[: self.to_explain]
+                    self.to_explain -= len(chosen)
+                    explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
+                    if explained:
+                        blocks.append(report.in_detail(one, judged, explained))
+                elif isinstance(one, Judged) and isinstance(one.answer, NotJudged):
+                    self.complaints.add(one.answer.error)
+                    self.not_answered = True
+                if self.json_output:
+                    print_result(report.as_json(one, judged, explained))
+        if not self.json_output:
+            print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
+        self.violated |= bool(tally.violated)
+        self.not_answered |= not tally.judged
+
+
+def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
+    """Traces, which of them, and its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
     from rulec.runtime.verdict import NotJudged
@@ -109,18 +204,20 @@ def _answers(files: tuple[str, ...], form: Format | None, rules: Rules) -> Itera
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
                 yield from _judged(stream, file, form or format_of(file), size, rules)
         except RulecError as error:
-            yield error, NotJudged(None, error)
+            yield [error], 0, NotJudged(None, error)
 
 
 def _judged(
     stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
 ) -> Iterator[Answer]:
     from rulec.report.console import progress
-    from rulec.runtime.batch.verifying import judge_chunk
+    from rulec.runtime.batch.blocks import judge_items
     from rulec.trace.formats import read_chunks
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            yield from zip(traces, judge_chunk(traces, rules), strict=True)
+            found, answers = judge_items(traces, rules)
+            for place, answer in enumerate(answers):
+                yield found, place, answer
             if size is not None:
                 tell(stream.tell())

@@ -90,7 +90,11 @@ def counted(count: Count, bound: Bound, moment: Situation) -> tuple[str, ...] | 
     found = []
     fitting: dict[str, bool] = {}
     inner = dict(bound)
-    for name, kind in moment.objects.items():
+    there = moment.objects
+    same = _same_as(count.variable, count.body)
+    candidates = there if same is None else [one for one in (bound[same],) if one in there]
+    for name in candidates:
+        kind = there[name]
         if kind not in fitting:
             fitting[kind] = moment.vocabulary.is_subtype(kind, count.type)
         if fitting[kind]:
@@ -101,6 +105,16 @@ def counted(count: Count, bound: Bound, moment: Situation) -> tuple[str, ...] | 
             if truth:
                 found.append(name)
     return tuple(found)
+
+
+def _same_as(variable: str, formula: Formula) -> str | None:
+    """Another variable that stands for the same object wherever the formula holds, if one does."""
+    match formula:
+        case Same(one, other) if variable in (one, other) and one != other:
+            return other if one == variable else one
+        case Binary(operator, left, right) if operator is _AND:
+            return _same_as(variable, left) or _same_as(variable, right)
+    return None
 
 
 def holds(formula: Formula, bound: Bound, moment: Situation) -> bool | Unknown:

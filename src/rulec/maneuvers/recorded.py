@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from rulec.maneuvers.terms import SUPPLIED
 from rulec.trace import State, TraceGraph, Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.trace.fitting import could_mean, known_types
+from rulec.vocabulary import Declaration, Vocabulary
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph
+    from rulec.scenario import Obstacle
 
 _Said = Value | Mapping[str, Value]
 
@@ -23,16 +24,16 @@ RECORDED_UNIT = "km/h"
 """The unit of the quantities that recorded scenes supply."""
 
 
-def fitted(vocabulary: Vocabulary, graph: NavigationGraph) -> TraceGraph:
-    """The graph's paths as traces; of a recorded scene with what the vocabulary knows of it."""
-    traces = graph.trace_graph()
-    if graph.scenario.account is None:
-        return traces
-    objects: dict[str, str] = {}
-    for name, obstacle in graph.objects.items():
-        words = (word for word in (obstacle.type, *obstacle.broader) if word in vocabulary.types)
-        if (known := next(words, None)) is not None:
-            objects[name] = known
+def fitted(
+    vocabulary: Vocabulary, traces: TraceGraph, obstacles: Mapping[str, Obstacle]
+) -> TraceGraph:
+    """Traces of a recorded scene with what the vocabulary knows of it.
+
+    ``obstacles`` are the objects of the traces.
+    """
+    objects = known_types(
+        {name: (one.type, *one.broader) for name, one in obstacles.items()}, vocabulary
+    )
     fit = _Fit(vocabulary, objects)
     return replace(
         traces,
@@ -93,11 +94,4 @@ def _fits(value: Value | Mapping[str, Value], declaration: Declaration | None) -
     if declaration is None or isinstance(value, Mapping) != bool(declaration.parameters):
         return False
     values = value.values() if isinstance(value, Mapping) else (value,)
-    match declaration:
-        case Signal():
-            return all(isinstance(one, bool) for one in values)
-        case Enumeration():
-            return all(one in declaration.values for one in values)
-        case Quantity():
-            plain = all(isinstance(one, float) for one in values)
-            return plain and declaration.unit == RECORDED_UNIT
+    return could_mean(values, declaration, RECORDED_UNIT)

@@ -7,12 +7,13 @@ from rulec.partition.adjacency import AdjacencyName
 from rulec.partition.envelope import Envelope, envelope
 from rulec.partition.graph import NavigationGraph, navigation_graph
 from rulec.partition.model import Cell, Layer
-from rulec.partition.regions import PartitionName
+from rulec.partition.regions import ExtentName, PartitionName
 
 __all__ = [
     "AdjacencyName",
     "Cell",
     "Envelope",
+    "ExtentName",
     "Layer",
     "NavigationGraph",
     "PartitionName",

@@ -56,17 +56,17 @@ def plane(
 
 
 def _cuts(roadway: Roadway, regions: Sequence[Region]) -> tuple[list[float], list[float]]:
-    outline = roadway.outline
-    s_cuts = {outline.s_min, outline.s_max}
-    d_cuts = set(roadway.lanes)
+    free = roadway.free
+    s_cuts = {free.s_min, free.s_max}
+    d_cuts = {free.d_min, free.d_max, *roadway.lanes}
     for interval in roadway.crossings:
         s_cuts.update(interval)
     for box in (*roadway.holes, *(region.extent for region in regions)):
         s_cuts.update((box.s_min, box.s_max))
         d_cuts.update((box.d_min, box.d_max))
     return (
-        sorted(s for s in s_cuts if outline.s_min <= s <= outline.s_max),
-        sorted(d for d in d_cuts if outline.d_min <= d <= outline.d_max),
+        sorted(s for s in s_cuts if free.s_min <= s <= free.s_max),
+        sorted(d for d in d_cuts if free.d_min <= d <= free.d_max),
     )
 
 

@@ -19,7 +19,8 @@ from rulec.partition.continuation import continuations
 from rulec.partition.margin import Edges, Margins, edges
 from rulec.partition.model import Layer
 from rulec.partition.occupancy import scene
-from rulec.partition.regions import PartitionName
+from rulec.partition.predictions import Predicted
+from rulec.partition.regions import ExtentName, PartitionName
 from rulec.partition.snap import snapped
 from rulec.partition.start import start_cell
 from rulec.scenario import Obstacle, Scenario
@@ -37,14 +38,17 @@ class NavigationGraph:
 
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
-    that are on the road at some time, ``present`` the first and last layer of each.
+    that are on the road at some time, ``alternatives`` as less likely predictions have them, and
+    ``present`` the first and last layer of each.
     """
 
     scenario: Scenario
     partition: PartitionName
     adjacency: AdjacencyName
+    extent: ExtentName
     step: Fraction
     objects: Mapping[str, Obstacle]
+    alternatives: Mapping[str, Predicted]
     present: Mapping[str, tuple[int, int]]
     layers: tuple[Layer, ...]
     successors: tuple[Edges, ...]
@@ -85,6 +89,7 @@ def navigation_graph(
     *,
     partition: PartitionName = "paper",
     adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
 ) -> NavigationGraph:
@@ -94,25 +99,27 @@ def navigation_graph(
         scenario: the scene and its prediction.
         partition: ``paper`` (behind, in front, left, right) or ``fine`` (station and lateral).
         adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
+        extent: how wide obstacles are: ``lane`` (all of the lanes that they touch) or ``body``.
         step_s: planning interval in seconds, instead of the scenario's.
         horizon_s: planning horizon in seconds, instead of the scenario's.
 
     Raises:
         RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-            R0608 for an unknown partition or adjacency.
+            R0608 for an unknown partition, adjacency or extent.
     """
     _check_choice("partition", partition, get_args(PartitionName))
     _check_choice("adjacency", adjacency, get_args(AdjacencyName))
+    _check_choice("extent", extent, get_args(ExtentName))
     times = timing(
         scenario.horizon_s if horizon_s is None else horizon_s,
         scenario.step_s if step_s is None else step_s,
     )
-    places = scene(scenario, times, partition)
+    places = scene(scenario, times, partition, extent)
     planes = [
         plane(places.roadway, regions, partition, names)
         for regions, names in zip(places.swept, places.names, strict=True)
     ]
-    start = start_cell(planes[0], places, scenario, times, partition)
+    start = start_cell(planes[0], places, scenario, times, partition, extent)
     instants = [
         plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
         for regions in places.instants
@@ -122,8 +129,10 @@ def navigation_graph(
         for (before, after), instant in zip(pairwise(planes), instants, strict=True)
     ]
     layers = tuple(
-        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency))
-        for p, (flat, names) in enumerate(zip(planes, places.names, strict=True))
+        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
+        for p, (flat, names, others) in enumerate(
+            zip(planes, places.names, places.others, strict=True)
+        )
     )
     successors, margins = edges(layers, onward)
     goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
@@ -131,8 +140,10 @@ def navigation_graph(
         scenario,
         partition,
         adjacency,
+        extent,
         times.step,
-        places.obstacle_of,
+        {name: one.obstacle for name, one in places.predicted_of.items() if not one.number},
+        {name: one for name, one in places.predicted_of.items() if one.number},
         places.present,
         layers,
         successors,

@@ -1,7 +1,8 @@
 """The regions around one obstacle: what each place on the road is called as seen from it.
 
-An obstacle's rectangle, widened, cuts the road in three both ways. A region table names the nine
-parts, row by row from right to left, each row in the direction of ``s``; ``o`` is the obstacle.
+An obstacle's rectangle, as wide as its extent says, cuts the road in three both ways. A region
+table names the nine parts, row by row from right to left, each row in the direction of ``s``; ``o``
+is the obstacle.
 """
 
 from __future__ import annotations
@@ -17,10 +18,13 @@ from rulec.scenario.motion import Facing, facing
 
 PartitionName = Literal["paper", "fine"]
 
+ExtentName = Literal["lane", "body"]
+"""How wide an obstacle is taken to be: as the lanes that it touches, or as what it sweeps."""
+
 OCCUPIED = ord("o")
 
 # The paper's figure 3, turned with the direction in which a pedestrian walks.
-_PAPER: Mapping[Facing, bytes] = MappingProxyType(
+PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
     {
         "along": b"rrrboflll",
         "against": b"lllfobrrr",
@@ -47,7 +51,7 @@ LATERAL_OF: Mapping[int, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """An obstacle's widened rectangle and the table that names what lies around it."""
+    """The rectangle that an obstacle takes, and the table that names what lies around it."""
 
     obstacle: int
     extent: Box
@@ -61,18 +65,22 @@ def region_of(
     interval: tuple[float, float],
     partition: PartitionName,
     roadway: Roadway,
+    body_wide: Box | None = None,
 ) -> Region | None:
-    """The region of an obstacle that sweeps ``body`` in a time interval; None if off the road."""
+    """The region of an obstacle that sweeps ``body`` in a time interval; None if off the road.
+
+    It takes the lanes that it touches, or ``body_wide`` if that is given.
+    """
     lanes = roadway.lanes_touched(body)
     if lanes is None:
         return None
-    lane_wide = Box(body.s_min, body.s_max, *lanes)
+    taken = body_wide or Box(body.s_min, body.s_max, *lanes)
     if partition == "fine":
-        return Region(index, lane_wide, _FINE)
+        return Region(index, taken, _FINE)
     if not obstacle.walks:
-        return Region(index, lane_wide, _PAPER["along"])
+        return Region(index, taken, PAPER_TABLES["along"])
     direction = facing(obstacle, *interval)
     if direction in ("along", "against"):
-        return Region(index, lane_wide, _PAPER[direction])
-    across = Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
-    return Region(index, across, _PAPER[direction])
+        return Region(index, taken, PAPER_TABLES[direction])
+    across = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+    return Region(index, across, PAPER_TABLES[direction])

@@ -11,9 +11,13 @@ from rulec.scenario import Box, Road
 
 @dataclass(frozen=True, slots=True)
 class Roadway:
-    """Outline, holes (missing lanes), crossings and lanes, all in snapped coordinates."""
+    """Outline, holes (missing lanes), crossings and lanes, all in snapped coordinates.
+
+    ``free`` is the part of the outline where ego's centre may be.
+    """
 
     outline: Box
+    free: Box
     lanes: tuple[float, ...]
     holes: tuple[Box, ...]
     crossings: tuple[tuple[float, float], ...]
@@ -53,10 +57,11 @@ def coordinates(road: Road) -> tuple[Iterator[float], Iterator[float]]:
     return (value for interval in intervals for value in interval), iter(road.lanes)
 
 
-def roadway(road: Road, s: Snap, d: Snap) -> Roadway:
+def roadway(road: Road, free: Box, s: Snap, d: Snap) -> Roadway:
     """The road with every coordinate replaced by the one that stands for it."""
     return Roadway(
         snapped(road.outline, s, d),
+        snapped(free, s, d),
         tuple(d[bound] for bound in road.lanes),
         tuple(snapped(hole, s, d) for hole in road.holes()),
         tuple(

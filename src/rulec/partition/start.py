@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells import plane
 from rulec.partition.model import Plane
 from rulec.partition.occupancy import Scene, scene
-from rulec.partition.regions import PartitionName
+from rulec.partition.regions import ExtentName, PartitionName
 from rulec.scenario import Scenario
 from rulec.scenario.timing import MAX_LAYERS, Timing
 
 _FINEST = 64
 
+_TAKEN: Mapping[ExtentName, str] = {
+    "lane": "the whole width of its lanes",
+    "body": "its own width, and half of ego's to either side",
+}
+
 
 def start_cell(
-    first: Plane, places: Scene, scenario: Scenario, timing: Timing, partition: PartitionName
+    first: Plane,
+    places: Scene,
+    scenario: Scenario,
+    timing: Timing,
+    partition: PartitionName,
+    extent: ExtentName = "lane",
 ) -> int:
     """The cell of the first layer that holds ego's centre at the start.
 
@@ -27,7 +39,21 @@ def start_cell(
     cells = list(first.cells_at(s, d))
     if cells:
         return cells[-1]
-    in_the_way = [region for region in places.swept[0] if region.extent.covers(s, d)]
+    in_the_way = [
+        region
+        for region in places.swept[0]
+        if region.obstacle < len(scenario.obstacles) and region.extent.covers(s, d)
+    ]
+    free = places.roadway.free
+    if free.d_min == free.d_max:
+        raise RulecError(
+            Diagnostic(
+                "R0607",
+                f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
+                expected="expected a road with room for ego, as its extent is `body`",
+                help="correct ego's `width`, or take the extent `lane`, which leaves it out",
+            )
+        )
     if not in_the_way:
         raise RulecError(
             Diagnostic(
@@ -40,13 +66,13 @@ def start_cell(
     blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
-    finer = step_that_leaves_room(scenario, timing, partition, 2)
+    finer = step_that_leaves_room(scenario, timing, partition, extent, 2)
     raise RulecError(
         Diagnostic(
             "R0607",
             f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
             "so ego has no free cell to start from",
-            expected="expected a free place; an obstacle takes the whole width of its lanes",
+            expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
             help=f"a step of {float(finer.step):g} s would do"
             if finer
             else f"a smaller step does not help here: {_remedy(scenario)}",
@@ -61,7 +87,11 @@ def _remedy(scenario: Scenario) -> str:
 
 
 def step_that_leaves_room(
-    scenario: Scenario, timing: Timing, partition: PartitionName, fraction: int = 1
+    scenario: Scenario,
+    timing: Timing,
+    partition: PartitionName,
+    extent: ExtentName = "lane",
+    fraction: int = 1,
 ) -> Timing | None:
     """The longest step with which the first interval leaves ego's place free.
 
@@ -69,7 +99,7 @@ def step_that_leaves_room(
     """
     while fraction <= _FINEST and (timing.layers - 1) * fraction < MAX_LAYERS:
         first = Timing(timing.step / fraction, 1)
-        places = scene(scenario, first, partition)
+        places = scene(scenario, first, partition, extent)
         free = plane(places.roadway, places.swept[0], partition, places.names[0])
         if list(free.cells_at(places.s[scenario.ego.s], places.d[scenario.ego.d])):
             return first

@@ -50,7 +50,7 @@ def write_envelopes(
 
         write_csv(rows, list(COLUMNS), stream)
     elif form == "parquet":
-        from rulec.trace.parquet_table import write_parquet
+        from rulec.trace.arrow.parquet import write_parquet
 
         write_parquet(rows, list(COLUMNS.items()), stream, file)
     else:

@@ -25,7 +25,7 @@ def as_json(found: SoFar) -> str:
         "state": found.state,
         "verdict": found.verdict,
         "rules": dict(found.rules),
-        "changes": [one._asdict() for one in found.changes],
+        "changes": [{**one._asdict(), "binding": dict(one.binding)} for one in found.changes],
     }
     return json.dumps(data, ensure_ascii=False)
 

@@ -18,6 +18,7 @@ def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
         "obstacles": account.recorded,
         "left_out": account.left_out,
         "recorded_until_s": account.until_s,
+        "remarks": list(account.remarks),
         "derived": {
             name: {"value": supplied[name], "because": why}
             for name, why in account.derived.items()
@@ -40,3 +41,5 @@ def lines(found: Maneuvers, account: Account) -> Iterator[str]:
     for name, item in as_data(found, account)["derived"].items():
         value = str(item["value"]).lower() if isinstance(item["value"], bool) else item["value"]
         yield visible(f"derived     {name} = {value}: {item['because']}")
+    for remark in account.remarks:
+        yield visible(f"note        {remark}")

@@ -25,6 +25,9 @@ class Variable:
 Semantics = Literal["stutter", "finite"]
 """How a finite trace ends: its last state goes on for ever, or nothing comes after it."""
 
+Traffic = Literal["", "left", "right"]
+"""The side on which traffic drives; empty if the rulebook does not say."""
+
 Certainty = Literal["", "verified", "secondary", "unverified"]
 
 ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
@@ -131,7 +134,7 @@ class Rulebook:
     as_of: str = ""
     sources: tuple[SourceFile, ...] = ()
     semantics: Semantics = "stutter"
-    traffic: Literal["", "left", "right"] = ""
+    traffic: Traffic = ""
     extends: tuple[str, ...] = ()
     levels: tuple[str, ...] = ()
     priorities: frozenset[tuple[str, str]] = frozenset()

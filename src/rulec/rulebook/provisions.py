@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Literal
 
 from rulec.rulebook.extent import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
+from rulec.rulebook.model import Traffic
 from rulec.rulebook.numbers import Number
 from rulec.rulebook.overlay import Overlay
 from rulec.syntax import tree
@@ -23,7 +23,7 @@ class Provisions:
 
     overlay: Overlay
     at: str
-    traffic: Literal["", "left", "right"] = ""
+    traffic: Traffic = ""
     numbers: dict[str, Number | None] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)
     """Definitions with a mistake that has been reported."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.diagnostics import Diagnostic, Place, RulecError
@@ -14,11 +14,14 @@ from rulec.runtime.numbers import exact
 from rulec.runtime.online.past import Past
 from rulec.runtime.online.saved import from_data, step_in, to_data
 from rulec.runtime.online.scene import Scene
-from rulec.runtime.online.standing import SoFar, Standing, beginning, carried_over, onward
+from rulec.runtime.online.standing import Change, SoFar, Standing, beginning, carried_over, onward
 from rulec.runtime.online.team import MOST_LEARNED, teams_of
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import check_step
 from rulec.trace import State
+
+_Now: TypeAlias = tuple[Standing, int, tuple[Change, ...]]
+"""Where a monitor stands, behind which state, and what has changed by that."""
 
 
 class Monitor:
@@ -45,7 +48,7 @@ class Monitor:
         self._rulebook = rulebook
         self._teams = teams_of(rulebook)
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        self._now: Standing = beginning(Scene(rulebook, self._teams, NOBODY))
+        self._now: _Now = beginning(Scene(rulebook, self._teams, NOBODY)), -1, ()
         self._violations: list[Violation] = []
 
     @property
@@ -61,12 +64,12 @@ class Monitor:
     @property
     def so_far(self) -> SoFar:
         """What the last state has led to; before the first one, the state has the number -1."""
-        return self._now.so_far
+        return _so_far(*self._now)
 
     @property
     def objects(self) -> Mapping[str, str]:
         """The objects that were there in the last state, with their types."""
-        return dict(self._now.scene.objects)
+        return dict(self._now[0].scene.objects)
 
     @property
     def violations(self) -> tuple[Violation, ...]:
@@ -74,7 +77,7 @@ class Monitor:
 
         The ``step`` is that of ``verify``: None if the end of a stretch has decided.
         """
-        return tuple(self._violations[: self._now.n_violations])
+        return tuple(self._violations[: self._now[0].n_violations])
 
     def step(
         self, state: State, objects: Mapping[str, str] = NOBODY, place: Place | None = None
@@ -94,10 +97,30 @@ class Monitor:
             RulecError: R0501 to R0505 or R0508 if the state does not fit the rulebook, as in
                 ``verify``. Then the monitor is as if there had been no such state.
         """
-        now = self._now
-        number = now.so_far.state + 1
-        scene = now.scene
-        if objects != scene.objects:
+        here, number, _ = self._now
+        scene = here.scene
+        same_objects = objects == scene.objects
+        if same_objects:
+            # A method that is looked up and called at once would be looked up in the class first.
+            key = scene.memory.key
+            try:
+                after, changes = here.after[key(state)]
+            except (LookupError, TypeError):
+                pass
+            else:
+                number += 1
+                self._now = after, number, changes
+                return SoFar(number, after.verdict, after.rules, changes)
+        return self._step_slowly(state, objects, place, same_objects)
+
+    def _step_slowly(
+        self, state: State, objects: Mapping[str, str], place: Place | None, same_objects: bool
+    ) -> SoFar:
+        """As ``step``, whether such a state has been there before or not."""
+        here, number, _ = self._now
+        number += 1
+        scene = here.scene
+        if not same_objects:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)
@@ -107,29 +130,37 @@ class Monitor:
             scene = Scene(self._rulebook, self._teams, objects)
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
-        after = onward(now, scene, scene.letters(state, number, place))
-        if after.n_violations > now.n_violations:
-            self._note_violations(after, now.n_violations)
+        letters, known = scene.read(state, number, place)
+        after, changes = onward(here, scene, letters)
+        same = scene is here.scene and after.n_violations == here.n_violations
+        if same and known is not None:
+            after = scene.memory.learn(known, number, here, after, changes)
+        if after.n_violations > here.n_violations:
+            self._note_violations(here.n_violations, number, changes)
         # All at once: whatever interrupts this, the state has been taken or it has not.
-        self._now = after
-        return after.so_far
+        self._now = after, number, changes
+        return _so_far(after, number, changes)
 
     def past(self, objects: Mapping[str, str]) -> Past:
         """What has been, as far as it bears on a next state in which these objects are there."""
         scene = Scene(self._rulebook, self._teams, objects)
-        edges, ended = carried_over(self._now.scene, self._now.nodes, scene)
+        here, _, _ = self._now
+        edges, ended = carried_over(here.scene, here.nodes, scene)
         states, settled = {}, set()
         for crowd in scene.crowds:
             for items, edge in zip(crowd.bindings, edges[crowd.ready.rule.name], strict=True):
                 states[crowd.ready.rule.name, items] = edge.state
                 if edge.verdict == "violated":
                     settled.add((crowd.ready.rule.name, items))
-        lost = [Violation(one.rule, self._strengths[one.rule], one.binding, None) for one in ended]
+        lost = [
+            Violation(one.rule, self._strengths[one.rule], dict(one.binding), None) for one in ended
+        ]
         return Past(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
         """Where the monitor stands, for ``restore``: data that JSON can take."""
-        return to_data(self._now, self._rulebook, self._step_s, self.violations)
+        here, number, _ = self._now
+        return to_data(here, number, self._rulebook, self._step_s, self.violations)
 
     @classmethod
     def restore(
@@ -146,22 +177,27 @@ class Monitor:
             RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
         monitor = cls(rulebook, step_in(snapshot, rulebook, place))
-        monitor._now, monitor._violations = from_data(snapshot, rulebook, monitor._teams, place)
+        number, standing, violations = from_data(snapshot, rulebook, monitor._teams, place)
+        monitor._now, monitor._violations = (standing, number, ()), violations
         return monitor
 
-    def _note_violations(self, after: Standing, n_before: int) -> None:
+    def _note_violations(self, n_before: int, number: int, changes: Sequence[Change]) -> None:
         # What an interrupted step has noted was none.
         del self._violations[n_before:]
         self._violations += [
             Violation(
                 one.rule,
                 self._strengths[one.rule],
-                one.binding,
-                None if one.ended else after.so_far.state,
+                dict(one.binding),
+                None if one.ended else number,
             )
-            for one in after.so_far.changes
+            for one in changes
             if one.verdict == "violated"
         ]
+
+
+def _so_far(standing: Standing, number: int, changes: tuple[Change, ...]) -> SoFar:
+    return SoFar(number, standing.verdict, standing.rules, changes)
 
 
 def _no_object(what: str, of: str, place: Place | None) -> RulecError:

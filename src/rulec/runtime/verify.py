@@ -78,13 +78,20 @@ def columns_of(
 
 def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> CompiledRulebook:
     """The rulebook with the machines for a trace's step. Raises RulecError."""
+    return made_for_step(trace.step_s, rulebook, trace.place)
+
+
+def made_for_step(
+    step_s: float, rulebook: CompiledRulebook | RulebookFor, place: Place | None = None
+) -> CompiledRulebook:
+    """The same for the step of a trace at some place."""
     if isinstance(rulebook, CompiledRulebook):
         return rulebook
     try:
-        return rulebook(exact(trace.step_s))
+        return rulebook(exact(step_s))
     except RulecError as error:
         # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
-        raise RulecError([_at(trace.place, one) for one in error.diagnostics]) from None
+        raise RulecError([_at(place, one) for one in error.diagnostics]) from None
 
 
 def _at(place: Place | None, problem: Diagnostic) -> Diagnostic:

@@ -2,13 +2,15 @@
 
 The way through: ``read`` a TOML file -> ``schema``, ``fields``: its tables, field by field ->
 ``convert``, ``obstacles``, ``check``: the ``model``. What is wrong is collected in ``Findings``,
-each in its place, which ``toml_places`` finds. ``commonroad`` reads recorded scenes.
+each in its place, which ``toml_places`` finds. ``recordings`` reads recorded scenes:
+``commonroad`` and ``sumo`` know their formats, ``recorded`` makes scenarios of them.
 ``motion`` says where an obstacle is at what time.
 """
 
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     Account,
+    Alternative,
     ConstantAcceleration,
     Ego,
     Footprints,
@@ -24,6 +26,7 @@ from rulec.scenario.recorded.choice import Choice
 
 __all__ = [
     "Account",
+    "Alternative",
     "Box",
     "Choice",
     "ConstantAcceleration",

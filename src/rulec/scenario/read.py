@@ -12,6 +12,7 @@ from rulec.scenario.convert import to_scenario
 from rulec.scenario.fields import Findings
 from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.choice import Choice
+from rulec.scenario.safe_xml import is_xml
 from rulec.scenario.toml_places import TomlText
 from rulec.toml import parsed_toml
 
@@ -26,7 +27,7 @@ def available_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
-    """A built-in scenario by its name, or one from a file: TOML, or CommonRoad's XML.
+    """A built-in scenario by its name, or one from a file: TOML, or recorded traffic in XML.
 
     A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
     recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.
@@ -34,7 +35,7 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
     Raises:
         RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and
             R0602 to R0606 for what is wrong in it, all mistakes of one file together; R0610 to
-            R0612 for CommonRoad's files, R0613 for a ``choice`` where there is none to be made.
+            R0615 for recorded traffic, R0613 also for a ``choice`` where there is none to be made.
     """
     name = os.fspath(name_or_path)
     known = available_scenarios()
@@ -55,7 +56,7 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
-    if path.suffix.lower() == ".xml":
+    if is_xml(path):
         from rulec.scenario.recordings import read_scene
 
         return read_scene(path, choice or Choice())

@@ -54,6 +54,18 @@ class Layout:
         """How many traces have this step; they are the first ones."""
         return int(self.starts[step + 1] - self.starts[step]) if step < self.n_steps else 0
 
+    def places(self, trace: int, first: int = 0, last: int | None = None) -> NDArray[np.int64]:
+        """Where the states of a trace stand, from one to another, or to its end."""
+        end = int(self.lengths[trace]) if last is None else last + 1
+        found: NDArray[np.int64] = self.starts[first:end] + trace
+        return found
+
+    def traces_at(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The traces whose states stand at these places."""
+        steps = np.searchsorted(self.starts, places, side="right") - 1
+        found: NDArray[np.int64] = places - self.starts[steps]
+        return found
+
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
     """The layout of traces of these lengths. ValueError unless they descend and end above 0."""

@@ -6,51 +6,93 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import IO, Any
+from contextlib import suppress
+from importlib.util import find_spec
+from typing import IO
 
 from rulec.diagnostics import Place, RulecError
+from rulec.trace.chunks import in_chunks
 from rulec.trace.model import Trace, Value
 from rulec.trace.rows import Row, Table, check_columns, problem, traces_in
+
+LARGE_BYTES = 1 << 22
+"""Of a smaller file the rows are read sooner than Arrow is."""
+
+_LONGEST_HEAD_BYTES = 1 << 16
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _BOOLEANS = {"true": True, "false": False}
 
 
-def read_csv(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
-    """The traces of a CSV file; in place of a bad one the RulecError (R0509) that says why."""
-    text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
-    try:
-        yield from _traces(csv.reader(text, strict=True), file)
-    finally:
-        text.detach()  # the stream is its owner's
+def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
+    """The traces of a CSV file; in place of a bad one the RulecError (R0509) that says why.
+
+    A large file is read in blocks, if Arrow is installed.
+    """
+    columns = _columns_if_large(stream)
+    if columns is None:
+        yield from in_chunks(_traces(stream, file))
+        return
+    from rulec.trace.arrow.csv import pieces
+    from rulec.trace.arrow.cutting import cut
+
+    plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
+    yield from cut(plain, _table(columns, file), 2, Place(file))
 
 
-def _traces(lines: Any, file: str) -> Iterator[Trace | RulecError]:
-    """Those of a reader of the csv module, which knows the number of its line."""
-    found = _rows(lines, file)
+def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
+    """The columns of a large file, which then stands behind its first line.
+
+    None if it is not large, or its first line is not plain; then nothing has been read.
+    """
+    if not stream.seekable() or find_spec("pyarrow") is None:
+        return None
+    start = stream.tell()
+    size = stream.seek(0, io.SEEK_END) - start
+    stream.seek(start)
+    if size >= LARGE_BYTES:
+        line = stream.readline(_LONGEST_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf")
+        with suppress(UnicodeDecodeError, RulecError):
+            columns = line.decode().rstrip("\r\n").split(",")
+            check_columns(columns, Place(""))
+            if line.endswith(b"\n") and not re.search(rb'["\0]|\r(?!\n)', line):
+                return columns
+        stream.seek(start)
+    return None
+
+
+def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
+    rows = _rows(stream, 1, file)
     try:
-        number, columns = next(found, (0, []))
+        number, columns = next(rows, (0, []))
         if columns:
             check_columns(columns, Place(file, number))
     except RulecError as error:
         yield error
         return
-    table = Table(tuple(columns), _value, lambda line: Place(file, line))
-    yield from traces_in(found, table, Place(file))
+    yield from traces_in(rows, _table(columns, file), Place(file))
 
 
-def _rows(lines: Any, file: str) -> Iterator[Row]:
-    """The rows, the columns' names among them. Raises RulecError R0509."""
-    number = 0
+def _table(columns: Sequence[str], file: str) -> Table:
+    return Table(tuple(columns), _value, lambda line: Place(file, line), has_texts=True)
+
+
+def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
+    """The rows from line ``number`` on, the columns' names among them. Raises RulecError R0509."""
+    text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
+    lines = csv.reader(text, strict=True)
+    before = number - 1
     try:
         for cells in lines:
             if cells:
-                yield number + 1, cells
-            number = lines.line_num
+                yield number, cells
+            number = before + lines.line_num + 1
     except (csv.Error, UnicodeDecodeError) as reason:
         words = "it is not in UTF-8" if isinstance(reason, UnicodeDecodeError) else str(reason)
         message = f"from here on the file cannot be read as CSV: {words}"
-        raise problem(message, Place(file, number + 1)) from None
+        raise problem(message, Place(file, number)) from None
+    finally:
+        text.detach()  # the stream is its owner's
 
 
 def _value(cell: str) -> Value:

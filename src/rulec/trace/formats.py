@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import PurePath
 from typing import IO, Literal, get_args
@@ -15,8 +15,6 @@ from rulec.trace.tables import Kinds, columns_for, rows_of
 Format = Literal["jsonl", "csv", "parquet"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 
-_CHUNK_STATES = 1 << 16
-
 
 def format_of(file: str) -> Format:
     """The format that the end of a file's name says; JSON Lines if it says none."""
@@ -28,28 +26,26 @@ def format_of(file: str) -> Format:
     return "jsonl"
 
 
-def read_chunks(stream: IO[bytes], file: str, form: Format) -> Iterator[list[Trace | RulecError]]:
+def read_chunks(
+    stream: IO[bytes], file: str, form: Format
+) -> Iterator[Sequence[Trace | RulecError]]:
     """The traces of a stream, some at a time; in place of a bad one what is wrong with it.
+
+    Of a table they may be a ``Block``.
 
     Raises RulecError R0706 for Parquet that cannot be read here.
     """
     if form == "jsonl":
         yield from json_lines.read_chunks(stream, file)
         return
-    if form == "csv":
-        from rulec.trace.csv_table import read_csv as read
-    else:
-        from rulec.trace.parquet_table import read_parquet as read
-    chunk: list[Trace | RulecError] = []
-    n_states = 0
-    for trace in read(stream, file):
-        chunk.append(trace)
-        n_states += len(trace.states) if isinstance(trace, Trace) else 1
-        if n_states >= _CHUNK_STATES:
-            yield chunk
-            chunk, n_states = [], 0
-    if chunk:
-        yield chunk
+    if form == "parquet":
+        from rulec.trace.arrow.parquet import read_parquet
+
+        yield from read_parquet(stream, file)
+        return
+    from rulec.trace.csv_table import read_csv
+
+    yield from read_csv(stream, file)
 
 
 def write_traces(
@@ -71,7 +67,7 @@ def write_traces(
 
         write_csv(rows, columns, stream)
         return
-    from rulec.trace.parquet_table import write_parquet
+    from rulec.trace.arrow.parquet import write_parquet
 
     own = {"step": int, "step_s": float}
     types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]

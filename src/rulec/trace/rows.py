@@ -15,6 +15,9 @@ OBJECT, TYPE, OTHER = "object", "type", "other"
 OWN = (TRACE, STEP, STEP_S, OBJECT, TYPE, OTHER)
 """The columns that are no names of a vocabulary."""
 
+NAMES = frozenset((TRACE, STEP, OBJECT, TYPE, OTHER))
+"""Those of them that tell things apart."""
+
 Row = tuple[int, Sequence[Any]]
 """Its number, for messages, and its cells; an empty cell is None or the empty text."""
 
@@ -26,12 +29,13 @@ class Table:
     """What the cells of a table's rows are.
 
     ``columns`` are the names of all columns. ``value`` makes a value of a cell that is not empty,
-    ``place`` tells where a row is by its number.
+    ``place`` tells where a row is by its number. ``has_texts``: all cells are texts.
     """
 
     columns: tuple[str, ...]
     value: Callable[[Any], Value]
     place: Callable[[int], Place]
+    has_texts: bool = False
 
     @cached_property
     def at(self) -> dict[str, int]:
@@ -157,7 +161,7 @@ class _Building:
         self.now.append((number, cells))
 
     def _go_to(self, step: Any, number: int) -> None:
-        found = _whole(step)
+        found = whole(step)
         current = len(self.states) if self.now else -1
         if found == current + 1:
             if self.now:
@@ -247,7 +251,7 @@ def is_empty(cell: Any) -> bool:
     return cell is None or cell == ""
 
 
-def _whole(cell: Any) -> int | None:
+def whole(cell: Any) -> int | None:
     """The number of a step, as a number or as its digits; None if it is none."""
     if isinstance(cell, str):
         return int(cell) if cell.isascii() and cell.isdigit() and len(cell) < 19 else None

@@ -8,9 +8,9 @@ from roads import RECORDINGS
 from rulec.diagnostics import RulecError
 from rulec.runtime.product import count_paths
 from rulec.scenario import load_scenario
-from rulec.scenario.commonroad.reading import read_recording
 from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.recorded.convert import to_scenario
+from rulec.scenario.recordings import read_recording
 from rulec.workflow import compile_rulebook, find_maneuvers, navigation_graph
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")

@@ -2,13 +2,14 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from roads import ROAD_XML
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
-from rulec.scenario.commonroad import safe_xml
+from rulec.scenario.commonroad import reading
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 BOUND = "<leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>"
@@ -95,8 +96,8 @@ def test_what_is_wrong(written, before, after, says):
 
 def test_other_xml(written):
     found = problem_with(written("<osm version='0.6'/>"))
-    assert "of `osm`, not of `commonRoad`" in found.message
-    assert found.place.line == 1
+    assert "it is XML of `osm`" in found.message
+    assert "`commonRoad`" in found.expected
 
 
 def test_where_ego_is_not(written):
@@ -105,7 +106,8 @@ def test_where_ego_is_not(written):
 
 
 def test_too_much_is_not_read(written, monkeypatch):
-    monkeypatch.setattr(safe_xml, "LARGEST_BYTES", 1000)
+    small = replace(reading.COMMONROAD, largest_bytes=1000)
+    monkeypatch.setattr(reading, "COMMONROAD", small)
     assert "too large" in problem_with(written(ROAD_XML)).message
 
 

@@ -1,6 +1,7 @@
 """Recordings made by hand as scenarios: who is where when, and what can be told."""
 
 from dataclasses import replace
+from fractions import Fraction
 from math import pi
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from roads import recording, rectangle, straight, vehicle
 
 from rulec.diagnostics import RulecError
-from rulec.scenario import Box, Choice, ConstantAcceleration, Footprints
+from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.convert import to_scenario
 from rulec.scenario.recorded.recording import Light, Participant
@@ -41,6 +42,16 @@ def test_ego_is_at_0_of_a_road_with_its_lanes():
     assert scenario.road.s == pytest.approx((-20, 180))
     assert scenario.road.lanes == pytest.approx((-2, 2, 6))
     assert (scenario.name, scenario.horizon_s, scenario.step_s) == ("made by hand", 4, 0.5)
+
+
+def test_ego_is_as_large_as_the_vehicle_whose_part_it_takes():
+    """4.6 m long and 1.9 m wide, on a heading of 0.3; a planning problem alone has no size."""
+    car = drive(7, 20, 0, y=0.5, length=4.6, width=1.9, heading=0.3)
+    for choice in (CHOICE, replace(CHOICE, ego=7)):
+        ego = scene(car, choice=choice).ego
+        assert (ego.length, ego.width) == pytest.approx((4.6, 1.9))
+    assert scene(car, choice=replace(CHOICE, ego_width_m=2.5)).ego.width == 2.5
+    assert (scene().ego.length, scene().ego.width) == (0, 0)
 
 
 def test_a_recorded_vehicle_is_where_it_was():
@@ -107,6 +118,24 @@ def test_constant_acceleration_instead_of_what_was_recorded():
         pytest.approx(20), pytest.approx(0), pytest.approx(10), pytest.approx(-2)
     )
     assert (obstacle.length, obstacle.width) == pytest.approx((4, 2))
+
+
+def test_one_or_the_other_prediction():
+    """Who is there later, or stands, has but one."""
+    both = Choice(prediction={"recorded": Fraction(2, 5), "constant": Fraction(3, 5)})
+    later = vehicle(8, {k: (60 + k, 4) for k in range(2, 9)})
+    parked = replace(vehicle(9, {0: (90, 4)}, kind="parkedVehicle"), standing=True)
+    first, *others = scene(drive(7, 40, 10), later, parked, choice=both).obstacles
+    alone = [
+        only(scene(drive(7, 40, 10), choice=Choice(prediction=kind))).motion
+        for kind in ("constant", "recorded")
+    ]
+    assert (first.motion, first.weight) == (alone[0], Fraction(3, 5))
+    assert first.alternatives == (Alternative(Fraction(2, 5), alone[1]),)
+    assert [(one.id, one.weight, one.alternatives) for one in others] == [
+        ("8", 1, ()),
+        ("9", 1, ()),
+    ]
 
 
 def test_constant_acceleration_against_ego():

@@ -28,6 +28,35 @@ cat > road.xml <<'END'
 END
 """
 
+_NET = """\
+cat > road.net.xml <<'END'
+<net version="1.20">
+  <edge id="east" from="a" to="b">
+    <lane id="east_0" index="0" speed="13.89" length="200" shape="0,0 200,0"/>
+  </edge>
+</net>
+END
+"""
+_FCD = """\
+cat > fcd.xml <<'END'
+<fcd-export>
+  <timestep time="0.00">
+    <vehicle id="f.0" x="20" y="0" angle="90" type="DEFAULT_VEHTYPE" speed="9" lane="east_0"/>
+  </timestep>
+</fcd-export>
+END
+"""
+
+_WEIGHTS = """\
+{{ echo "rulebook many use road"; nexts=""; w=1; for rule in $(seq 16); do
+    echo "soft rule r$rule (v: vehicle) weight {weight} {{ require $nexts same_lane(v) }}"
+    nexts="$nexts next"; w=$((2 * w)); done
+  echo "soft rule same (v: vehicle) weight $w {{ require $nexts same_lane(v) }}"
+  echo "soft rule other (v: vehicle) weight $w {{ require $nexts not same_lane(v) }}"
+}} > many.rules
+rulec maneuvers s2 --step 0.25 --rank 1 -r ./many.rules
+"""
+
 SCENARIOS = {
     "R0601": Explanation(
         "a scenario's name is unknown",
@@ -86,8 +115,9 @@ SCENARIOS = {
         "scenario",
     ),
     "R0608": Explanation(
-        "a partition or an adjacency is unknown",
-        "The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`.",
+        "a partition, an adjacency or an extent is unknown",
+        "The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`, the "
+        "extents `lane` and `body`.",
         'import rulec\n\nrulec.navigation_graph("s1", partition="papre")\n',
         'import rulec\n\nrulec.navigation_graph("s1", partition="paper")\n',
         "python",
@@ -104,10 +134,11 @@ SCENARIOS = {
         "python",
     ),
     "R0610": Explanation(
-        "a file cannot be read as a CommonRoad scenario",
-        "A file whose name ends with `.xml` is taken for a CommonRoad scenario, version 2018b or "
-        "2020a. It has to be well-formed and complete, and to do without a `DOCTYPE`: what that "
-        "defines may fill the memory or fetch other files.",
+        "a file cannot be read as recorded traffic",
+        "Recorded traffic is XML: a CommonRoad scenario, version 2018b or 2020a, or SUMO's "
+        "floating-car data with their net; the root element tells which. A file has to be "
+        "well-formed and complete, and to do without a `DOCTYPE`: what that defines may fill the "
+        "memory or fetch other files.",
         _COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
         _COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
         "command",
@@ -123,7 +154,7 @@ SCENARIOS = {
     ),
     "R0612": Explanation(
         "what is chosen is not in the recorded scene",
-        "A recorded scene has its own numbers for planning problems, vehicles and lanelets, and "
+        "A recorded scene has its own ids for planning problems, vehicles and lanelets, and "
         "its own times. The message names those that can be chosen with `--ego`, `--at-time` and "
         "`--reference`. Without any choice, ego is the first planning problem's, so there has to "
         "be one, and it has to be on a lane.",
@@ -134,10 +165,39 @@ SCENARIOS = {
     "R0613": Explanation(
         "a choice for recorded scenes was made for another scenario",
         "What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
-        "from is what a CommonRoad scenario has recorded. A built-in scenario, or one in TOML, "
-        "says itself where ego and the road are and how others move.",
+        "from is what was recorded. A built-in scenario, or one in TOML, says itself where ego and "
+        "the road are and how others move. `--net` is for SUMO's floating-car data only, because "
+        "all other scenes have their own roads.",
         "rulec maneuvers s1 -r esterle2019 --ego 2",
         "rulec maneuvers s1 -r esterle2019",
+        "command",
+    ),
+    "R0614": Explanation(
+        "floating-car data of SUMO's have no net",
+        "They say where everybody was, but not where the roads are; that is in SUMO's net. Without "
+        "`--net` it is the one that a comment at the head of the data names, or the only file "
+        "`*.net.xml` in the same folder.",
+        _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+        _NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+        "command",
+    ),
+    "R0615": Explanation(
+        "floating-car data of SUMO's and the net do not belong together",
+        "All lanes and edges that the data name are in the net that they were made with, and "
+        "everybody is near its roads. Data with geographic coordinates cannot be used.",
+        _NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+        _NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+        "command",
+    ),
+    "R0616": Explanation(
+        "rules keep too many maneuvers apart",
+        "Maneuvers are counted and ranked together where they are at one place, the automata of "
+        "all rules are in one state, and what is violated costs the same. Rules of the law come to "
+        "few such states and costs, but there can be as many states as the product of all automata "
+        "has, and as many costs as rules have subsets. Judge by fewer rules at a time, choose a "
+        "larger step, or let rules that matter alike have one weight.",
+        _WEIGHTS.format(weight="$w"),
+        _WEIGHTS.format(weight="1"),
         "command",
     ),
 }

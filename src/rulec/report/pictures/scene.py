@@ -29,6 +29,11 @@ from rulec.report.pictures.signatures import MOST_SPELLED, in_full, in_letters, 
 from rulec.runtime.cheapest import Maneuver
 from rulec.scenario import Road
 
+_TAKEN = {
+    "lane": "the lanes of an obstacle",
+    "body": "too close to an obstacle, or to the verge, for ego's width",
+}
+
 
 def scene_pictures(
     graph: NavigationGraph, layers: Sequence[int], maneuver: Maneuver | None
@@ -48,7 +53,7 @@ def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
         entries += [
             Entry("body", "an obstacle as the interval begins"),
             Entry("swept", "what it sweeps in the interval"),
-            Entry("taken", "no cell: the lanes of an obstacle"),
+            Entry("taken", f"no cell: {_TAKEN[graph.extent]}"),
         ]
     if graph.scenario.goal:
         entries.append(Entry("goal", "the goal"))

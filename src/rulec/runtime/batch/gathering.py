@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import repeat
-from operator import eq
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from operator import itemgetter
 from typing import Any
 
-import numpy as np
-
+from rulec.runtime.batch.meaning import OddError, meant
 from rulec.runtime.batch.naming import Names
-from rulec.trace.columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.trace.columns import Array, Key, TraceCells, TraceColumns
+from rulec.vocabulary import Declaration, Vocabulary
 
 _NOT_GIVEN = object()
-_EXACT_IN_FLOATS = 1 << 53
 _EMPTY: Mapping[str, Any] = {}
-
-
-class OddError(Exception):
-    """Some state does not fit the vocabulary, or leaves out what has no default."""
 
 
 def gathered(
@@ -74,50 +68,39 @@ class _Gathering:
                 raise OddError
             self.add(inner, declaration, parameters[1:], (*items, item))
 
-    def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Iterable[tuple[str, Sequence[Any]]]:
+    def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Sequence[tuple[str, Sequence[Any]]]:
         """What states say of each object that any of them speaks of."""
-        objects = tuple(self._traces.objects)
-        first = tuple(maps[0])
-        if not self._names:
-            if all(map(eq, map(tuple, maps), repeat(first))):
-                return zip(first, _turned(maps), strict=True)
-        else:
-            own_names = set(self._names)
-            places = [self._names[0].index(name) for name in first if name in self._names[0]]
-            expected = {own: tuple([own[place] for place in places]) for own in own_names}
-            if all(map(eq, map(tuple, maps), map(expected.__getitem__, self._names))):
-                return zip([objects[place] for place in places], _turned(maps), strict=True)
-            meant = {own: dict(zip(own, objects, strict=True)) for own in own_names}
+        if set(map(len, maps)) == {len(maps[0])}:
+            with suppress(KeyError, ValueError):
+                return self._if_of_the_same(maps)
+        if self._names:
+            objects = self._traces.objects
+            meant = {own: dict(zip(own, objects, strict=True)) for own in set(self._names)}
             maps = list(map(_under, maps, map(meant.__getitem__, self._names)))
         every = set().union(*maps)
-        return ((item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every)
+        return [(item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every]
+
+    def _if_of_the_same(
+        self, maps: Sequence[Mapping[str, Any]]
+    ) -> Sequence[tuple[str, Sequence[Any]]]:
+        """As ``_by_object``, if all speak of the objects of the first; KeyError otherwise.
+
+        ValueError if that speaks of what is none.
+        """
+        if not self._names:
+            return [(item, list(map(itemgetter(item), maps))) for item in maps[0]]
+        objects = tuple(self._traces.objects)
+        return [
+            (objects[place], [one[own[place]] for one, own in zip(maps, self._names, strict=True)])
+            for place in map(self._names[0].index, maps[0])
+        ]
 
     def _column(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
     ) -> Array:
         if _NOT_GIVEN in values:
             values = self._filled(values, declaration, items)
-        kinds = set(map(type, values))
-        if isinstance(declaration, Enumeration):
-            places = {value: place for place, value in enumerate(declaration.values)}
-            if kinds != {str} or not places.keys() >= set(values):
-                raise OddError
-            dtype = smallest_unsigned(len(places))
-            distinct = np.fromiter(map(places.__getitem__, values), dtype, len(values))
-        elif isinstance(declaration, Signal):
-            if kinds != {bool}:
-                raise OddError
-            distinct = np.array(values, dtype=bool)
-        else:
-            if not kinds <= {int, float}:
-                raise OddError
-            whole = [value for value in values if type(value) is int] if int in kinds else []
-            if any(abs(value) > _EXACT_IN_FLOATS for value in whole):
-                raise OddError
-            distinct = np.array(values, dtype=np.float64)
-            if not np.isfinite(distinct).all():
-                raise OddError
-        return distinct.take(self._traces.cells)
+        return meant(values, declaration).take(self._traces.cells)
 
     def _filled(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
@@ -134,11 +117,6 @@ class _Gathering:
     def _is_needless(self, cell: int, items: tuple[str, ...]) -> bool:
         there = self._traces.there
         return bool(there) and not all(item in there[cell] for item in items)
-
-
-def _turned(maps: Sequence[Mapping[str, Any]]) -> Iterable[tuple[Any, ...]]:
-    """The values of maps with the same keys, key by key."""
-    return zip(*[one.values() for one in maps], strict=True)
 
 
 def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, Any]:

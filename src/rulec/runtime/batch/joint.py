@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from rulec.automata.machine import Machine
 from rulec.automata.tables import minimise
@@ -36,7 +37,7 @@ class Joint:
         return len(self.following[0])
 
 
-Spelled = tuple[Machine, Sequence[int]]
+Spelled = tuple[Machine, tuple[int, ...]]
 """A machine, and for each cell the class of the letter that the machine reads there."""
 
 
@@ -48,7 +49,7 @@ def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Ite
     """
     for start in range(0, len(machines), MOST_VERDICTS):
         members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
-        everything = _joint(members, [machines[one] for one in members], most_entries)
+        everything = _joint(members, tuple([machines[one] for one in members]), most_entries)
         if everything is not None:
             yield everything
         else:
@@ -63,21 +64,25 @@ def _one_by_one(
         one = machines[place]
         more = None
         if found is not None:
-            together = [*(machines[member] for member in found.members), one]
+            together = (*(machines[member] for member in found.members), one)
             more = _joint((*found.members, place), together, most_entries)
         if more is None:
             if found is not None:
                 yield found
-            more = _joint((place,), [one], most_entries) or _alone(place, *one)
+            more = _joint((place,), (one,), most_entries) or _alone(place, *one)
         found = more
     if found is not None:
         yield found
 
 
+@lru_cache(maxsize=256)
 def _joint(
-    members: tuple[int, ...], machines: Sequence[Spelled], most_entries: int
+    members: tuple[int, ...], machines: tuple[Spelled, ...], most_entries: int
 ) -> Joint | None:
-    """The smallest machine that does the same; None if it is too large, or would be on the way."""
+    """The smallest machine that does the same; None if it is too large, or would be on the way.
+
+    Many traces come some thousand at a time, and mean the same each time.
+    """
     columns = list(zip(*(letters for _, letters in machines), strict=True))
     spelled = list(dict.fromkeys(columns))
     states = {(0,) * len(machines): 0}
@@ -118,6 +123,6 @@ def _joint(
     )
 
 
-def _alone(place: int, machine: Machine, letters: Sequence[int]) -> Joint:
+def _alone(place: int, machine: Machine, letters: tuple[int, ...]) -> Joint:
     verdicts = tuple(tuple(map(int, row)) for row in machine.accepting)
-    return Joint((place,), tuple(letters), machine.following, verdicts)
+    return Joint((place,), letters, machine.following, verdicts)

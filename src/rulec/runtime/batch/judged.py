@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.runtime.batch.joint import joined
+from rulec.runtime.batch.long import first_lost_of_one, run_alone
 from rulec.runtime.batch.running import first_lost, run
 from rulec.runtime.batch.tasks import Task
 from rulec.trace.columns import Array, Layout
@@ -56,9 +57,15 @@ class Judged:
         chosen, layout = self.violated, self._layout
         first, last = self.task.stretch
         ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
+        machine = self.task.rule.machine
+        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.following)):
+            meant = np.array(self._letters)
+            words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
+            lost = np.array([first_lost_of_one(machine, meant.take(word)) for word in words])
+            return np.where(lost < 0, lost, lost + first)
         steps = range(first, int(ends[0]) if len(ends) else first)
         walks = (self._cells[layout.starts[step] + chosen[: _longer(ends, step)]] for step in steps)
-        lost = first_lost(self.task.rule.machine, self._letters, walks, ends - first)
+        lost = first_lost(machine, self._letters, walks, ends - first)
         return np.where(lost < 0, lost, lost + first)
 
 
@@ -74,7 +81,7 @@ def judged(walk: Walk) -> Iterator[Judged]:
     first, last = walk.tasks[0].stretch
     unread = [_unread(walk, letters) for letters in walk.letters]
     spelled = [
-        letters if not len(traces) else [max(letter, 0) for letter in letters]
+        tuple(letters) if not len(traces) else tuple([max(letter, 0) for letter in letters])
         for letters, traces in zip(walk.letters, unread, strict=True)
     ]
     machines = [task.rule.machine for task in walk.tasks]
@@ -95,10 +102,8 @@ def _unread(walk: Walk, letters: Sequence[int]) -> NDArray[np.intp]:
     missing = np.array(letters) < 0
     if not missing.any():
         return np.empty(0, dtype=np.intp)
-    first, last = walk.tasks[0].stretch
-    layout = walk.layout
-    found = np.zeros(layout.n_traces, dtype=bool)
-    for step in range(first, layout.n_steps if last is None else last + 1):
-        cells = walk.cells[layout.starts[step] : layout.starts[step + 1]]
-        found[: len(cells)] |= missing.take(cells)
-    return np.flatnonzero(found)
+    (first, last), layout = walk.tasks[0].stretch, walk.layout
+    start = layout.starts[first]
+    end = layout.starts[-1 if last is None else last + 1]
+    places = np.flatnonzero(missing.take(walk.cells[start:end])) + start
+    return np.unique(layout.traces_at(places))

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from rulec.automata.machine import Machine
 from rulec.runtime.batch.joint import Joint
+from rulec.runtime.batch.leaping import pays, run_leaping
+from rulec.runtime.batch.long import run_alone, visited
+from rulec.runtime.batch.steps import Step, steps_of
 from rulec.trace.columns import Array, Layout, smallest_unsigned
 
 _BYTE = 256
@@ -31,13 +34,28 @@ def run(
         For each trace a joint verdict, as in ``Joint``.
     """
     n_states, n_cells = len(joint.following), len(joint.letters)
-    if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
+    if run_alone(layout.n_traces, layout.n_steps - first, n_states):
+        return _run_long(joint, cells, layout, first, last)
+    steps = steps_of(layout, first, last)
+    if pays(n_states, n_cells, layout.n_traces):
         # What the cells mean is worked into the tables.
-        return _run_bytes(joint, joint.letters, cells, layout, first, last)
+        return run_leaping(*_by_cells(joint), cells, steps)
+    if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
+        return _run_bytes(joint, joint.letters, cells, steps)
     letters = spelled(cells, joint.letters)
+    if pays(n_states, joint.n_letters, layout.n_traces):
+        return run_leaping(joint.following, joint.verdicts, letters, steps)
     if n_states * joint.n_letters <= _BYTE:
-        return _run_bytes(joint, range(joint.n_letters), letters, layout, first, last)
-    return _run_wide(joint, letters, layout, first, last)
+        return _run_bytes(joint, range(joint.n_letters), letters, steps)
+    return _run_wide(joint, letters, steps)
+
+
+def _by_cells(joint: Joint) -> tuple[list[list[int]], list[list[int]]]:
+    """What follows and what is the verdict, by state and cell."""
+    return (
+        [[row[letter] for letter in joint.letters] for row in joint.following],
+        [[row[letter] for letter in joint.letters] for row in joint.verdicts],
+    )
 
 
 def spelled(cells: Array, letters: Sequence[int]) -> Array:
@@ -52,50 +70,48 @@ def _run_bytes(
     joint: Joint,
     letters: Sequence[int],
     column: NDArray[np.uint8],
-    layout: Layout,
-    first: int,
-    last: int | None,
+    steps: Sequence[Step],
 ) -> NDArray[np.uint8]:
     """A byte names the state and the cell; the C library's own loop looks up what follows."""
     width = len(letters)
     following = _padded([row[one] * width for row in joint.following for one in letters])
     verdicts = _padded([row[one] for row in joint.verdicts for one in letters])
-    ends = np.empty(layout.n_traces, dtype=np.uint8)
-    state = np.zeros(layout.n_traces, dtype=np.uint8)
-    for now, onward, part in _steps(layout, first, last):
-        entry = state[:now]
-        entry = entry + column[part]
-        ends[onward:now] = entry[onward:]
-        if onward:
-            state = np.frombuffer(entry[:onward].tobytes().translate(following), np.uint8)
+    ends = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
+    state = np.zeros(len(ends), dtype=np.uint8)
+    for step in steps:
+        entry = state[: step.now]
+        entry = entry + column[step.part]
+        ends[step.onward : step.now] = entry[step.onward :]
+        if step.onward:
+            state = np.frombuffer(entry[: step.onward].tobytes().translate(following), np.uint8)
     return np.frombuffer(ends.tobytes().translate(verdicts), np.uint8)
 
 
-def _run_wide(
-    joint: Joint, column: Array, layout: Layout, first: int, last: int | None
-) -> NDArray[np.uint8]:
+def _run_wide(joint: Joint, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
     """The same for machines that a byte is too small for."""
     width = joint.n_letters
     dtype = np.uint16 if len(joint.following) * width <= 1 << 16 else np.intp
     following = np.array(joint.following, dtype=dtype).ravel() * dtype(width)
     verdicts = np.array(joint.verdicts, dtype=np.uint8).ravel()
-    found = np.empty(layout.n_traces, dtype=np.uint8)
-    state = np.zeros(layout.n_traces, dtype=dtype)
-    for now, onward, part in _steps(layout, first, last):
-        entry = state[:now] + column[part]
-        found[onward:now] = verdicts.take(entry[onward:])
-        state = following.take(entry[:onward])
+    found = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
+    state = np.zeros(len(found), dtype=dtype)
+    for step in steps:
+        entry = state[: step.now] + column[step.part]
+        found[step.onward : step.now] = verdicts.take(entry[step.onward :])
+        state = following.take(entry[: step.onward])
     return found
 
 
-def _steps(layout: Layout, first: int, last: int | None) -> list[tuple[int, int, slice]]:
-    """For each step how many traces have it, how many go on after it, and where it stands."""
-    found = []
-    for step in range(first, layout.n_steps if last is None else last + 1):
-        now = layout.active(step)
-        onward = layout.active(step + 1) if last is None else 0 if step == last else now
-        start = int(layout.starts[step])
-        found.append((now, onward, slice(start, start + now)))
+def _run_long(
+    joint: Joint, cells: Array, layout: Layout, first: int, last: int | None
+) -> NDArray[np.uint8]:
+    """The same for a few long traces, one after the other."""
+    meant = np.array(joint.letters)
+    found = np.empty(layout.n_traces, dtype=np.uint8)
+    for trace in range(layout.n_traces):
+        letters = meant.take(cells[layout.places(trace, first, last)])
+        state = visited(joint.following, letters)[-1]
+        found[trace] = joint.verdicts[state][letters[-1]]
     return found
 
 

@@ -14,10 +14,11 @@ from itertools import chain
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.facts import counts
 from rulec.diagnostics import RulecError
-from rulec.runtime.batch.gathering import OddError, gathered
+from rulec.runtime.batch.gathering import gathered
 from rulec.runtime.batch.grouping import grouped, under_one_name
 from rulec.runtime.batch.judged import Judged
 from rulec.runtime.batch.judging import judge_cells, judge_columns
+from rulec.runtime.batch.meaning import OddError
 from rulec.runtime.batch.naming import Names, Shape, in_own_names, shape_of
 from rulec.runtime.batch.reading import NotGivenError
 from rulec.runtime.checking import check_objects, check_state
@@ -34,6 +35,9 @@ MOST_STATES = 1 << 18
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
+
+_LONG = 1 << 6
+"""Fewer of them are judged together, too, if they have so many states."""
 
 _SHARED = 4
 """Where a state is met so many times, on average, what it means is worked out once."""
@@ -72,12 +76,18 @@ def judge_chunk(
             except (TypeError, AttributeError, KeyError):
                 continue  # it is no trace, which ``verify`` will say
     for places in shapes.values():
-        if len(places) >= fewest:
+        if len(places) >= fewest or _are_long(items, places):
             _judge_group(items, places, rulebook, answers)
     return [
         judge(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
+
+
+def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
+    """Have traces so many states together that it does not matter how few they are?"""
+    traces = [items[place] for place in places]
+    return sum(len(one.states) for one in traces if isinstance(one, Trace)) >= _LONG
 
 
 def _judge_group(
@@ -95,14 +105,14 @@ def _judge_group(
     if not sound:
         return
     try:
-        rules = _rules_for(sound[0][1], rulebook)
+        rules = rules_for(sound[0][1], rulebook)
     except RulecError:
         return
     group = _judged(sound, rules)
     if group is None:
         return
     unread = set(chain.from_iterable(one.unread.tolist() for one in group.judged))
-    violations = _violations(group.judged)
+    violations = violations_in(group.judged)
     for number, place in enumerate(group.order):
         if number not in unread:
             where, trace = group.traces[place]
@@ -162,7 +172,7 @@ def _is_framed(trace: Trace) -> bool:
     return True
 
 
-def _rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
+def rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
     """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
     rules = made_for(trace, rulebook)
     for rule in rules.rules:
@@ -186,7 +196,7 @@ def _fits(
     return True
 
 
-def _violations(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
+def violations_in(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
     """The violations of each trace that has some, in the order of rules and objects."""
     found: dict[int, list[Violation]] = {}
     for one in judged:

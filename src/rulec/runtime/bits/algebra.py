@@ -67,7 +67,7 @@ class Algebra(Protocol[Plane]):
 
 
 class Evaluation(Generic[Plane]):
-    """Formulas on planes; every part of them is evaluated once.
+    """A formula on planes; every part of it is evaluated once.
 
     ``propositions`` gives the planes of atoms and comparisons.
     """
@@ -77,14 +77,15 @@ class Evaluation(Generic[Plane]):
     ) -> None:
         self._propositions = propositions
         self._do = algebra
-        self._known: dict[Formula, Plane] = {}
+        # Parts are told apart by identity: a formula's hash takes as long as a plane.
+        self._known: dict[int, tuple[Formula, Plane]] = {}
 
     def plane(self, formula: Formula) -> Plane:
         """The plane of a formula. Its bounds are in steps; ValueError if not."""
-        found = self._known.get(formula)
-        if found is None:
-            found = self._known[formula] = self._evaluated(formula)
-        return found
+        known = self._known.get(id(formula))
+        if known is None:
+            known = self._known[id(formula)] = (formula, self._evaluated(formula))
+        return known[1]
 
     def _evaluated(self, formula: Formula) -> Plane:
         match formula:

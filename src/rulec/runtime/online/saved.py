@@ -60,29 +60,30 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def to_data(
-    now: Standing,
+    here: Standing,
+    number: int,
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
     violations: Sequence[Violation],
 ) -> dict[str, Any]:
-    """What ``from_data`` reads: JSON has a word for all of it."""
+    """What ``from_data`` reads, behind the state with a number: JSON has a word for all of it."""
     return {
         "format": FORMAT,
         "version": VERSION,
         "rulebook": rulebook.name,
         "machines": fingerprint(rulebook),
         "step_s": None if step_s is None else str(step_s),
-        "states": now.so_far.state + 1,
-        "objects": dict(now.scene.objects),
+        "states": number + 1,
+        "objects": dict(here.scene.objects),
         "rules": [
             {
                 "rule": crowd.ready.rule.name,
                 "bindings": [
                     {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
-                    for items, edge in zip(crowd.bindings, crowd.edges(now.nodes), strict=True)
+                    for items, edge in zip(crowd.bindings, crowd.edges(here.nodes), strict=True)
                 ],
             }
-            for crowd in now.scene.crowds
+            for crowd in here.scene.crowds
         ],
         "violations": [
             {"rule": one.rule, "binding": dict(one.binding), "step": one.step} for one in violations
@@ -119,8 +120,8 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: Place | None) -> Fract
 
 def from_data(
     data: Any, rulebook: CompiledRulebook, teams: Teams, place: Place | None
-) -> tuple[Standing, list[Violation]]:
-    """Where a monitor with these rules stood, and what was violated for good by then.
+) -> tuple[int, Standing, list[Violation]]:
+    """Behind which state a monitor with these rules stood, where, and what was violated by then.
 
     Raises:
         RulecError: R0510 if this is no saved monitor, one of another rulebook or damaged.
@@ -130,13 +131,14 @@ def from_data(
         check_objects(saved.objects, rulebook.vocabulary)
         scene = Scene(rulebook, teams, saved.objects)
         if saved.states == 0 and not saved.objects and not saved.violations:
-            return beginning(scene), []
+            return -1, beginning(scene), []
         edges = _edges(saved, scene)
         violations = [_violation(one, saved.states, teams.rules) for one in saved.violations]
     except (LookupError, ValueError, RulecError):
         raise _refused("this saved monitor is damaged", place) from None
     lost = {one.rule for one in violations}
-    return standing_at(saved.states - 1, scene, edges, lost, len(violations)), violations
+    standing = standing_at(scene, edges, lost, len(violations))
+    return saved.states - 1, standing, violations
 
 
 def _checked(

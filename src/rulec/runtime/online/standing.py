@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
+from operator import attrgetter, getitem
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
+
+import msgspec
 
 from rulec.runtime.online.prefix import Edge, Prefix, together
 from rulec.runtime.online.scene import Letters, Scene
 from rulec.runtime.online.team import Node, Ready
+
+_VERDICTS = attrgetter("verdicts")
 
 
 class Change(NamedTuple):
@@ -25,30 +30,40 @@ class Change(NamedTuple):
     ended: bool = False
 
 
-class SoFar(NamedTuple):
+class SoFar(msgspec.Struct, frozen=True, gc=False):
     """What a state has led to.
 
     ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
     each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
     """
 
+    # A struct is made several times as quickly as a dataclass or a named tuple.
     state: int
     verdict: Prefix
     rules: Mapping[str, Prefix]
     changes: tuple[Change, ...] = ()
 
 
-class Standing(NamedTuple):
-    """Everything that a monitor knows.
+class Standing(msgspec.Struct, frozen=True, eq=False):
+    """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
 
     ``nodes`` say where the machines of each team stand for each binding, in the order of the
-    scene's teams. ``n_violations`` is how many bindings have violated their rule for good.
+    scene's teams; ``verdicts`` are theirs. ``n_violations`` is how many bindings have violated
+    their rule for good.
+    ``after`` is what is remembered of the standings behind this one, by the keys of states.
     """
 
     scene: Scene
-    nodes: list[Node]
-    so_far: SoFar
+    nodes: tuple[Node, ...]
+    verdicts: list[tuple[Prefix, ...]]
+    verdict: Prefix
+    rules: Mapping[str, Prefix]
     n_violations: int
+    after: dict[Hashable, Onward] = msgspec.field(default_factory=dict)
+
+
+Onward: TypeAlias = tuple[Standing, tuple[Change, ...]]
+"""Where a state leads, and what changes by it."""
 
 
 def beginning(scene: Scene) -> Standing:
@@ -57,53 +72,47 @@ def beginning(scene: Scene) -> Standing:
         crowd.ready.rule.name: [crowd.ready.links.start] * len(crowd.bindings)
         for crowd in scene.crowds
     }
-    return standing_at(-1, scene, start, frozenset(), 0)
+    return standing_at(scene, start, frozenset(), 0)
 
 
 def standing_at(
-    state: int,
-    scene: Scene,
-    edges: Mapping[str, Sequence[Edge]],
-    lost: Set[str],
-    n_violations: int,
+    scene: Scene, edges: Mapping[str, Sequence[Edge]], lost: Set[str], n_violations: int
 ) -> Standing:
     """Behind a state; ``lost`` are the rules that have been violated for good by then."""
-    nodes = nodes_at(scene, edges)
-    return Standing(scene, nodes, _so_far(state, scene, nodes, lost, ()), n_violations)
+    return _standing(scene, nodes_at(scene, edges), lost, n_violations)
 
 
-def nodes_at(scene: Scene, edges: Mapping[str, Sequence[Edge]]) -> list[Node]:
+def nodes_at(scene: Scene, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, ...]:
     """The nodes where the machines stand at these edges, given for each rule and binding."""
     found: list[Node] = []
     for team in scene.teams.teams:
         each = [edges[ready.rule.name] for ready in team.rules]
         found += [team.node(one) for one in zip(*each, strict=True)]
-    return found
+    return tuple(found)
 
 
-def onward(now: Standing, scene: Scene, letters: Letters) -> Standing:
+def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
     """Behind one more state, with a scene that may be another, and what its teams read.
 
     Takes no longer for a long past than for a short one.
     """
-    last = now.so_far
-    if scene is now.scene:
-        before, changes = now.nodes, list[Change]()
-        after = [node[letter] for node, letter in zip(before, letters, strict=True)]
-        # Nodes that are alike are identical: then no machine has moved.
-        if after == before or not _differ(before, after):
-            so_far = SoFar(last.state + 1, last.verdict, last.rules)
-            return Standing(scene, after, so_far, now.n_violations)
+    if scene is here.scene:
+        before = here.nodes
+        nodes = tuple(map(getitem, before, letters))
+        verdicts = [*map(_VERDICTS, nodes)]
+        if verdicts == here.verdicts:
+            same = (here.verdict, here.rules, here.n_violations)
+            return Standing(scene, nodes, verdicts, *same), ()
+        changes: list[Change] = []
     else:
-        edges, changes = carried_over(now.scene, now.nodes, scene)
+        edges, changes = carried_over(here.scene, here.nodes, scene)
         before = nodes_at(scene, edges)
-        after = [node[letter] for node, letter in zip(before, letters, strict=True)]
-    changes += _changes(scene, before, after)
-    lost = {rule for rule, verdict in last.rules.items() if verdict == "violated"}
+        nodes = tuple(map(getitem, before, letters))
+    changes += _changes(scene, before, nodes)
+    lost = {rule for rule, verdict in here.rules.items() if verdict == "violated"}
     lost.update(one.rule for one in changes if one.verdict == "violated")
-    so_far = _so_far(last.state + 1, scene, after, lost, tuple(changes))
     violated = sum(one.verdict == "violated" for one in changes)
-    return Standing(scene, after, so_far, now.n_violations + violated)
+    return _standing(scene, nodes, lost, here.n_violations + violated), tuple(changes)
 
 
 def carried_over(
@@ -124,18 +133,10 @@ def carried_over(
             if stayed.issuperset(items):
                 known[items] = edge
             elif edge.verdict == "pending":
-                bound = ready.bound(items)
+                bound = MappingProxyType(ready.bound(items))
                 ended.append(Change(ready.rule.name, bound, "pending", "violated", True))
         entered[ready.rule.name] = [known.get(items, ready.links.start) for items in after.bindings]
     return entered, ended
-
-
-def _differ(before: Sequence[Node], after: Sequence[Node]) -> bool:
-    """Has any binding another verdict than before?"""
-    for old, new in zip(before, after, strict=True):
-        if old is not new and old.verdicts != new.verdicts:
-            return True
-    return False
 
 
 def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
@@ -144,13 +145,11 @@ def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Ite
         edges = zip(crowd.bindings, crowd.edges(before), crowd.edges(after), strict=True)
         for items, old, new in edges:
             if old.verdict != new.verdict:
-                bound = crowd.ready.bound(items)
+                bound = MappingProxyType(crowd.ready.bound(items))
                 yield Change(crowd.ready.rule.name, bound, old.verdict, new.verdict)
 
 
-def _so_far(
-    state: int, scene: Scene, nodes: Sequence[Node], lost: Set[str], changes: tuple[Change, ...]
-) -> SoFar:
+def _standing(scene: Scene, nodes: tuple[Node, ...], lost: Set[str], n_violations: int) -> Standing:
     """``lost`` are the rules that have been violated for good, by objects now there or not."""
     rules = {
         crowd.ready.rule.name: _verdict_on(crowd.ready, crowd.edges(nodes), lost)
@@ -158,7 +157,8 @@ def _so_far(
     }
     hard = (crowd.ready.rule for crowd in scene.crowds if crowd.ready.rule.strength == "hard")
     verdict = together(rules[rule.name] for rule in hard)
-    return SoFar(state, verdict, MappingProxyType(rules), changes)
+    verdicts = [*map(_VERDICTS, nodes)]
+    return Standing(scene, nodes, verdicts, verdict, MappingProxyType(rules), n_violations)
 
 
 def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:

@@ -12,6 +12,7 @@ from typing import Any
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.machine import IMPOSSIBLE
+from rulec.runtime.online.floors import Floors, floors_of
 from rulec.runtime.online.inputs import Input, Weigh, inputs_of
 from rulec.runtime.online.prefix import Edge, Links, Prefix, linked
 
@@ -94,7 +95,8 @@ class Team:
     def letter_of(self, digits: dict[Input, Any]) -> int:
         """The letter where inputs have these digits.
 
-        Raises a LookupError or a TypeError if one is missing, or if there is no such state.
+        Raises a LookupError or a TypeError if one is missing or wrong, or if there is no such
+        state.
         """
         classes = []
         for ready in self.rules:
@@ -109,16 +111,17 @@ class Team:
 class Teams:
     """The rules of a rulebook, one by one and by the types of their variables.
 
-    They learn: which nodes and letters there are.
+    They learn: which nodes and letters there are. ``floors`` are what they compare quantities with.
     """
 
     rules: tuple[Ready, ...]
     teams: tuple[Team, ...]
+    floors: Floors
     learned: Learned
 
     def forgetful(self) -> Teams:
         """The same, but for what they have learnt."""
-        return _by_types(self.rules)
+        return _by_types(self.rules, self.floors)
 
 
 def teams_of(rulebook: CompiledRulebook) -> Teams:
@@ -128,14 +131,15 @@ def teams_of(rulebook: CompiledRulebook) -> Teams:
         [
             Ready(rule, linked(rule.machine), tuple(inputs_of(rule, vocabulary)))
             for rule in rulebook.rules
-        ]
+        ],
+        floors_of(rulebook),
     )
 
 
-def _by_types(rules: Sequence[Ready]) -> Teams:
+def _by_types(rules: Sequence[Ready], floors: Floors) -> Teams:
     by_types: dict[tuple[str, ...], list[Ready]] = {}
     for one in rules:
         by_types.setdefault(tuple([each.type for each in one.rule.variables]), []).append(one)
     learned = Learned()
     teams = tuple([Team(team, learned) for team in by_types.values()])
-    return Teams(tuple(rules), teams, learned)
+    return Teams(tuple(rules), teams, floors, learned)

@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Problem, State
-
-FARTHEST_M = 1e8
-"""Numbers in a file are smaller than this, places included: the earth is not so large."""
-
-_CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2
-"""Corners and middles of the sides of a rectangle of length and width 1."""
+from rulec.scenario.recorded.recording import (
+    FARTHEST_M,
+    Lanelet,
+    Participant,
+    Points,
+    Problem,
+    State,
+)
+from rulec.scenario.recorded.track import rectangles
 
 
 def participants_of(scenario: Any) -> Iterator[Participant]:
@@ -66,13 +68,13 @@ def _rectangle(shape: Any, state: Any) -> Points | None:
     """The outline in the usual case, a rectangle in an exact place; None in any other."""
     length, width = getattr(shape, "length", None), getattr(shape, "width", None)
     position, heading = state.position, state.orientation
-    plain = isinstance(length, (int, float)) and isinstance(width, (int, float))
-    if not plain or not isinstance(position, np.ndarray) or not isinstance(heading, (int, float)):
+    if not isinstance(length, (int, float)) or not isinstance(width, (int, float)):
         return None
-    cos, sin = np.cos(heading), np.sin(heading)
-    size = np.array([length, width], dtype=float)
-    corners = _CORNERS * size - (getattr(shape, "origin_x_shift", 0.0), 0.0)
-    outline: Points = corners @ np.array([[cos, sin], [-sin, cos]]) + position[:2]
+    if not isinstance(position, np.ndarray) or not isinstance(heading, (int, float)):
+        return None
+    shift = getattr(shape, "origin_x_shift", 0.0)
+    place, turn = position[None, :2], np.array([heading])
+    outline: Points = rectangles(place, turn, length, width, shift)[0]
     return outline
 
 

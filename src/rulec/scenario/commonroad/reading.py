@@ -14,26 +14,36 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from math import inf
 from pathlib import Path
 from typing import Any
+from xml.parsers.expat import XMLParserType
 
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.scenario.commonroad.moving import FARTHEST_M, participants_of, problem_of
-from rulec.scenario.commonroad.safe_xml import check_commonroad, refused
-from rulec.scenario.recorded.recording import Lanelet, Light, Points, Recording
+from rulec.scenario.commonroad.countries import side_in
+from rulec.scenario.commonroad.moving import participants_of, problem_of
+from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Points, Recording
+from rulec.scenario.safe_xml import XmlFormat, is_packed, scan, short
 
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
 
 
-def read_recording(path: Path) -> Recording:
+COMMONROAD = XmlFormat(
+    "a CommonRoad scenario",
+    "commonRoad",
+    "CommonRoad's format is described at https://commonroad.in.tum.de",
+)
+VERSIONS = ("2018b", "2020a")
+
+
+def read_commonroad(path: Path) -> Recording:
     """What the file says.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
             R0701 if the file cannot be opened.
     """
-    check_commonroad(path)
+    _check(path)
     with _quiet():
         reader = _library(path)
         try:
@@ -43,6 +53,21 @@ def read_recording(path: Path) -> Recording:
             raise
         except Exception as reason:  # the library has no exception of its own
             raise _unreadable(path, reason) from None
+
+
+def _check(path: Path) -> None:
+    """Raise RulecError unless the file is well-formed XML of CommonRoad's, without definitions."""
+
+    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
+        version = attributes.get("commonRoadVersion", "")
+        if name == COMMONROAD.root and version not in VERSIONS:
+            why = f"its `commonRoadVersion` is `{short(version)}`"
+            expected = f"expected {' or '.join(VERSIONS)}"
+            raise COMMONROAD.refused(path, why, parser.CurrentLineNumber, expected=expected)
+
+    scan(path, COMMONROAD, begin)
+    if is_packed(path):
+        raise COMMONROAD.refused(path, "it is packed", help_text="unpack it with `gzip -d`")
 
 
 def _library(path: Path) -> Callable[[Path], Any]:
@@ -79,7 +104,7 @@ def _unreadable(path: Path, reason: Exception) -> RulecError:
     words = " ".join(str(reason).split())[:200]
     said = f"{type(reason).__name__}: {words}" if words else type(reason).__name__
     why = f"something in it is missing or does not fit (commonroad-io says {said})"
-    return refused(path, why, None)
+    return COMMONROAD.refused(path, why)
 
 
 def _recording(name: str, scenario: Any, problems: Any) -> Recording:
@@ -104,6 +129,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
             problem_of(problem, lanelets)
             for _, problem in sorted(problems.planning_problem_dict.items())
         ),
+        side=side_in(name),
     )
 
 

@@ -11,7 +11,7 @@ from rulec.scenario.model import Account, Ego, Obstacle, Road, Scenario, SignalV
 from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.recorded.congestion import congested
 from rulec.scenario.recorded.crosswalks import crossings
-from rulec.scenario.recorded.ego import reference_of, start_of, unfit
+from rulec.scenario.recorded.ego import reference_of, size_of, start_of, unfit
 from rulec.scenario.recorded.lanes import lanes_along
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import reference_line
@@ -56,17 +56,18 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
     return Scenario(
         recording.name,
         replace(road, surfaces=crossings(view)),
-        Ego(0.0, d),
+        Ego(0.0, d, *size_of(recording, start, choice)),
         found,
         {name: value for name, (value, _) in told.items()},
         step_s=STEP_S,
-        about=f"CommonRoad scenario {recording.name}",
+        about=f"{recording.form} {recording.name}",
         account=Account(
             own,
             others,
             others - len(found),
             view.until_s,
             {name: how for name, (_, how) in told.items()},
+            recording.remarks,
         ),
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import hypot
+from math import cos, hypot, sin
 
 import numpy as np
 
@@ -74,6 +74,18 @@ def _is_ego(one: Participant, problem: Problem) -> bool:
     state = one.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
+
+
+def size_of(recording: Recording, start: Start, choice: Choice) -> tuple[float, float]:
+    """Ego's length and width (m): as chosen, and as recorded; 0 where that is not known."""
+    length, width = 0.0, 0.0
+    for one in recording.participants:
+        if one.id == start.participant:
+            heading = one.states[start.step].heading
+            ahead = np.array([cos(heading), sin(heading)])
+            left = np.array([-ahead[1], ahead[0]])
+            length, width = (float(np.ptp(one.outlines[start.step] @ way)) for way in (ahead, left))
+    return length, width if choice.ego_width_m is None else choice.ego_width_m
 
 
 def reference_of(recording: Recording, choice: Choice, state: State, file: str) -> str:

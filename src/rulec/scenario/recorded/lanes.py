@@ -97,7 +97,7 @@ def lanes_along(
         ValueError: there is no lane as wide as ``NARROWEST_LANE_M``.
     """
     lanelets = [recording.lanelets[number] for number in way]
-    borders = _borders(lanelets, line)
+    borders = borders_along(lanelets, line)
     grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     strip = _Strip(recording, lanelets, line, borders, grid)
@@ -143,7 +143,7 @@ class _Strip:
         return np.clip(np.searchsorted(self.borders, s, "right") - 1, 0, len(self.way) - 1)
 
 
-def _borders(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
+def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
     """Where along the line lanelets begin, and the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
     places = np.nan_to_num(line.coordinates(ends)[:, 0])

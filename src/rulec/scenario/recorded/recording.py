@@ -6,13 +6,21 @@ Places are in the file's own frame, x and y in metres; angles are radians, count
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
 from numpy import float64
 from numpy.typing import NDArray
 
 Points = NDArray[float64]
 """Places: one row each, x and y."""
+
+FARTHEST_M = 1e8
+"""Numbers in a file are smaller than this, places included: the earth is not so large."""
+
+Side = Literal["left", "right"]
+Lamp = Literal["left_indicator", "right_indicator", "brake_light"]
+"""What a vehicle shows others."""
 
 
 def in_order(identifier: str) -> tuple[int, str]:
@@ -74,7 +82,8 @@ class State:
 class Participant:
     """An obstacle of the file: by time step what it occupies, as a polygon's corners.
 
-    ``standing``: it is there all the time, in its only state.
+    ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
+    are lit; steps that the file says nothing about are missing.
     """
 
     id: str
@@ -82,6 +91,7 @@ class Participant:
     standing: bool
     states: Mapping[int, State]
     outlines: Mapping[int, Points]
+    lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,10 +106,17 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A file: one time step takes ``step_s`` seconds."""
+    """A file: one time step takes ``step_s`` seconds.
+
+    ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
+    file does not say. ``remarks``: what the file leaves open, and is taken to be.
+    """
 
     name: str
     step_s: float
     lanelets: Mapping[str, Lanelet]
     participants: tuple[Participant, ...]
     problems: tuple[Problem, ...]
+    form: str = "CommonRoad scenario"
+    side: Side | None = None
+    remarks: tuple[str, ...] = ()

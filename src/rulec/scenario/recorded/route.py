@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
-from math import atan2, pi
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import atan2, pi, radians
 
 import numpy as np
 import shapely
@@ -19,6 +19,7 @@ NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_
 
 _NEAR_M = 3.0
 _LOOK_M = 30.0
+_TURNS_BACK = radians(135)
 _Next = Callable[[Lanelet], Iterable[str]]
 
 
@@ -86,6 +87,21 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     return (*behind[:0:-1], *ahead)
 
 
+def extended(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
+    """A way with the road before and after it, as straight as possible where that branches."""
+    ahead = _straight_on(
+        recording.lanelets, [way[-1]], lambda x: x.successors, backwards=False, taken=way
+    )
+    behind = _straight_on(
+        recording.lanelets,
+        [way[0]],
+        lambda x: x.predecessors,
+        backwards=True,
+        taken=(*way, *ahead),
+    )
+    return (*behind[:0:-1], *way, *ahead[1:])
+
+
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
     """The way through the fewest lanelets; only the start if there is none."""
     came_from: dict[str, str | None] = {start: None}
@@ -122,6 +138,12 @@ def _straight_on(
         if not options:
             break
         leaving = _end_heading(here, backwards)
+        # A road does not turn back by itself, though one may turn around at its end
+        options = [
+            x for x in options if abs(_turn(leaving, _end_heading(x, backwards))) < _TURNS_BACK
+        ]
+        if not options:
+            break
         chosen = min(
             options,
             key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), in_order(x.id)),
@@ -150,7 +172,7 @@ def _heading_beside(lanelet: Lanelet, state: State) -> float:
 
 
 def _end_heading(lanelet: Lanelet, backwards: bool) -> float:
-    """The direction in which the way leaves a lanelet."""
+    """The direction in which the way leaves a lanelet at its end."""
     centre = lanelet.centre[::-1] if backwards else lanelet.centre
     return _direction(centre[-2], centre[-1])
 

@@ -40,7 +40,7 @@ def signals_of(
     found: dict[str, tuple[SignalValue, str]] = {}
     here = f"lanelet {own.id}"
     if own.limit_mps is not None:
-        found["limit"] = round(own.limit_mps * _KMH, 2), f"the sign of {here}"
+        found["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
     for sign, signal in _SIGNS.items():
         if sign in own.signs:
             found[signal] = True, f"the sign of {here}"

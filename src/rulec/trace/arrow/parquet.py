@@ -1,22 +1,23 @@
-"""Traces as Parquet: the same table as in CSV, its columns of one type each.
-
-The only file that knows pyarrow, which is installed on request.
-"""
+"""Traces as Parquet: the same table as in CSV, its columns of one type each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Place, RulecError
+from rulec.trace.arrow.library import arrow, unavailable
 from rulec.trace.model import Trace, Value
-from rulec.trace.rows import Row, Table, check_columns, problem, traces_in
+from rulec.trace.rows import Table, check_columns, problem
 
-_ROWS_AT_ONCE = 1 << 15
+if TYPE_CHECKING:
+    from rulec.trace.arrow.cutting import Piece
+
+_ROWS_AT_ONCE = 1 << 16
 
 
-def read_parquet(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
+def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
     """The traces of a Parquet file; in place of a bad one the RulecError (R0509) that says why.
 
     Raises:
@@ -24,35 +25,37 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
     """
     if not stream.seekable():
         message = "Parquet has its table of contents at the end, so it cannot be read from a pipe"
-        raise _unavailable(message, file, "give a file, or write JSON Lines into the pipe")
-    pyarrow, parquet = _pyarrow(file)
+        raise unavailable(message, file, "give a file, or write JSON Lines into the pipe")
+    pyarrow, parquet = arrow(file)
     try:
         source = parquet.ParquetFile(stream)
         schema = source.schema_arrow
         check_columns(schema.names, Place(file))
         _check_types(schema, pyarrow, file)
     except RulecError as error:
-        yield error
+        yield [error]
         return
     except (pyarrow.ArrowException, OSError) as reason:
-        yield _unreadable("the file", reason, file)
+        yield [_unreadable("the file", reason, file)]
         return
+    from rulec.trace.arrow.cutting import cut
+
     table = Table(tuple(schema.names), lambda value: value, lambda row: Place(file, row))
     problems = (pyarrow.ArrowException, OSError)
-    yield from traces_in(_rows(source, problems, file), table, Place(file))
+    yield from cut(_pieces(source, problems, file), table, 1, Place(file))
 
 
-def _rows(source: Any, problems: tuple[type[Exception], ...], file: str) -> Iterator[Row]:
-    """The rows, counted from 1. Raises RulecError R0509."""
+def _pieces(
+    source: Any, problems: tuple[type[Exception], ...], file: str
+) -> Iterator[Piece | RulecError]:
+    """The record batches; where the file ends too early, what is wrong."""
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
-            columns = [column.to_pylist() for column in batch.columns]
-            for cells in zip(*columns, strict=True):
-                number += 1
-                yield number, cells
+            yield batch
+            number += len(batch)
     except problems as reason:
-        raise _unreadable(f"after row {number} the file", reason, file) from None
+        yield _unreadable(f"after row {number} the file", reason, file)
 
 
 def _unreadable(what: str, reason: Exception, file: str) -> RulecError:
@@ -88,7 +91,7 @@ def write_parquet(
 
     Each is ``bool``, ``int``, ``float`` or ``str``. Raises RulecError R0706 without pyarrow.
     """
-    pyarrow, parquet = _pyarrow(file)
+    pyarrow, parquet = arrow(file)
     kinds = {
         bool: pyarrow.bool_(),
         int: pyarrow.int64(),
@@ -104,17 +107,3 @@ def write_parquet(
                 for column, field in zip(zip(*chunk, strict=True), schema, strict=True)
             ]
             writer.write_batch(pyarrow.record_batch(arrays, schema=schema))
-
-
-def _pyarrow(file: str) -> tuple[Any, Any]:
-    try:
-        import pyarrow
-        from pyarrow import parquet
-    except ImportError:
-        message = "Parquet takes the package `pyarrow`, which is not installed"
-        raise _unavailable(message, file, "`pip install 'rulec[parquet]'`") from None
-    return pyarrow, parquet
-
-
-def _unavailable(message: str, file: str, help_text: str) -> RulecError:
-    return RulecError(Diagnostic("R0706", message, Place(file), help=help_text))

@@ -1,0 +1,89 @@
+"""Recorded drives, judged: each vehicle as ego in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rulec.automata.compiled import CompiledRulebook
+from rulec.drives.extract import Drive, NoDrive
+from rulec.drives.wanted import Wanted, wanted_drives
+from rulec.runtime.batch.verifying import judge_chunk
+from rulec.runtime.numbers import exact
+from rulec.runtime.terms import names_in
+from rulec.runtime.verdict import NotJudged, Verdict
+from rulec.runtime.verify import RulebookFor
+from rulec.scenario.recorded.recording import Recording
+
+MOST_STATES = 1 << 13
+"""Drives with so many states together are judged together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A drive and what the rulebook says of it."""
+
+    drive: Drive
+    answer: Verdict | NotJudged
+
+
+class JudgedRecording:
+    """A recording's drives before a rulebook; they are worked out when they are asked for.
+
+    Raises:
+        RulecError: R0407 if the rulebook has bounds that are no multiples of the recording's step,
+            R0507 if it was compiled for another step, R0612 for a vehicle that is not there.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        rulebook: CompiledRulebook | RulebookFor,
+        wanted: Wanted,
+        file: str,
+    ) -> None:
+        step = exact(recording.step_s)
+        self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
+        rules = self.rules
+        self._drives = wanted_drives(
+            recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
+        )
+        self.recording = self._drives.recording
+        self.mirrored = self._drives.mirrored
+        self.egos = self._drives.egos
+
+    def answers(self) -> Iterator[Judged | NoDrive]:
+        """What each vehicle did, in the order of the file."""
+        waiting: list[Drive] = []
+        for ego in self.egos:
+            for one in self._drives.of(ego):
+                if isinstance(one, NoDrive):
+                    yield one
+                else:
+                    waiting.append(one)
+            if sum(len(one.trace.states) for one in waiting) >= MOST_STATES:
+                yield from self._judged(waiting)
+                waiting = []
+        yield from self._judged(waiting)
+
+    def _judged(self, drives: list[Drive]) -> Iterator[Judged]:
+        answers = judge_chunk([one.trace for one in drives], self.rules)
+        for drive, answer in zip(drives, answers, strict=True):
+            yield Judged(drive, answer)
+
+    def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
+        """For every rule what it reads beyond these words, so that it has its default all along.
+
+        In the order of the vocabulary.
+        """
+        declared = self.rules.vocabulary.declarations
+        found = {}
+        for rule in self.rules.rules:
+            read = set(names_in(rule.formula))
+            found[rule.name] = tuple(x for x in declared if x in read and x not in words)
+        return found
+
+
+def _read_by(rules: CompiledRulebook) -> frozenset[str]:
+    formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.facts]
+    return frozenset(name for formula in formulas for name in names_in(formula))

@@ -1,0 +1,68 @@
+"""A recording as a mirror shows it, so that traffic keeps to the other side."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rulec.scenario.recorded.recording import (
+    Lamp,
+    Lanelet,
+    Participant,
+    Points,
+    Problem,
+    Recording,
+    Side,
+    State,
+)
+
+_LAMPS: dict[Lamp, Lamp] = {
+    "left_indicator": "right_indicator",
+    "right_indicator": "left_indicator",
+}
+_OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
+
+
+def mirrored(recording: Recording) -> Recording:
+    """With ``y`` turned round, and left and right of everything exchanged. Its own inverse."""
+    return replace(
+        recording,
+        lanelets={number: _lanelet(one) for number, one in recording.lanelets.items()},
+        participants=tuple(_participant(one) for one in recording.participants),
+        problems=tuple(_problem(one) for one in recording.problems),
+        side=_OTHER[recording.side],
+    )
+
+
+def _points(points: Points) -> Points:
+    return points * (1.0, -1.0)
+
+
+def _lanelet(lanelet: Lanelet) -> Lanelet:
+    return replace(
+        lanelet,
+        left=_points(lanelet.right),
+        right=_points(lanelet.left),
+        centre=_points(lanelet.centre),
+        left_of=lanelet.right_of,
+        right_of=lanelet.left_of,
+    )
+
+
+def _participant(one: Participant) -> Participant:
+    return replace(
+        one,
+        states={step: _state(state) for step, state in one.states.items()},
+        outlines={step: _points(outline) for step, outline in one.outlines.items()},
+        lamps={
+            step: frozenset(_LAMPS.get(lamp, lamp) for lamp in lit)
+            for step, lit in one.lamps.items()
+        },
+    )
+
+
+def _problem(problem: Problem) -> Problem:
+    return replace(problem, start=_state(problem.start), goals=_points(problem.goals))
+
+
+def _state(state: State) -> State:
+    return replace(state, y=-state.y, heading=-state.heading)

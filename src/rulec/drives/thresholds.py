@@ -1,0 +1,69 @@
+"""The numbers that decide what recorded traffic is called. ``docs/recordings.md`` explains them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Thresholds:
+    """Every number that the way from positions to words depends on; the unit ends the name.
+
+    Speeds and accelerations are taken from positions, over ``smoothing_s`` around each moment:
+    positions are noisy, and what some files say of speeds is another matter than where their
+    vehicles are. Below ``standing_kmh`` a vehicle stands.
+    """
+
+    smoothing_s: float = 1.0
+    standing_kmh: float = 1.0
+    accelerating_mps2: float = 0.5
+    braking_hard_mps2: float = 4.0
+    stops_at_once_kmh: float = 20.0
+    """So slow a vehicle can stop at once."""
+    touching_m: float = 0.3
+    """Who reaches into a lane by less is not in it: positions are no better than that."""
+    changed_m: float = 0.3
+    """A lane has been changed when the middle of the vehicle is so far beyond the mark."""
+    at_edge_m: float = 0.4
+    """A vehicle whose side is nearer to its lane's bound keeps at the edge."""
+    near_m: float = 150.0
+    """Who is farther away along the road is not there."""
+    beside_road_m: float = 8.0
+    """Who walks or comes towards ego beside its lanes is there up to this distance from them."""
+    away_s: float = 1.0
+    """Who is away for no longer was there all the time."""
+    reaction_s: float = 1.0
+    braking_mps2: float = 8.0
+    """As hard as a vehicle brakes that has to; everybody does alike."""
+    disturbing_mps2: float = 2.0
+    """Who has to brake harder for one who changes lanes is in its way."""
+    catching_up_s: float = 10.0
+    """Ego is overtaking when it will be beside a slower vehicle so soon."""
+    passed_s: float = 2.0
+    """And until it is so far ahead of it, by time."""
+    congested_kmh: float = 30.0
+    walking_pace_kmh: float = 10.0
+    slow_queue_kmh: float = 60.0
+    """A queue on the lane beside is slow below this speed."""
+    fewest: int = 3
+    """So many vehicles make a queue, and so many can be congested."""
+    flow_reach_m: float = 100.0
+    """Traffic is what there is up to this distance ahead and behind."""
+    queue_headway_s: float = 2.0
+    queue_gap_m: float = 20.0
+    """In a queue neighbours are no farther apart than either of these two."""
+    zone_m: float = 5.0
+    """Immediately before a crossing or a junction is so near."""
+    kerb_m: float = 2.0
+    """Who stands at the kerb is no farther from the lanes."""
+    about_to_s: float = 2.0
+    """Who walks is about to cross if it will be on the crossing so soon."""
+    entering_s: float = 0.5
+    """And it sets foot on it if it will be there so soon."""
+    turned_deg: float = 45.0
+    """Ego turns at a junction if its road does by more than this."""
+    light_reach_m: float = 50.0
+    """A light farther ahead is not ego's yet."""
+
+
+USUAL = Thresholds()

@@ -1,0 +1,86 @@
+"""A machine runs over many traces, several steps of all of them in one look-up.
+
+What a trace reads in some steps is one number: the letters are its digits. A table says, for every
+state and every such number, where that leads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.runtime.batch.steps import Step
+from rulec.trace.columns import Array
+
+_MOST_ENTRIES = 1 << 16
+"""As many as two bytes can name."""
+
+_WORTH = 4
+"""So many look-ups pay for one entry of a table."""
+
+
+def pays(n_states: int, n_letters: int, n_traces: int) -> bool:
+    """Are two steps in one look-up cheaper than two look-ups, however the traces end?"""
+    return n_states * n_letters**2 <= _most_entries(n_traces)
+
+
+def _most_entries(n_traces: int) -> int:
+    return min(_MOST_ENTRIES, n_traces // _WORTH)
+
+
+def run_leaping(
+    following: Sequence[Sequence[int]],
+    verdicts: Sequence[Sequence[int]],
+    letters: Array,
+    steps: Sequence[Step],
+) -> NDArray[np.uint8]:
+    """The verdicts on all traces: ``verdicts[state][letter]`` for the last letter of each.
+
+    ``letters`` is the column of all letters. Runs start in state 0.
+    """
+    onward = np.array(following, dtype=np.uint16)
+    last = np.array(verdicts, dtype=np.uint8)
+    n_states, n_letters = onward.shape
+    found = np.empty(steps[0].now, dtype=np.uint8)
+    leaps = list(_leaps(steps, n_states, n_letters, _most_entries(steps[0].now)))
+    state: Array | None = None
+    for place, leap in enumerate(leaps):
+        entry = letters[leap[0].part].astype(np.uint16)
+        for step in leap[1:]:
+            entry *= np.uint16(n_letters)
+            entry += letters[step.part]
+        if state is not None:
+            entry += state
+        # A run has been in one state only before its first step.
+        before = onward[: 1 if state is None else n_states]
+        for _ in leap[2:]:
+            before = onward[before].reshape(len(before), -1)
+        end = leap[-1]
+        if end.onward < end.now:
+            found[end.onward : end.now] = _table(last, before, leap).take(entry[end.onward :])
+        if end.onward:
+            scale = np.uint16(n_letters ** len(leaps[place + 1]))
+            state = (_table(onward, before, leap) * scale).take(entry[: end.onward])
+    return found
+
+
+def _table(one: Array, before: Array, leap: Sequence[Step]) -> Array:
+    """What ``one`` says of the last letter, for all that came before it."""
+    table = one[: len(before)] if len(leap) == 1 else one[before]
+    return table.ravel()
+
+
+def _leaps(
+    steps: Sequence[Step], n_states: int, n_letters: int, most: int
+) -> Iterator[Sequence[Step]]:
+    """Steps that are taken together: where a trace ends, they do."""
+    start, n_entries = 0, n_letters
+    for place in range(1, len(steps)):
+        n_entries *= n_letters
+        before = steps[place - 1]
+        if n_entries > most or before.onward < before.now:
+            yield steps[start:place]
+            start, n_entries = place, n_states * n_letters
+    yield steps[start:]

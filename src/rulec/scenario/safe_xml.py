@@ -1,0 +1,195 @@
+"""XML read as a stream, so that no file can do harm: whatever its size, it takes little memory.
+
+Documents that define entities are refused at the definition, before anything is expanded or
+fetched. Packed files (gzip) are unpacked on the way, up to the same limit.
+"""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, cast
+from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.files import opened
+
+LONGEST_TAG = 1_000_000
+"""Bytes; expat keeps a tag in memory until it ends."""
+
+_BLOCK = 1 << 16
+_PACKED = b"\x1f\x8b"
+_SUFFIXES = (".xml", ".xml.gz")
+
+
+@dataclass(frozen=True, slots=True)
+class XmlFormat:
+    """A format of XML files: what its files are called, with an article, and their root element."""
+
+    words: str
+    root: str
+    help: str
+    largest_bytes: int = 200_000_000
+
+    def refused(
+        self,
+        path: Path,
+        why: str,
+        line: int | None = None,
+        *,
+        expected: str = "",
+        help_text: str = "",
+    ) -> RulecError:
+        """Why a file is none of these (R0610), and on which line that shows, if on one."""
+        place = Place(str(path)) if line is None else Place(str(path), line)
+        message = f"the file cannot be read as {self.words}: {why}"
+        found = Diagnostic("R0610", message, place, expected=expected, help=help_text or self.help)
+        return RulecError(found)
+
+
+Begin = Callable[[str, Mapping[str, str], XMLParserType], None]
+"""Called where an element begins, the root included, with its name and its attributes."""
+
+
+def scan(
+    path: Path,
+    form: XmlFormat,
+    begin: Begin,
+    *,
+    end: Callable[[str], None] | None = None,
+    comment: Callable[[str], None] | None = None,
+) -> None:
+    """Go through a file of a format once, calling where elements begin and end, and for comments.
+
+    Raises:
+        RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
+    """
+    parser = ParserCreate()
+    rooted = False
+
+    def element(name: str, attributes: dict[str, str]) -> None:
+        nonlocal rooted
+        if not rooted and name != form.root:
+            why = f"it is XML, but of `{short(name)}`, not of `{form.root}`"
+            raise form.refused(path, why, parser.CurrentLineNumber)
+        rooted = True
+        begin(name, attributes, parser)
+
+    def definition(*_: object) -> None:
+        why = "it has a `DOCTYPE`, which this format has not, and which could define anything"
+        way_out = "take the `<!DOCTYPE …>` out"
+        raise form.refused(path, why, parser.CurrentLineNumber, help_text=way_out)
+
+    parser.StartElementHandler = element
+    parser.StartDoctypeDeclHandler = definition
+    if end is not None:
+        parser.EndElementHandler = end
+    if comment is not None:
+        parser.CommentHandler = comment
+    size = 0
+    try:
+        for block in _blocks(path, form):
+            size += len(block)
+            if size > form.largest_bytes:
+                why = f"it is too large: at most {form.largest_bytes:,} bytes are read"
+                raise form.refused(path, why)
+            _parse(parser, block, path, form)
+            if size - max(parser.CurrentByteIndex, 0) > LONGEST_TAG + _BLOCK:
+                why = f"it has a tag of more than {LONGEST_TAG:,} bytes"
+                raise form.refused(path, why, parser.CurrentLineNumber)
+        if not size:
+            raise form.refused(path, "it is empty")
+        parser.Parse(b"", True)
+    except ExpatError as problem:
+        why = f"it is not well-formed XML: {errors.messages[problem.code]}"
+        raise form.refused(path, why, problem.lineno) from None
+
+
+def root_of(path: Path, form: XmlFormat) -> str:
+    """The name of a file's root element; ``form`` is what to call a file that has none.
+
+    Raises:
+        RulecError: R0610 for a file that is no XML, R0701 for one that cannot be read.
+    """
+    parser = ParserCreate()
+    found: list[str] = []
+    parser.StartElementHandler = lambda name, _: found.append(name)
+    size = 0
+    try:
+        for block in _blocks(path, form):
+            size += len(block)
+            _parse(parser, block, path, form)
+            if found:
+                break
+            if size > LONGEST_TAG:
+                raise form.refused(path, f"nothing begins in its first {LONGEST_TAG:,} bytes")
+        if not size:
+            raise form.refused(path, "it is empty")
+        if not found:
+            parser.Parse(b"", True)
+    except ExpatError as problem:
+        if not found:
+            why = f"it is not well-formed XML: {errors.messages[problem.code]}"
+            raise form.refused(path, why, problem.lineno) from None
+    return found[0]
+
+
+def is_xml(path: Path) -> bool:
+    """Is a file, by its name or its first bytes, XML, packed or not?"""
+    if path.name.lower().endswith(_SUFFIXES):
+        return True
+    try:
+        if not path.is_file():
+            return False  # what comes through a pipe can be read only once
+        with path.open("rb") as stream, _unpacked(stream) as content:
+            start = content.read(64)
+    except (OSError, ValueError, EOFError, zlib.error):
+        return False
+    text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
+    return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
+
+
+def is_packed(path: Path) -> bool:
+    """Is it a gzip file? Raises RulecError R0701."""
+    with opened(path) as stream:
+        return stream.read(len(_PACKED)) == _PACKED
+
+
+def short(text: str) -> str:
+    """What a file says, for a message: not too long, and nothing that a terminal acts upon."""
+    return "".join(c if c.isprintable() else "?" for c in text[:40])
+
+
+def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:
+    """The bytes of a file, unpacked."""
+    with opened(path) as raw, _unpacked(raw) as stream:
+        try:
+            while block := stream.read(_BLOCK):
+                yield block
+        except EOFError:
+            raise form.refused(path, "it is packed, and ends too soon") from None
+        except (gzip.BadGzipFile, zlib.error):
+            raise form.refused(path, "it is packed, and damaged") from None
+
+
+@contextmanager
+def _unpacked(raw: IO[bytes]) -> Iterator[IO[bytes]]:
+    start = raw.read(len(_PACKED)) if raw.seekable() else b""
+    if raw.seekable():
+        raw.seek(0)
+    if start != _PACKED:
+        yield raw
+        return
+    with gzip.open(raw, "rb") as stream:
+        yield cast("IO[bytes]", stream)
+
+
+def _parse(parser: XMLParserType, block: bytes, path: Path, form: XmlFormat) -> None:
+    try:
+        parser.Parse(block, False)
+    except (LookupError, ValueError):
+        raise form.refused(path, "its encoding is none that is known here") from None

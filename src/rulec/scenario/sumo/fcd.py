@@ -1,0 +1,149 @@
+"""SUMO's floating-car data: who was where at which moment.
+
+A vehicle's ``x`` and ``y`` are the middle of its front bumper; its ``angle`` is a compass's:
+degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and left out.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.parsers.expat import XMLParserType
+
+from rulec.diagnostics import RulecError
+from rulec.scenario.recorded.recording import FARTHEST_M
+from rulec.scenario.safe_xml import XmlFormat, scan, short
+from rulec.scenario.sumo.attributes import Element
+from rulec.scenario.sumo.beside import Head, head_of
+
+FCD = XmlFormat(
+    "SUMO's floating-car data",
+    "fcd-export",
+    "SUMO writes them with the option --fcd-output",
+    2_000_000_000,
+)
+BODIES = frozenset({"vehicle", "person", "container"})
+LONGEST_ID = 200
+_MICROSECONDS = 1_000_000
+
+
+@dataclass(slots=True)
+class Course:
+    """A participant, as its rows come: the number of the moment, x, y, angle, speed."""
+
+    element: str
+    type: str
+    moments: array[int] = field(default_factory=lambda: array("q"))
+    rows: array[float] = field(default_factory=lambda: array("d"))
+    accelerations: array[float] = field(default_factory=lambda: array("d"))
+    lamps: dict[int, int] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class FloatingCarData:
+    """``moments`` are times in microseconds, ``on`` the lanes and edges that are named."""
+
+    head: Head = field(default_factory=Head)
+    moments: list[int] = field(default_factory=list)
+    courses: dict[str, Course] = field(default_factory=dict)
+    on: dict[str, tuple[str, int]] = field(default_factory=dict)
+
+
+def read_fcd(path: Path) -> FloatingCarData:
+    """The file's content.
+
+    Raises:
+        RulecError: R0610 if it is none, R0701 if it cannot be read.
+    """
+    data = FloatingCarData()
+    carriers = 0
+
+    def comment(text: str) -> None:
+        if not data.moments and "<" in text:
+            data.head = head_of(text)
+
+    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
+        nonlocal carriers
+        if name in BODIES:
+            carriers += 1
+            if not data.moments:
+                element = Element(name, attributes, parser, path, FCD)
+                raise element.wrong(f"a `{name}` is in no `timestep`")
+            if carriers == 1 and not attributes.get("vehicle"):
+                _add(data, name, attributes, parser, path)
+        elif name == "timestep":
+            moment = _moment(Element(name, attributes, parser, path, FCD))
+            if data.moments and moment <= data.moments[-1]:
+                element = Element(name, attributes, parser, path, FCD)
+                raise element.wrong("its time steps are not in ascending order")
+            data.moments.append(moment)
+
+    def end(name: str) -> None:
+        nonlocal carriers
+        carriers -= name in BODIES
+
+    scan(path, FCD, begin, end=end, comment=comment)
+    return data
+
+
+def _moment(element: Element) -> int:
+    return round(element.number("time") * _MICROSECONDS)
+
+
+def _add(
+    data: FloatingCarData,
+    name: str,
+    attributes: Mapping[str, str],
+    parser: XMLParserType,
+    path: Path,
+) -> None:
+    try:
+        row = (
+            float(attributes["x"]),
+            float(attributes["y"]),
+            float(attributes["angle"]),
+            float(attributes["speed"]),
+        )
+        acceleration = float(attributes.get("acceleration", "nan"))
+        key = attributes["id"]
+    except (KeyError, ValueError):
+        raise _wrong(name, attributes, parser, path) from None
+    # NaN is not below anything
+    if not (max(map(abs, row)) < FARTHEST_M and sum(row) == sum(row)):
+        raise _wrong(name, attributes, parser, path)
+    course = data.courses.get(key)
+    if course is not None and course.element != name:
+        # SUMO lets a person be called like a vehicle; here ids are one for all
+        key = f"{name} {key}"
+        course = data.courses.get(key)
+    moment = len(data.moments) - 1
+    if course is None:
+        if not 0 < len(key) <= LONGEST_ID:
+            element = Element(name, attributes, parser, path, FCD)
+            raise element.wrong(f"the id of a `{name}` is empty, or longer than {LONGEST_ID}")
+        course = data.courses[key] = Course(name, attributes.get("type", ""))
+    elif course.moments[-1] == moment:
+        element = Element(name, attributes, parser, path, FCD)
+        raise element.wrong(f"`{short(key)}` is twice in one time step")
+    course.moments.append(moment)
+    course.rows.extend(row)
+    course.accelerations.append(acceleration if abs(acceleration) < FARTHEST_M else float("nan"))
+    if "signals" in attributes:
+        number = Element(name, attributes, parser, path, FCD).number("signals")
+        course.lamps[moment] = int(number)
+    place = attributes.get("lane") or attributes.get("edge")
+    if place and place not in data.on:
+        data.on[place] = ("lane" if attributes.get("lane") else "edge", parser.CurrentLineNumber)
+
+
+def _wrong(
+    name: str, attributes: Mapping[str, str], parser: XMLParserType, path: Path
+) -> RulecError:
+    element = Element(name, attributes, parser, path, FCD)
+    element.text("id")
+    for key in ("x", "y", "angle", "speed"):
+        element.number(key)
+    element.number("acceleration", 0.0)
+    raise AssertionError("one of these is not a number")

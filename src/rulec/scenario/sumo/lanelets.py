@@ -1,0 +1,188 @@
+"""The lanes of a SUMO net as lanelets.
+
+A lane's border lies half its width beside its middle. Within a junction the limit of the road that
+leads there goes on: what the net says there is how fast one gets around the bend.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from rulec.scenario.recorded.recording import Lanelet, Points
+from rulec.scenario.sumo.borders import beside, without_repeats
+from rulec.scenario.sumo.lights import lights_of
+from rulec.scenario.sumo.net import Connection, Lane, Net
+
+_WALKERS = {"pedestrian", "wheelchair"}
+_RIDERS = {"bicycle", "scooter"}
+_BUSES = {"bus", "coach", "taxi"}
+_ALL = frozenset(
+    {"passenger", "private", "truck", "trailer", "delivery", "motorcycle", "moped", "hov"}
+    | {"evehicle", "emergency", "authority", "army", "vip", "custom1", "custom2"}
+    | {"tram", "rail", "rail_urban", "rail_electric", "rail_fast", "subway", "ship"}
+    | _WALKERS
+    | _RIDERS
+    | _BUSES
+)
+_KMH = 3.6
+_ROUNDED_KMH = 0.02
+"""Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
+
+_STOPS = {"s", "w"}
+_GIVES_WAY = "m"
+_ARMS = 3
+
+
+def lanelets_of(net: Net, step_s: float) -> dict[str, Lanelet]:
+    """Lane id -> lanelet, of all lanes that are longer than nothing."""
+    shapes = {lane.id: _shape(lane) for lane in net.lanes.values()}
+    there = {key for key, shape in shapes.items() if len(shape) > 1}
+    after = _successors(net.connections, there, set(net.lanes))
+    before: dict[str, list[str]] = defaultdict(list)
+    for start, ends in after.items():
+        for end in ends:
+            before[end].append(start)
+    limits = _limits(net, before)
+    junctions = _junctions(net)
+    lights = lights_of(net, step_s)
+    links: dict[str, list[Connection]] = defaultdict(list)
+    entries: dict[str, list[Connection]] = defaultdict(list)
+    for one in net.connections:
+        links[one.start].append(one)
+        entries[one.end].append(one)
+    found = {}
+    for lane in net.lanes.values():
+        if lane.id not in there:
+            continue
+        left, right, centre = _lines(lane, shapes[lane.id])
+        towards_left = 1 if net.side == "right" else -1
+        found[lane.id] = Lanelet(
+            lane.id,
+            left,
+            right,
+            centre,
+            tuple(after[lane.id]),
+            tuple(before[lane.id]),
+            _neighbour(lane, towards_left, there),
+            _neighbour(lane, -towards_left, there),
+            frozenset(_types(lane, junctions, entries[lane.id])),
+            frozenset({"STOP"} if any(x.state in _STOPS for x in links[lane.id]) else ()),
+            limits.get(lane.id),
+            tuple(lights.get(lane.id, ())),
+        )
+    return found
+
+
+def _shape(lane: Lane) -> Points:
+    return without_repeats(lane.shape)
+
+
+def _lines(lane: Lane, shape: Points) -> tuple[Points, Points, Points]:
+    """Left and right border, and the middle."""
+    if lane.edge.function == "walkingarea" and len(shape) > 3:
+        # The shape is an outline: one half of it is one side, the other half the other
+        half = len(shape) // 2
+        right, left = shape[:half], shape[half:][::-1]
+        count = max(len(right), len(left))
+        right, left = _resampled(right, count), _resampled(left, count)
+        return left, right, (left + right) / 2
+    return beside(shape, lane.width / 2), beside(shape, -lane.width / 2), shape
+
+
+def _resampled(points: Points, count: int) -> Points:
+    at = np.linspace(0, len(points) - 1, count)
+    every = np.arange(len(points))
+    return np.stack([np.interp(at, every, points[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _successors(
+    connections: list[Connection], there: set[str], known: set[str]
+) -> dict[str, list[str]]:
+    """Lane -> next lanes; a lane that is shorter than anything is passed over."""
+    direct: dict[str, list[str]] = defaultdict(list)
+    for one in connections:
+        direct[one.start].append(one.via if one.via in known else one.end)
+
+    def reached(start: str, passed: tuple[str, ...] = ()) -> Iterator[str]:
+        for end in direct.get(start, ()):
+            if end in there:
+                yield end
+            elif end not in passed:
+                yield from reached(end, (*passed, end))
+
+    return defaultdict(list, {key: list(dict.fromkeys(reached(key))) for key in there})
+
+
+def _neighbour(lane: Lane, step: int, there: set[str]) -> str | None:
+    if lane.edge.function in ("crossing", "walkingarea"):
+        return None
+    beside_it = f"{lane.edge.id}_{lane.index + step}"
+    return beside_it if beside_it in there else None
+
+
+def _limits(net: Net, before: Mapping[str, list[str]]) -> dict[str, float]:
+    """Lane -> legal limit (m/s), for those on which vehicles drive."""
+    limits = {}
+    for lane in net.lanes.values():
+        origin, seen = lane, {lane.id}
+        while origin.edge.function == "internal":
+            earlier = next((x for x in before.get(origin.id, ()) if x not in seen), None)
+            if earlier is None:
+                break
+            origin = net.lanes[earlier]
+            seen.add(earlier)
+        if origin.edge.function == "" and not _permitted(lane) <= _WALKERS:
+            limits[lane.id] = _unrounded(origin.speed)
+    return limits
+
+
+def _unrounded(limit_mps: float) -> float:
+    kmh = limit_mps * _KMH
+    return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
+
+
+def _junctions(net: Net) -> set[str]:
+    """The nodes at which roads from several directions meet, rather than one road going on."""
+    arms: dict[str, set[str]] = defaultdict(set)
+    for lane in net.lanes.values():
+        if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
+            arms[lane.edge.start].add(lane.edge.end)
+            arms[lane.edge.end].add(lane.edge.start)
+    return {node for node, others in arms.items() if len(others) >= _ARMS}
+
+
+def _types(lane: Lane, junctions: set[str], entries: list[Connection]) -> Iterator[str]:
+    """CommonRoad's words for the kind of lane."""
+    permitted = _permitted(lane)
+    if lane.edge.function == "crossing":
+        # Where walkers have to give way there is no crossing that gives them priority
+        waits = entries and all(x.state == _GIVES_WAY and not x.light for x in entries)
+        yield "sidewalk" if waits else "crosswalk"
+    elif lane.edge.function == "walkingarea" or (permitted and permitted <= _WALKERS):
+        yield "sidewalk"
+    elif not permitted & (_ALL - _WALKERS - {"ship"}) or not permitted - _rails():
+        yield "restricted_area"
+    elif permitted <= _WALKERS | _RIDERS:
+        yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
+    elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
+        yield "busLane"
+    if "motorway" in lane.edge.type:
+        yield "highway"
+    if lane.edge.function == "internal" and lane.edge.id[1:].rpartition("_")[0] in junctions:
+        yield "intersection"
+
+
+def _rails() -> frozenset[str]:
+    return frozenset(one for one in _ALL if one.startswith("rail")) | {"tram", "subway", "ship"}
+
+
+def _permitted(lane: Lane) -> frozenset[str]:
+    """The classes of road users that may be on the lane."""
+    if lane.allow is not None:
+        return _ALL if lane.allow == "all" else frozenset(lane.allow.split()) & _ALL
+    if lane.disallow is not None:
+        return frozenset() if lane.disallow == "all" else _ALL - frozenset(lane.disallow.split())
+    return _ALL

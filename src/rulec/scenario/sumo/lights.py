@@ -1,0 +1,60 @@
+"""Traffic lights of a SUMO net, as far as their programmes are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rulec.scenario.recorded.recording import Light
+from rulec.scenario.sumo.net import Net, Programme
+
+COLOURS: Mapping[str, str] = {
+    "r": "red",
+    "s": "red",
+    "u": "redYellow",
+    "y": "yellow",
+    "Y": "yellow",
+    "g": "green",
+    "G": "green",
+    "o": "inactive",
+    "O": "inactive",
+}
+"""SUMO's letters, and CommonRoad's words; ``s`` is red with an arrow that lets turn right."""
+
+
+def lights_of(net: Net, step_s: float) -> dict[str, list[Light]]:
+    """Lane -> the lights at its end, one for each way on that has its own.
+
+    A light that reacts to traffic, or has several programmes, has none that the net could tell.
+    """
+    found: dict[str, list[Light]] = {}
+    for one in net.connections:
+        programmes = net.programmes.get(one.light, [])
+        if len(programmes) != 1 or programmes[0] is None:
+            continue
+        light = _light(programmes[0], one.link, step_s)
+        known = found.setdefault(one.start, [])
+        if light is not None and light not in known:
+            known.append(light)
+    return found
+
+
+def unknown_lights(net: Net) -> list[str]:
+    """The lights whose programme is not known."""
+    return [name for name, known in net.programmes.items() if len(known) > 1 or None in known]
+
+
+def _light(programme: Programme, link: int, step_s: float) -> Light | None:
+    phases: list[tuple[str, int]] = []
+    ends, done = 0.0, 0
+    for duration, letters in programme.phases:
+        if not 0 <= link < len(letters):
+            return None
+        ends += duration
+        steps = round(ends / step_s) - done
+        done += steps
+        colour = COLOURS.get(letters[link], "inactive")
+        if phases and phases[-1][0] == colour:
+            phases[-1] = colour, phases[-1][1] + steps
+        elif steps:
+            phases.append((colour, steps))
+    return Light(round(programme.begin / step_s), tuple(phases)) if phases else None

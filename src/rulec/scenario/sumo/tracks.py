@@ -1,0 +1,94 @@
+"""From the rows of floating-car data to participants, on a grid of time steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.scenario.recorded.recording import Lamp, Participant
+from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
+from rulec.scenario.sumo.fcd import FCD, Course
+from rulec.scenario.sumo.vehicle_types import VehicleType
+
+_MICROSECONDS = 1_000_000
+_LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
+    (1, frozenset({"right_indicator"})),
+    (2, frozenset({"left_indicator"})),
+    (4, frozenset({"left_indicator", "right_indicator"})),
+    (8, frozenset({"brake_light"})),
+)
+"""The bits of SUMO's ``signals`` that others can see and that rules are about."""
+
+
+def time_step(path: Path, moments: list[int]) -> float:
+    """The time from one step to the next (s): the shortest between two moments of the file.
+
+    Moments may be missing, as when nobody was there; what lies between two steps may not be.
+
+    Raises:
+        RulecError: R0610 for moments that are not all on one grid from time 0 on.
+    """
+    if len(moments) < 2:
+        return moments[0] / _MICROSECONDS if moments and moments[0] else 1.0
+    step = min(after - before for before, after in pairwise(moments))
+    off = next((moment for moment in moments if moment % step), None)
+    if off is not None:
+        why = (
+            f"its times are uneven: {off / _MICROSECONDS:g} s is no multiple of "
+            f"{step / _MICROSECONDS:g} s, the shortest time from one to the next"
+        )
+        way_out = "have SUMO write every step, or one in so many (--device.fcd.period)"
+        raise FCD.refused(path, why, help_text=way_out)
+    return step / _MICROSECONDS
+
+
+def participants_of(
+    key: str, course: Course, kind: VehicleType, steps: NDArray[int64], step_s: float
+) -> Iterator[Participant]:
+    """A vehicle, person or container; who vanishes and comes back is another one then.
+
+    ``steps``: the time step of every moment of the file.
+    """
+    own = steps[np.array(course.moments, dtype=int64)]
+    rows = _centres(np.array(course.rows, dtype=float).reshape(-1, 4), kind.length)
+    rows = np.column_stack((rows, _accelerations(course, rows[:, 3], own, step_s)))
+    lamps = {int(steps[moment]): _lit(bits) for moment, bits in course.lamps.items()}
+    starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
+    for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
+        track = Track(own[start:end], rows[start:end], kind.length, kind.width)
+        name = key if number == 1 else f"{key}_{number}"
+        states = TrackStates(track)
+        own_lamps = _between(lamps, track)
+        yield Participant(name, kind.kind, False, states, TrackOutlines(track), own_lamps)
+
+
+def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
+    """From bumpers and compass angles to centres and headings."""
+    heading = np.pi / 2 - np.radians(rows[:, 2])
+    heading = (heading + np.pi) % (2 * np.pi) - np.pi
+    x = rows[:, 0] - length / 2 * np.cos(heading)
+    y = rows[:, 1] - length / 2 * np.sin(heading)
+    return np.column_stack((x, y, heading, rows[:, 3]))
+
+
+def _accelerations(
+    course: Course, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
+) -> NDArray[float64]:
+    """As the file says; where it does not, the change of speed since the step before."""
+    said = np.array(course.accelerations, dtype=float)
+    changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
+    return np.where(np.isnan(said), changes, said)
+
+
+def _lit(bits: int) -> frozenset[Lamp]:
+    return frozenset(lamp for bit, lamps in _LAMPS if bits & bit for lamp in lamps)
+
+
+def _between(lamps: Mapping[int, frozenset[Lamp]], track: Track) -> dict[int, frozenset[Lamp]]:
+    first, last = int(track.steps[0]), int(track.steps[-1])
+    return {step: lit for step, lit in lamps.items() if first <= step <= last}

@@ -1,0 +1,129 @@
+"""What SUMO's vehicle types are, and how large: as a file says, else by SUMO's defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from xml.parsers.expat import XMLParserType
+
+from rulec.scenario.safe_xml import XmlFormat, root_of, scan
+from rulec.scenario.sumo.attributes import Element
+
+DEMAND = XmlFormat(
+    "SUMO's vehicle types",
+    "routes",
+    "they are the elements `vType` of a file of routes, or of an additional file",
+)
+_ROOTS = ("routes", "additional")
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleType:
+    """A kind of road user, with CommonRoad's word for it, and its size."""
+
+    kind: str
+    length: float
+    width: float
+
+
+_CAR = VehicleType("car", 5.0, 1.8)
+_RAIL = VehicleType("train", 135.0, 2.84)
+
+CLASSES: Mapping[str, VehicleType] = MappingProxyType(
+    {
+        "passenger": _CAR,
+        "private": _CAR,
+        "hov": _CAR,
+        "vip": _CAR,
+        "army": _CAR,
+        "evehicle": _CAR,
+        "custom1": _CAR,
+        "custom2": _CAR,
+        "taxi": VehicleType("taxi", 5.0, 1.8),
+        "authority": VehicleType("priorityVehicle", 5.0, 1.8),
+        "emergency": VehicleType("priorityVehicle", 6.5, 2.16),
+        "delivery": VehicleType("truck", 6.5, 2.16),
+        "truck": VehicleType("truck", 7.1, 2.4),
+        "trailer": VehicleType("truck", 16.5, 2.55),
+        "bus": VehicleType("bus", 12.0, 2.5),
+        "coach": VehicleType("bus", 14.0, 2.6),
+        "motorcycle": VehicleType("motorcycle", 2.2, 0.9),
+        "moped": VehicleType("motorcycle", 2.1, 0.78),
+        "bicycle": VehicleType("bicycle", 1.6, 0.65),
+        "scooter": VehicleType("bicycle", 1.2, 0.5),
+        "pedestrian": VehicleType("pedestrian", 0.215, 0.478),
+        "wheelchair": VehicleType("pedestrian", 0.8, 0.8),
+        "tram": VehicleType("train", 22.0, 2.4),
+        "subway": VehicleType("train", 109.5, 3.0),
+        "rail_urban": VehicleType("train", 109.5, 3.0),
+        "rail": _RAIL,
+        "rail_electric": VehicleType("train", 200.0, 2.95),
+        "rail_fast": VehicleType("train", 200.0, 2.95),
+        "container": VehicleType("unknown", 6.1, 2.59),
+    }
+)
+"""SUMO's vehicle classes, with the sizes that it gives their vehicles unless a type says other."""
+
+_BUILT_IN = {
+    "DEFAULT_VEHTYPE": "passenger",
+    "DEFAULT_PEDTYPE": "pedestrian",
+    "DEFAULT_BIKETYPE": "bicycle",
+    "DEFAULT_TAXITYPE": "taxi",
+    "DEFAULT_RAILTYPE": "rail",
+    "DEFAULT_CONTAINERTYPE": "container",
+}
+_UNKNOWN = VehicleType("unknown", 5.0, 1.8)
+_USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "container"}
+
+
+def known_types(files: Iterable[Path]) -> dict[str, VehicleType]:
+    """The types that files describe; other files than those with types have none.
+
+    Raises:
+        RulecError: R0610 if a file is broken.
+    """
+    found: dict[str, VehicleType] = {}
+    for path in files:
+        root = root_of(path, DEMAND)
+        if root in _ROOTS:
+            form = XmlFormat(DEMAND.words, root, DEMAND.help)
+
+            def begin(
+                name: str,
+                attributes: Mapping[str, str],
+                parser: XMLParserType,
+                path: Path = path,
+                form: XmlFormat = form,
+            ) -> None:
+                if name == "vType":
+                    element = Element(name, attributes, parser, path, form)
+                    found[element.text("id")] = _described(element)
+
+            scan(path, form, begin)
+    return found
+
+
+def _described(element: Element) -> VehicleType:
+    usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
+    return VehicleType(
+        usual.kind,
+        element.positive("length", usual.length),
+        element.positive("width", usual.width),
+    )
+
+
+def type_called(
+    name: str, element: str, known: Mapping[str, VehicleType]
+) -> tuple[VehicleType, bool]:
+    """What a participant of this type is, and whether that is known rather than taken to be so.
+
+    ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
+    """
+    if name in known:
+        return known[name], True
+    usual = _BUILT_IN.get(name)
+    if usual is not None:
+        return CLASSES[usual], True
+    return CLASSES.get(name, CLASSES[_USUAL[element]]), False
