@@ -52,6 +52,10 @@ def test_what_the_file_leaves_open_is_said(files, capfd):
     scene = json.loads(capfd.readouterr().out)["scene"]
     assert scene["reference"] == "in_1"
     assert [said.partition("note        ")[2]] == scene["remarks"]
+    assert main(["verify", file, "-r", "gb", "--net", net]) == 0
+    assert said in capfd.readouterr().out
+    assert main(["verify", file, "-r", "gb", "--net", net, "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["remarks"] == scene["remarks"]
 
 
 def test_who_can_be_ego_is_said(files, capfd):
