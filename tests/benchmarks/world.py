@@ -67,7 +67,7 @@ def busiest(file: Path, rounds: int) -> Result:
     recording = read_recording(file)
     scene = to_scenario(recording, NEVER_CONGESTED, str(file))
     r1 = rulec.compile_rulebook(parse_rulebook(R1))
-    law = rulec.compile_rulebook("de", step_s=Fraction(1, 2))
+    law, finer_law = (rulec.compile_rulebook("de", step_s=Fraction(1, n)) for n in (2, 4))
     graph = cut(scene, 0.5)
     tasks = {
         "as a scenario along ego's road": lambda: to_scenario(recording, NEVER_CONGESTED, ""),
@@ -75,6 +75,7 @@ def busiest(file: Path, rounds: int) -> Result:
         "counts under R1 for every car": lambda: judged(graph, r1),
         "the same two, 0.25 s": partial(count, scene, r1, 0.25),
         "partition fine and all of de, 0.5 s": partial(count, scene, law, 0.5),
+        "partition fine and all of de, 0.25 s": partial(count, scene, finer_law, 0.25),
         "partition paper, extent body, 0.5 s": partial(cut, scene, 0.5, extent="body"),
     }
     wanted = dict(zip(list(tasks)[1:], (300, 100, 1000, 2000), strict=False))
