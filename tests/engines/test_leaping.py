@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.runtime.batch.joint import Joint
-from rulec.runtime.batch.leaping import pays, run_leaping
+from rulec.runtime.batch.leaping import _lengths, pays, run_leaping
 from rulec.runtime.batch.running import run
 from rulec.runtime.batch.steps import steps_of
 from rulec.trace.columns import layout_of, smallest_unsigned
@@ -58,6 +58,16 @@ def test_verdicts_are_those_of_the_words(n_states, n_letters, n_traces, longest,
     if pays(n_states, n_letters, n_traces):
         found = run_leaping(following, verdicts, letters, steps_of(layout, 0, None))
         assert found.tolist() == walked(following, verdicts, words)
+
+
+@given(st.integers(1, 40), st.integers(1, 9), st.integers(1, 9))
+def test_steps_are_parted_into_few_leaps(n_steps, first, later):
+    first = max(first, later)
+    found = list(_lengths(n_steps, first, later))
+    assert sum(found) == n_steps
+    assert 1 <= found[0] <= first
+    assert all(1 <= length <= later for length in found[1:])
+    assert n_steps > first + later * (len(found) - 2) or len(found) == 1
 
 
 @pytest.mark.parametrize("n_cells", [3, 16, 17, 250, 300, 60_000])

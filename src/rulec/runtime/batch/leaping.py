@@ -7,6 +7,7 @@ state and every such number, where that leads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from rulec.trace.columns import Array
 
 _MOST_ENTRIES = 1 << 16
 """As many as two bytes can name."""
+
+_LONGEST = 16
+"""Steps in one look-up, if there is but one letter."""
 
 _WORTH = 4
 """So many look-ups pay for one entry of a table."""
@@ -76,11 +80,31 @@ def _leaps(
     steps: Sequence[Step], n_states: int, n_letters: int, most: int
 ) -> Iterator[Sequence[Step]]:
     """Steps that are taken together: where a trace ends, they do."""
-    start, n_entries = 0, n_letters
-    for place in range(1, len(steps)):
-        n_entries *= n_letters
-        before = steps[place - 1]
-        if n_entries > most or before.onward < before.now:
-            yield steps[start:place]
-            start, n_entries = place, n_states * n_letters
-    yield steps[start:]
+    start, begins = 0, 1
+    for end, step in enumerate(steps, 1):
+        if step.onward < step.now:
+            for length in _lengths(
+                end - start, _most(most // begins, n_letters), _most(most // n_states, n_letters)
+            ):
+                yield steps[start : start + length]
+                start += length
+            begins = n_states
+
+
+def _most(n_entries: int, n_letters: int) -> int:
+    """How many letters a number has that has no more values than these."""
+    length = 1
+    while n_letters ** (length + 1) <= n_entries and length < _LONGEST:
+        length += 1
+    return length
+
+
+def _lengths(n_steps: int, first: int, later: int) -> Iterator[int]:
+    """As few parts of so many steps as there can be, much alike, as that makes small tables.
+
+    The first part has no more than ``first`` steps, no other more than ``later``.
+    """
+    n_parts = 1 + -(-max(n_steps - first, 0) // later)
+    later = min(later, -(-n_steps // n_parts))
+    yield n_steps - later * (n_parts - 1)
+    yield from repeat(later, n_parts - 1)
