@@ -27,7 +27,7 @@ def walked(following, verdicts, words):
 def random_machine(chance, n_states, n_letters):
     following = [[chance.randrange(n_states) for _ in range(n_letters)] for _ in range(n_states)]
     verdicts = [[chance.randrange(256) for _ in range(n_letters)] for _ in range(n_states)]
-    return following, verdicts
+    return tuple(map(tuple, following)), tuple(map(tuple, verdicts))
 
 
 def column_of(words, layout, dtype):
@@ -78,7 +78,7 @@ def test_every_way_to_run_gives_the_same(n_cells, n_states):
     n_letters = min(n_cells, 7)
     following, verdicts = random_machine(chance, n_states, n_letters)
     meant = tuple(chance.choices(range(n_letters), k=n_cells))
-    joint = Joint((0,), meant, tuple(map(tuple, following)), tuple(map(tuple, verdicts)))
+    joint = Joint((0,), meant, following, verdicts)
     words = words_of(chance, 1200, n_cells, 8, 8)
     layout = layout_of(list(map(len, words)))
     cells = column_of(words, layout, smallest_unsigned(n_cells))
