@@ -432,3 +432,68 @@ def test_classes(capsys, tmp_path):
     )
     _, out, _ = answer(capsys, "s2", "-r", str(source), "--classes", "0")
     assert "of these depending on how long one stays: `A` counts steps" in out
+
+
+KERB = """
+horizon_s = 2.0
+
+[road]
+s = [-20.0, 80.0]
+lanes = [-1.75, 1.75]
+
+[[road.surface]]
+type = "crossing"
+s = [20.0, 24.0]
+
+[ego]
+s = 0.0
+d = 0.0
+
+[[obstacle]]
+id = "child"
+type = "pedestrian"
+length = 0.5
+width = 0.5
+s = 22.0
+d = -2.5
+walking_direction = 90
+
+[[obstacle.prediction]]
+weight = 0.75
+
+[[obstacle.prediction]]
+weight = 0.25
+lateral_speed = 0.6
+"""
+
+
+def test_several_predictions(tmp_path, capsys):
+    """In 2 s a child may be on the crossing: whoever is in front of it then violates R3."""
+    file = tmp_path / "kerb.toml"
+    file.write_text(KERB, encoding="utf-8")
+    book = (str(file), "-r", "esterle2019", "--json")
+    status, out, _ = answer(capsys, *book, "--list", "99", "--worlds")
+    found = json.loads(out)
+    assert (status, found["likeliest"]) == (0, 0.75)
+    (world,) = found["worlds"]
+    assert (world["obstacle"], world["prediction"], world["weight"]) == ("child", 2, 0.25)
+    told = [one["chances"] for one in found["maneuvers"]]
+    assert len(told) == found["satisfying"] > 0
+    assert sum(one["clear"] == 1 for one in told) == world["traces"]
+    assert sum(one["every_hard_rule"] == 1 for one in told) == world["satisfying"]
+    assert {one["clear"] for one in told} == {0.75, 1.0}
+    in_front = [one for one in told if one["clear"] == 1 > one["every_hard_rule"]]
+    assert in_front
+    for one in in_front:
+        r3 = {"rule": "R3", "strength": "hard", "kept": 0.75}
+        assert {**r3, "bindings": [{"binding": {"p": "child"}, "kept": 0.75}]} in one["rules"]
+    (best, *_) = json.loads(answer(capsys, *book, "--rank", "1")[1])["ranked"]
+    assert best["chances"] == told[0]
+
+
+def test_without_predictions_nothing_is_said_of_them(capsys):
+    _, out, _ = answer(capsys, "s1", "-r", "esterle2019", "--json", "--list", "1", "--worlds")
+    found = json.loads(out)
+    assert found["worlds"] == []
+    assert "likeliest" not in found
+    assert "chances" not in found["maneuvers"][0]

@@ -93,6 +93,31 @@ def test_choices_are_refused_for_other_scenarios(capsys):
     assert "error[R0613]" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("constnat", "it has to be `recorded` or `constant`, or each of them once with a weight"),
+        ("recorded=1,recorded=0.5", "or each of them once with a weight"),
+        ("recorded=0.7,constant", "`constant` has to end in a weight above 0, such as `=0.7`"),
+        ("recorded=0,constant=1", "`recorded=0` has to end in a weight above 0"),
+        ("recorded=0.7,constant=0.2", "the weights have to add up to 1"),
+    ],
+)
+def test_predictions_that_cannot_be(answer, value, message):
+    status, out, err = answer("-r", "esterle2019", "--prediction", value)
+    assert (status, out) == (2, "")
+    assert message in err
+
+
+def test_who_is_known_at_one_moment_has_one_prediction(answer):
+    status, out, _ = answer(
+        "-r", "esterle2019", "--prediction", "recorded=0.7,constant=0.3", "--json", "--worlds"
+    )
+    found = json.loads(out)
+    assert (status, found["worlds"]) == (0, [])
+    assert "likeliest" not in found
+
+
 def test_the_step_gets_shorter_until_ego_has_room(tmp_path, capsys):
     """A car 3 m behind ego's centre at 10 m/s takes its place in 0.3 s: 0.5 s are too long."""
     file = tmp_path / "close.xml"

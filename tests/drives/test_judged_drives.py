@@ -6,7 +6,8 @@ import pytest
 from roads import recording, straight, vehicle
 
 from rulec.drives.extract import NoDrive
-from rulec.drives.judging import JudgedRecording, Wanted
+from rulec.drives.judging import JudgedRecording
+from rulec.drives.wanted import Wanted
 from rulec.runtime.verdict import Verdict
 from rulec.workflow import machines
 

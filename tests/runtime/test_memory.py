@@ -12,7 +12,8 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.monitor import Monitor
-from rulec.runtime.online.likeness import floors_of, key_like
+from rulec.runtime.online.floors import floors_of
+from rulec.runtime.online.outline import Outline
 
 RULES = compile_rulebook(
     parse_rulebook(
@@ -94,7 +95,7 @@ def answer(monitor, state, objects=BOTH):
 
 PLACES = {"place": {"a": "far", "b": "far"}}
 FOGGY, ICY, NOT_ICY = {**PLACES, "fog": True}, {**PLACES, "ice": True}, {**PLACES, "ice": False}
-SIZES = [(1, 1), (3, 1), (1 << 12, 16)]
+SIZES = [(1, 99, 1), (99, 3, 1), (2, 3, 2), (1 << 12, 1 << 9, 16)]
 
 
 def turning(wind):
@@ -107,22 +108,23 @@ def following(gap):
 
 @given(drives(), st.sampled_from(SIZES))
 # A number in place of a truth value.
-@example([ICY, ICY, ICY, {**PLACES, "ice": 1}], SIZES[2])
+@example([ICY, ICY, ICY, {**PLACES, "ice": 1}], SIZES[-1])
 # A number that only a fact looks at; numbers whose difference matters.
-@example([turning(5), turning(5), turning(5), turning(7)], SIZES[2])
-@example([following(3), following(3), following(3), following(4)], SIZES[2])
+@example([turning(5), turning(5), turning(5), turning(7)], SIZES[-1])
+@example([following(3), following(3), following(3), following(4)], SIZES[-1])
 # Keys of two outlines that look the same, in the standing where the outline changes and elsewhere.
-@example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, ICY], SIZES[2])
-@example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, FOGGY, ICY], SIZES[2])
-def test_with_and_without_a_memory_a_monitor_says_the_same(drive, size):
+@example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, ICY], SIZES[-1])
+@example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, FOGGY, ICY], SIZES[-1])
+def test_with_and_without_outlines_and_memory_a_monitor_says_the_same(drive, size):
     one, other = Monitor(RULES), Monitor(RULES)
     for state in drive:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr("rulec.runtime.online.memory.MOST", size[0])
-            patched.setattr("rulec.runtime.online.memory.REST", size[1])
+            for name, value in zip(("MOST", "TRIAL", "REST"), size, strict=True):
+                patched.setattr(f"rulec.runtime.online.memory.{name}", value)
             remembering = answer(one, state)
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr("rulec.runtime.online.memory.MOST", 0)
+            # As `verify` reads a state.
+            patched.setattr("rulec.runtime.online.scene.Scene._reading_of", lambda *_: None)
             assert remembering == answer(other, state)
 
 
@@ -159,7 +161,7 @@ def test_an_answer_cannot_be_changed():
 def is_remembered(monitor, state, monkeypatch):
     """Is a state taken without being read?"""
     with monkeypatch.context() as patched:
-        patched.delattr("rulec.runtime.online.scene.Scene.letters")
+        patched.delattr("rulec.runtime.online.scene.Scene.read")
         try:
             monitor.step(state, BOTH)
         except AttributeError:
@@ -192,16 +194,17 @@ def test_one_stranger_does_not_make_it_forget_but_two_do(monkeypatch):
 
 
 def test_where_nothing_comes_again_nothing_is_remembered_for_a_while(monkeypatch):
-    monkeypatch.setattr("rulec.runtime.online.memory.MOST", 16)
+    monkeypatch.setattr("rulec.runtime.online.memory.TRIAL", 16)
     monkeypatch.setattr("rulec.runtime.online.memory.REST", 2)
     monitor = Monitor(RULES)
     # In pairs of cars every gap matters.
-    for number in range(20):
-        monitor.step({**SLOW, "gap": {"a": 1, "b": number / 10}}, BOTH)
-    resting = [is_remembered(monitor, SLOW, monkeypatch) for _ in range(2)]
-    taken = [monitor.step(SLOW, BOTH).state for _ in range(40)]
-    assert (resting, taken) == ([False, False], list(range(20, 60)))
-    assert is_remembered(monitor, SLOW, monkeypatch)
+    states = [{**SLOW, "gap": {"a": 1, "b": number / 10}} for number in range(100)]
+    for state in states:
+        monitor.step(state, BOTH)
+    remembered = [n for n, one in enumerate(states) if is_remembered(monitor, one, monkeypatch)]
+    # With state 0 the cars have come; the outline of state 1 was new, which counts as one more.
+    # Where a monitor stands at the end of a rest is not known, nor what the next state does there.
+    assert remembered == [*range(1, 16), *range(16 + 32 + 1, 64), *range(64 + 32 + 1, 100)]
 
 
 PAIRS = {
@@ -211,7 +214,7 @@ PAIRS = {
     "between": {"a": {"b": 1.5}},
     "follows": {"a": {"b": False}},
 }
-KEY = key_like(PAIRS, RULES.vocabulary, floors_of(RULES))
+KEY = Outline([*PAIRS], BOTH, RULES.vocabulary, floors_of(RULES)).key
 
 
 @pytest.mark.parametrize(
@@ -224,12 +227,17 @@ KEY = key_like(PAIRS, RULES.vocabulary, floors_of(RULES))
         {"speed": inf},
         {"speed": 2**60},
         {"speed": "fast"},
-        {"place": {}},
-        {"place": {"b": "near"}},
-        {"place": {"a": "near", "b": "near"}},
+        {"speed": 2**53},
+        {"place": {"x": "near"}},
+        {"place": {"a": "near", "x": "near"}},
+        {"place": {"a": "near", "b": "near", "x": "near"}},
+        {"gap": {"a": 1}},
         {"place": defaultdict(lambda: "near", {"b": "near"})},
         {"place": [("a", "near")]},
         {"between": {"a": {"a": 1.5}}},
+        {"between": {"a": {"a": 1.5, "b": 1.5}}},
+        {"between": {"x": {"b": 1.5}}},
+        {"between": {"a": 1.5}},
         {"between": {"a": {"b": "1.5"}}},
         {"follows": {"a": {"b": 0}}},
         {"ice": False},
@@ -241,9 +249,14 @@ def test_what_is_not_of_the_same_outline_has_no_key(odd):
 
 
 def test_alike_is_what_no_rule_tells_apart():
-    assert KEY(PAIRS) == KEY({**PAIRS, "speed": 4.0}) == KEY(deepcopy(PAIRS))
+    same = [{}, {"speed": 4.0}, {"speed": -(10**9)}]
+    # Others than `a` follow whom they follow by default.
+    same += [{"follows": {}}, {"follows": {"b": {"a": False}}}, {"follows": {"a": {}}}]
+    assert {KEY({**deepcopy(PAIRS), **one}) for one in same} == {KEY(PAIRS)}
     for other in [
         {"place": {"a": "far"}},
+        {"place": {}},
+        {"place": {"a": "near", "b": "near"}},
         {"fog": False},
         {"speed": 4.5},
         {"between": {"a": {"b": 2.5}}},

@@ -1,8 +1,12 @@
 """Scenarios for property tests: anything on or near a short road, moving in any way."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 from hypothesis import strategies as st
 
 from rulec.scenario import (
+    Alternative,
     Box,
     ConstantAcceleration,
     Ego,
@@ -105,3 +109,24 @@ def scenarios(draw, most: int = 4):
         horizon_s=draw(st.sampled_from([1.0, 2.0])),
         step_s=draw(st.sampled_from([0.5, 1.0])),
     )
+
+
+@st.composite
+def with_predictions(draw, most: int = 3):
+    """A scenario whose obstacles may do one thing or another."""
+    scenario = draw(scenarios(most))
+    several = []
+    for one in scenario.obstacles:
+        motions_of = [one.motion, *draw(st.lists(motions() | footprints(), max_size=2))]
+        parts = [draw(st.integers(1, 5)) for _ in motions_of]
+        parts[0] = max(parts)
+        whole = Fraction(1, sum(parts))
+        (_, *rest) = zip(motions_of, parts, strict=True)
+        several.append(
+            replace(
+                one,
+                weight=parts[0] * whole,
+                alternatives=tuple(Alternative(part * whole, motion) for motion, part in rest),
+            )
+        )
+    return replace(scenario, obstacles=tuple(several))

@@ -103,6 +103,7 @@ def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
     return [CompletionItem(incomplete, type="file"), *fitting]
 
 
+_WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
 
 
@@ -219,6 +220,29 @@ def net_option(function: Decorated) -> Decorated:
     )(function)
 
 
+def _prediction(
+    context: click.Context, parameter: click.Parameter, value: str
+) -> str | dict[str, Fraction]:
+    """A kind of prediction, or several with their probabilities."""
+    from rulec.scenario.alternatives import adds_up
+    from rulec.scenario.recorded.choice import PREDICTIONS
+
+    known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
+    if value in PREDICTIONS:
+        return value
+    found: dict[str, Fraction] = {}
+    for part in value.split(","):
+        kind, _, weight = (one.strip() for one in part.partition("="))
+        if kind not in PREDICTIONS or kind in found:
+            raise click.BadParameter(f"it has to be {known}, or each of them once with a weight")
+        found[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
+        if not found[kind]:
+            raise click.BadParameter(f"`{part}` has to end in a weight above 0, such as `=0.7`")
+    if not adds_up(sum(found.values(), Fraction(0))):
+        raise click.BadParameter("the weights have to add up to 1")
+    return found
+
+
 def _scene_options(function: Decorated) -> Decorated:
     """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
     for decorate in (
@@ -242,10 +266,12 @@ def _scene_options(function: Decorated) -> Decorated:
         ),
         click.option(
             "--prediction",
-            type=click.Choice(["recorded", "constant"]),
+            callback=_prediction,
             default="recorded",
             show_default=True,
-            help="In a recorded scene: others move as recorded, or with constant acceleration.",
+            metavar="KIND",
+            help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
+            "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
         ),
         click.option(
             "--reference",

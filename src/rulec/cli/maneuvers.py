@@ -54,6 +54,12 @@ if TYPE_CHECKING:
     help="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
 )
 @click.option(
+    "--worlds",
+    is_flag=True,
+    help="Where obstacles have several predictions: count also what is left if one of them does "
+    "something less likely.",
+)
+@click.option(
     "--after",
     metavar="FILE",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -68,6 +74,7 @@ def command(
     n_ranked: int | None,
     why: bool,
     n_classes: int | None,
+    worlds: bool,
     after: Path | None,
     json_output: bool,
     at: str,
@@ -82,6 +89,8 @@ def command(
 
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
+    from rulec.maneuvers.chances import chances
+    from rulec.maneuvers.otherwise import otherwise
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
     from rulec.scenario import load_scenario
@@ -93,10 +102,17 @@ def command(
     past = None if after is None else read_past(after)
     scene = load_scenario(scenario, chosen(options))
     found = find_maneuvers(scene, rules, after=past, **options)
+    listed = None if n_listed is None else found.cheapest(n_listed)
+    best = None if found.satisfying or n_ranked is not None else _best(found)
+    ranked = None if n_ranked is None else found.ranked(n_ranked)
+    shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
+    uncertain = any(one.alternatives for one in scene.obstacles)
     answers = report.Answers(
-        listed=None if n_listed is None else found.cheapest(n_listed),
-        best=None if found.satisfying or n_ranked is not None else _best(found),
-        ranked=None if n_ranked is None else found.ranked(n_ranked),
+        listed=listed,
+        best=best,
+        ranked=ranked,
+        chances={one.nodes: chances(found, one) for one in shown} if uncertain else {},
+        worlds=otherwise(found) if worlds else None,
         prunings=found.prunings() if why else None,
         classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
     )

@@ -10,12 +10,12 @@ import click
 from rulec.cli.arguments import Decorated
 
 if TYPE_CHECKING:
-    from rulec.drives.judging import Wanted
+    from rulec.drives.wanted import Wanted
     from rulec.vocabulary import Vocabulary
 
 
 def drives_options(function: Decorated) -> Decorated:
-    """What can be chosen about the drives of a recording; ``wanted_drives`` takes them."""
+    """What can be chosen about the drives of a recording; ``wanted`` takes them."""
     for decorate in (
         click.option(
             "--as-recorded",
@@ -37,22 +37,25 @@ def drives_options(function: Decorated) -> Decorated:
             metavar="NAME=VALUE",
             help="In recorded traffic: what holds all along, such as built_up=true.",
         ),
-        click.option(
-            "--ego",
-            "egos",
-            multiple=True,
-            metavar="ID",
-            help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
-        ),
     ):
         function = decorate(function)
     return function
 
 
+def egos_option(function: Decorated) -> Decorated:
+    """``--ego``, any number of them."""
+    return click.option(
+        "--ego",
+        "egos",
+        multiple=True,
+        metavar="ID",
+        help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+    )(function)
+
+
 def given(options: Mapping[str, Any]) -> str | None:
     """One of the options that somebody has given, if any."""
     names = {
-        "egos": "--ego",
         "assumed": "--assume",
         "thresholds": "--threshold",
         "as_recorded": "--as-recorded",
@@ -60,20 +63,22 @@ def given(options: Mapping[str, Any]) -> str | None:
     return next((names[name] for name, value in options.items() if value), None)
 
 
-def wanted_drives(options: Mapping[str, Any], vocabulary: Vocabulary | None) -> Wanted:
+def wanted(
+    egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
+) -> Wanted:
     """What the options say.
 
     Raises:
         click.BadParameter: an assumption or a threshold is none.
     """
     from rulec.drives.choosing import assumptions, thresholds
-    from rulec.drives.judging import Wanted
+    from rulec.drives.wanted import Wanted
 
     if options["assumed"] and vocabulary is None:
         raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")
     try:
         return Wanted(
-            options["egos"],
+            egos,
             thresholds(options["thresholds"]),
             {} if vocabulary is None else assumptions(options["assumed"], vocabulary),
             options["as_recorded"],

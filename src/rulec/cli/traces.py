@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rulec.cli.arguments import chosen, complete_rulebooks, graph_options, traces_format_option
+from rulec.cli.recorded_arguments import drives_options, given, wanted
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -42,19 +43,37 @@ MOST_TRACES = 10_000_000
     metavar="N",
     help=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
 )
+@click.option(
+    "--recorded",
+    is_flag=True,
+    help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
+    "what ego could do.",
+)
 @traces_format_option
+@drives_options
 def command(
     scenario: str,
     rulebook: str | None,
     output: Path,
     limit: int | None,
+    recorded: bool,
     form: Format | None,
+    thresholds: tuple[str, ...],
+    assumed: tuple[str, ...],
+    as_recorded: bool,
     **options: Any,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 
-    `rulec verify` reads the file. It appears whole or not at all.
+    With --recorded, what the vehicles of recorded traffic did. `rulec verify` reads the file. It
+    appears whole or not at all.
     """
+    about = {"thresholds": thresholds, "assumed": assumed, "as_recorded": as_recorded}
+    if recorded:
+        _write_drives(Path(scenario), rulebook, output, limit, form, options, about)
+        return
+    if option := given(about):
+        raise click.UsageError(f"{option} is for drives: add --recorded.")
     from rulec.files import written_whole
     from rulec.report.console import print_diagnostics, print_result, progress
     from rulec.report.counts import shown_count
@@ -91,6 +110,83 @@ def command(
         with written_whole(output) as stream:
             write_traces(found, stream, str(output), form, kinds)
     print_result(f"wrote {wanted:,} of {shown_count(total)} traces to {output}")
+
+
+_OF_DRIVES = {"ego", "net"}
+"""The options for recorded scenes that mean something for drives, too."""
+
+
+def _write_drives(
+    file: Path,
+    rulebook: str | None,
+    output: Path,
+    limit: int | None,
+    form: Format | None,
+    options: Mapping[str, Any],
+    about: Mapping[str, Any],
+) -> None:
+    """Write what the vehicles of a recording did."""
+    from rulec.automata.compiled import CompiledRulebook
+    from rulec.diagnostics import Diagnostic, Place, RulecError
+    from rulec.drives.extract import Drive
+    from rulec.drives.wanted import wanted_drives
+    from rulec.files import written_whole
+    from rulec.report.console import print_diagnostics, print_result, progress
+    from rulec.scenario.recordings import read_recording
+    from rulec.settings import search_path
+    from rulec.trace.formats import format_of, write_traces
+    from rulec.workflow import machines
+
+    if (option := _given_of_maneuvers(options)) is not None:
+        raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
+    book = None
+    if rulebook is not None:
+        rules = machines(rulebook, search_path(), print_diagnostics)
+        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+    vocabulary = None if book is None else book.vocabulary
+    egos = () if options["ego"] is None else (options["ego"],)
+    found = wanted_drives(
+        read_recording(file, options["net"]),
+        wanted(egos, about, vocabulary),
+        str(file),
+        "" if book is None else book.traffic,
+        vocabulary,
+    )
+    count = 0
+
+    def traces() -> Iterator[Trace]:
+        nonlocal count
+        for number, ego in enumerate(found.egos, 1):
+            tell(number)
+            for one in found.of(ego):
+                if isinstance(one, Drive) and (limit is None or count < limit):
+                    count += 1
+                    yield one.trace
+
+    kinds = found.drives.kinds()
+    if not kinds:
+        message = "nobody in this recording drives on a lane"
+        raise RulecError(Diagnostic("R0612", message, Place(str(file))))
+    with progress(f"writing {output}", len(found.egos)) as tell:
+        form = form or format_of(str(output))
+        if str(output) == "-":
+            write_traces(traces(), sys.stdout.buffer, "standard output", form, kinds)
+            return
+        with written_whole(output) as stream:
+            write_traces(traces(), stream, str(output), form, kinds)
+    print_result(f"wrote {count:,} drives to {output}")
+
+
+def _given_of_maneuvers(options: Mapping[str, Any]) -> str | None:
+    """An option that somebody has given and that means nothing for drives, if any."""
+    context = click.get_current_context()
+    typed = click.core.ParameterSource.COMMANDLINE
+    for parameter in context.command.params:
+        name = parameter.name or ""
+        is_typed = context.get_parameter_source(name) is typed
+        if is_typed and name in options and name not in _OF_DRIVES:
+            return parameter.opts[0]
+    return None
 
 
 def _told(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:

@@ -20,13 +20,13 @@ from rulec.cli.arguments import (
     traces_format_option,
 )
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.recorded_arguments import drives_options, given, wanted_drives
+from rulec.cli.recorded_arguments import drives_options, egos_option, given, wanted
 
 if TYPE_CHECKING:
     from rulec.automata.any_step import AnyStep
     from rulec.automata.compiled import CompiledRulebook
     from rulec.diagnostics import RulecError
-    from rulec.drives.judging import Wanted
+    from rulec.drives.wanted import Wanted
     from rulec.report.console import Complaints
     from rulec.runtime.verdict import NotJudged, Verdict
     from rulec.trace import Trace
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @traces_format_option
+@egos_option
 @drives_options
 @net_option
 @json_option
@@ -60,6 +61,7 @@ def command(
     json_output: bool,
     at: str,
     net: Path | None,
+    egos: tuple[str, ...],
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -80,15 +82,15 @@ def command(
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     recordings = [file for file in files if is_recording(file)]
-    if not recordings and (option := "--net" if net else given(options)):
+    if not recordings and (option := "--net" if net else "--ego" if egos else given(options)):
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain)
     if recordings:
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
-        wanted = wanted_drives(options, book.vocabulary)
+        about = wanted(egos, options, book.vocabulary)
         for file in recordings:
-            run.recording(file, net, wanted)
+            run.recording(file, net, about)
     if len(recordings) < len(files):
         run.traces([file for file in files if file not in recordings], form)
     run.complaints.close()

@@ -1,7 +1,8 @@
 """What people on foot do at the pedestrian crossing before ego, and who has stopped for them.
 
-Nobody has recorded what they intend. Who is on the crossing is on it; who stands at the kerb beside
-it waits to cross; who walks towards it is about to, if it will be there soon.
+Nobody has recorded what they intend. Who is on the crossing is on it, unless it walks away from
+ego's lanes, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
+towards it is about to, if it will be there soon.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def _crossing_use(view: View) -> NDArray[intp]:
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
     walks = np.abs(view.people.speed) * KMH >= limits.standing_kmh
     towards = _towards(view)
-    on = beside & view.touched.any(axis=-1)
+    on = beside & view.on_crosswalk & (view.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     soon = beside & walks & (towards > 0) & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)

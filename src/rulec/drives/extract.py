@@ -15,6 +15,7 @@ from rulec.drives.ego_words import ego_words
 from rulec.drives.everyone import Everyone, everyone
 from rulec.drives.fitting import fitted, named_types
 from rulec.drives.flow import flow_words
+from rulec.drives.ground import on_crosswalks, on_lanes
 from rulec.drives.junction_words import junction_words
 from rulec.drives.junctions import in_junctions
 from rulec.drives.lane_change_words import lane_change_words
@@ -35,6 +36,7 @@ from rulec.vocabulary import Vocabulary
 
 FEWEST_STATES = 2
 
+_KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 _DRIVERS = ("vehicle", "light_rider")
 
 
@@ -42,13 +44,19 @@ _DRIVERS = ("vehicle", "light_rider")
 class Drive:
     """What ``ego`` did from ``start_s`` (s of the recording) on.
 
-    ``words`` are those that the recording supplies, whether or not there is anybody to say them of.
+    ``kinds`` are the words that the recording supplies, whether or not there is anybody to say them
+    of, and what their values are.
     """
 
     ego: str
     start_s: float
     trace: Trace
-    words: frozenset[str]
+    kinds: Mapping[str, type]
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The words that the recording supplies."""
+        return frozenset(self.kinds)
 
     def time_s(self, state: int | None) -> float:
         """When a state was (s of the recording); None is the last one."""
@@ -95,6 +103,10 @@ class Drives:
         self._side: Side = side
         self._people = everyone(recording, thresholds)
         self._junctions = in_junctions(recording)
+        self._ground = (
+            on_lanes(recording, self._people),
+            on_crosswalks(recording, self._people),
+        )
         self._moments = whereabouts(recording, self._people)
         self._roads: dict[tuple[str, ...], tuple[Road, Placed] | str] = {}
 
@@ -105,6 +117,12 @@ class Drives:
             for one in self._people.participants
             if not one.standing and set(WORDS.get(one.type, ())).intersection(_DRIVERS)
         )
+
+    def kinds(self) -> dict[str, type]:
+        """The words of all drives, and what their values are; empty if there is no drive."""
+        drives = (one for ego in self.egos() for one in self.of(ego) if isinstance(one, Drive))
+        first = next(drives, None)
+        return {} if first is None else dict(first.kinds)
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle: one, unless it leaves its road or the recording jumps."""
@@ -139,6 +157,7 @@ class Drives:
             self._people,
             everybody,
             there,
+            self._ground,
             row,
             (stretch.first, stretch.last),
         )
@@ -180,7 +199,12 @@ def _told(seen: View, ego: str, name: str, telling: Telling) -> Drive:
         {one.name: (one.first, one.last) for one in there if (one.first, one.last) != (0, last)},
     )
     start_s = round(seen.first_step * seen.recording.step_s, 9)
-    return Drive(ego, start_s, trace, frozenset((*words.world, *words.about)))
+    return Drive(ego, start_s, trace, _kinds(words))
+
+
+def _kinds(words: Words) -> dict[str, type]:
+    columns = {**words.world, **words.about}
+    return {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
 
 
 def _states(words: Words, there: Sequence[Presence], count: int) -> tuple[State, ...]:

@@ -2,38 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRulebook
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
-from rulec.drives.extract import Drive, Drives, NoDrive, Telling
-from rulec.drives.mirror import mirrored
-from rulec.drives.thresholds import USUAL, Thresholds
+from rulec.drives.extract import Drive, NoDrive
+from rulec.drives.wanted import Wanted, wanted_drives
 from rulec.runtime.batch.verifying import judge_chunk
 from rulec.runtime.numbers import exact
 from rulec.runtime.terms import names_in
 from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import RulebookFor
 from rulec.scenario.recorded.recording import Recording
-from rulec.trace import Value
 
 MOST_STATES = 1 << 13
 """Drives with so many states together are judged together."""
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What can be chosen: whose drives, by which thresholds, and what is taken for granted.
-
-    No ``egos`` is everybody. ``assumed`` holds in every state. ``as_recorded``: a recording of
-    traffic on the other side than the rulebook's is not mirrored.
-    """
-
-    egos: tuple[str, ...] = ()
-    thresholds: Thresholds = USUAL
-    assumed: Mapping[str, Value] = field(default_factory=dict)
-    as_recorded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +44,13 @@ class JudgedRecording:
     ) -> None:
         step = exact(recording.step_s)
         self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
-        own, side = recording.side, self.rules.traffic or recording.side or "right"
-        self.mirrored = own is not None and own != side and not wanted.as_recorded
-        self.recording = mirrored(recording) if self.mirrored else recording
-        telling = Telling(self.rules.vocabulary, _read_by(self.rules), wanted.assumed)
-        self._drives = Drives(self.recording, side, wanted.thresholds, telling)
-        self.egos = _chosen(self._drives.egos(), wanted.egos, file)
+        rules = self.rules
+        self._drives = wanted_drives(
+            recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
+        )
+        self.recording = self._drives.recording
+        self.mirrored = self._drives.mirrored
+        self.egos = self._drives.egos
 
     def answers(self) -> Iterator[Judged | NoDrive]:
         """What each vehicle did, in the order of the file."""
@@ -103,17 +87,3 @@ class JudgedRecording:
 def _read_by(rules: CompiledRulebook) -> frozenset[str]:
     formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.facts]
     return frozenset(name for formula in formulas for name in names_in(formula))
-
-
-def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
-    for ego in wanted:
-        if ego not in known:
-            raise RulecError(
-                Diagnostic(
-                    "R0612",
-                    f"there is no vehicle `{ego}` that drives",
-                    Place(file),
-                    help=did_you_mean(ego, known) or f"choose one of {named(known)}",
-                )
-            )
-    return tuple(ego for ego in known if not wanted or ego in wanted)

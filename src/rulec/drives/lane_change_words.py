@@ -8,14 +8,34 @@ from rulec.drives import relations
 from rulec.drives.ego_words import steady_lane
 from rulec.drives.everyone import Flags
 from rulec.drives.view import View
-from rulec.drives.words import Words
+from rulec.drives.words import Words, named
 
 
 def lane_change_words(view: View) -> Words:
     """Words about changes of lanes."""
     lane = steady_lane(view, view.road.lanes_at(view.own.s[0]))
     changes = np.append(False, lane[1:] != lane[:-1])
-    return Words({"lane_change": changes, "lane_is_clear": ~changes | ~_disturbs(view)})
+    words = Words({"lane_change": changes, "lane_is_clear": ~changes | ~_disturbs(view)})
+    return words | _indicator(view)
+
+
+def _indicator(view: View) -> Words:
+    """Ego's indicator, if the recording has its lamps; both at once are no indication."""
+    (ego,) = view.ego.participants
+    if not ego.lamps:
+        return Words()
+    near, far = (
+        ("left_indicator", "right_indicator")
+        if view.side == "left"
+        else ("right_indicator", "left_indicator")
+    )
+    steps = [ego.lamps.get(view.first_step + state) for state in range(view.states)]
+    lit = np.array([(near in (one or ()), far in (one or ())) for one in steps])
+    codes = np.where(lit[:, 0] & ~lit[:, 1], 1, np.where(lit[:, 1] & ~lit[:, 0], 2, 0))
+    return Words(
+        {"indicator": named(codes, ("no_indicator", "near_indicator", "far_indicator"))},
+        unknown={"indicator": np.array([one is None for one in steps])},
+    )
 
 
 def _disturbs(view: View) -> Flags:

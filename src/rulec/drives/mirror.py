@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rulec.scenario.recorded.recording import (
+    Lamp,
     Lanelet,
     Participant,
     Points,
@@ -14,6 +15,10 @@ from rulec.scenario.recorded.recording import (
     State,
 )
 
+_LAMPS: dict[Lamp, Lamp] = {
+    "left_indicator": "right_indicator",
+    "right_indicator": "left_indicator",
+}
 _OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
 
 
@@ -48,6 +53,10 @@ def _participant(one: Participant) -> Participant:
         one,
         states={step: _state(state) for step, state in one.states.items()},
         outlines={step: _points(outline) for step, outline in one.outlines.items()},
+        lamps={
+            step: frozenset(_LAMPS.get(lamp, lamp) for lamp in lit)
+            for step, lit in one.lamps.items()
+        },
     )
 
 

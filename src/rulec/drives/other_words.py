@@ -37,7 +37,7 @@ def other_words(view: View) -> Words:
             "two_wheeled": _for_good(
                 view, [one.type in _TWO_WHEELED for one in view.people.participants]
             ),
-            "in_the_road": np.any(view.touched, axis=-1),
+            "in_the_road": view.in_the_road,
         },
         only={"in_the_road": view.people.of_kind("vulnerable_user")},
     )

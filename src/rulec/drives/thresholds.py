@@ -28,7 +28,7 @@ class Thresholds:
     """A vehicle whose side is nearer to its lane's bound keeps at the edge."""
     near_m: float = 150.0
     """Who is farther away along the road is not there."""
-    beside_road_m: float = 6.0
+    beside_road_m: float = 8.0
     """Who walks or comes towards ego beside its lanes is there up to this distance from them."""
     away_s: float = 1.0
     """Who is away for no longer was there all the time."""

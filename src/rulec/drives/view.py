@@ -25,7 +25,8 @@ class View:
     """Columns are the states of the drive; ``rows`` are those of everybody who is ever there.
 
     ``others`` and ``people`` have a row for each of them, ``near`` says when they are there for
-    ego, ``touched`` in which lanes. ``side`` is the one that traffic drives on.
+    ego, ``touched`` in which of its lanes, ``in_the_road`` when they are on any lane and
+    ``on_crosswalk`` on a pedestrian crossing.
     """
 
     recording: Recording
@@ -39,6 +40,8 @@ class View:
     others: Placed
     near: Flags
     touched: Flags
+    in_the_road: Flags
+    on_crosswalk: Flags
 
     @property
     def states(self) -> int:
@@ -77,6 +80,7 @@ def view(
     everyone: Everyone,
     all_placed: Placed,
     near: Flags,
+    ground: tuple[Flags, Flags],
     ego: int,
     columns: tuple[int, int],
 ) -> View:
@@ -96,6 +100,8 @@ def view(
         others,
         near[rows, span],
         lanes_touched(others, road, thresholds),
+        ground[0][rows, span],
+        ground[1][rows, span],
     )
 
 

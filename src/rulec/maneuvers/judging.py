@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.stuttering import stutter_invariant
-from rulec.diagnostics import Place, RulecError
 from rulec.maneuvers.answers import Pruning, Ranked
-from rulec.maneuvers.recorded import fitted
-from rulec.maneuvers.terms import in_terms_of
-from rulec.rulebook.model import Strength
+from rulec.maneuvers.applying import applied, in_words, past_for
 from rulec.runtime.cheapest import Maneuver, cheapest
 from rulec.runtime.classes import Classes, Variant, count_classes, variants
 from rulec.runtime.effects import Effects, effects
-from rulec.runtime.instances import HARD, SOFT, Instance, instances, violations
-from rulec.runtime.online.past import NO_PAST, Past
+from rulec.runtime.instances import HARD, SOFT, violations
 from rulec.runtime.penalties import Penalty, Ranks, ranks_of
 from rulec.runtime.places import Places, places
 from rulec.runtime.product import Product, count_paths, explore
@@ -140,8 +135,8 @@ class Maneuvers:
     @cached_property
     def _every(self) -> Effects:
         """With soft rules, too. Those of which nothing can be violated are left out already."""
-        past = _past(self.graph, self.paths, self.rules, SOFT, self.after)
-        soft = _instances(self.graph, self.paths, self.rules, SOFT, past)
+        past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
+        soft = applied(self.graph, self.paths, self.rules, SOFT, past)
         return effects(self.paths, [*self.hard.instances, *soft])
 
     def _ranked(self, place: int, penalty: Penalty, found: Maneuver, members: int) -> Ranked:
@@ -183,37 +178,9 @@ def judged(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
-    paths = in_terms_of(rules.vocabulary, fitted(rules.vocabulary, graph))
-    past = _past(graph, paths, rules, HARD, after)
-    hard = effects(paths, _instances(graph, paths, rules, HARD, past))
+    paths = in_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
+    past = past_for(graph, paths, rules, HARD, after)
+    hard = effects(paths, applied(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
     counted = count_paths(paths)
     return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)
-
-
-def _past(
-    graph: NavigationGraph,
-    paths: TraceGraph,
-    rules: CompiledRulebook,
-    strengths: Collection[Strength],
-    after: Before | None,
-) -> Past:
-    if after is None:
-        return NO_PAST
-    from rulec.runtime.before import past_of
-
-    return past_of(paths, after, rules, graph.step, strengths)
-
-
-def _instances(
-    graph: NavigationGraph,
-    paths: TraceGraph,
-    rules: CompiledRulebook,
-    strengths: Collection[Strength],
-    past: Past,
-) -> list[Instance]:
-    try:
-        return instances(paths, rules, graph.step, strengths, past)
-    except RulecError as error:
-        place = Place(graph.scenario.name)
-        raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None

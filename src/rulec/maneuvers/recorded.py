@@ -16,7 +16,7 @@ from rulec.trace.fitting import could_mean, known_types
 from rulec.vocabulary import Declaration, Vocabulary
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph
+    from rulec.scenario import Obstacle
 
 _Said = Value | Mapping[str, Value]
 
@@ -24,13 +24,15 @@ RECORDED_UNIT = "km/h"
 """The unit of the quantities that recorded scenes supply."""
 
 
-def fitted(vocabulary: Vocabulary, graph: NavigationGraph) -> TraceGraph:
-    """The graph's paths as traces; of a recorded scene with what the vocabulary knows of it."""
-    traces = graph.trace_graph()
-    if graph.scenario.account is None:
-        return traces
+def fitted(
+    vocabulary: Vocabulary, traces: TraceGraph, obstacles: Mapping[str, Obstacle]
+) -> TraceGraph:
+    """Traces of a recorded scene with what the vocabulary knows of it.
+
+    ``obstacles`` are the objects of the traces.
+    """
     objects = known_types(
-        {name: (one.type, *one.broader) for name, one in graph.objects.items()}, vocabulary
+        {name: (one.type, *one.broader) for name, one in obstacles.items()}, vocabulary
     )
     fit = _Fit(vocabulary, objects)
     return replace(

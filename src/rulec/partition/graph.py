@@ -19,6 +19,7 @@ from rulec.partition.continuation import continuations
 from rulec.partition.margin import Edges, Margins, edges
 from rulec.partition.model import Layer
 from rulec.partition.occupancy import scene
+from rulec.partition.predictions import Predicted
 from rulec.partition.regions import ExtentName, PartitionName
 from rulec.partition.snap import snapped
 from rulec.partition.start import start_cell
@@ -37,7 +38,8 @@ class NavigationGraph:
 
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
-    that are on the road at some time, ``present`` the first and last layer of each.
+    that are on the road at some time, ``alternatives`` as less likely predictions have them, and
+    ``present`` the first and last layer of each.
     """
 
     scenario: Scenario
@@ -46,6 +48,7 @@ class NavigationGraph:
     extent: ExtentName
     step: Fraction
     objects: Mapping[str, Obstacle]
+    alternatives: Mapping[str, Predicted]
     present: Mapping[str, tuple[int, int]]
     layers: tuple[Layer, ...]
     successors: tuple[Edges, ...]
@@ -126,8 +129,10 @@ def navigation_graph(
         for (before, after), instant in zip(pairwise(planes), instants, strict=True)
     ]
     layers = tuple(
-        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency))
-        for p, (flat, names) in enumerate(zip(planes, places.names, strict=True))
+        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
+        for p, (flat, names, others) in enumerate(
+            zip(planes, places.names, places.others, strict=True)
+        )
     )
     successors, margins = edges(layers, onward)
     goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
@@ -137,7 +142,8 @@ def navigation_graph(
         adjacency,
         extent,
         times.step,
-        places.obstacle_of,
+        {name: one.obstacle for name, one in places.predicted_of.items() if not one.number},
+        {name: one for name, one in places.predicted_of.items() if one.number},
         places.present,
         layers,
         successors,

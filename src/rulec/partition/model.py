@@ -21,7 +21,7 @@ class Cell:
     """A connected piece of free road whose points all relate to every obstacle in the same way.
 
     ``boxes`` are rectangles with disjoint interiors that make it up. ``code`` has one byte for each
-    of ``objects``.
+    of ``objects``, then one for each of the layer's ``alternatives``.
     """
 
     boxes: tuple[Box, ...]
@@ -44,10 +44,10 @@ class Cell:
     def signature(self) -> Signature:
         """Object -> where ego is when in this cell: a letter, or (station, lateral) if ``fine``."""
         if self.partition == "paper":
-            return dict(zip(self.objects, self.code.decode("ascii"), strict=True))
+            return dict(zip(self.objects, self.code.decode("ascii"), strict=False))
         return {
             name: (STATION_OF[code], LATERAL_OF[code])
-            for name, code in zip(self.objects, self.code, strict=True)
+            for name, code in zip(self.objects, self.code, strict=False)
         }
 
     @property
@@ -103,10 +103,12 @@ class Layer:
     """The cells of ``[start_s, start_s + step]``; ``neighbours[i]`` are those next to cell ``i``.
 
     Neighbours are in ascending order, never include the cell itself, and with the adjacency
-    ``forward`` need not be mutual.
+    ``forward`` need not be mutual. ``alternatives`` are objects as less likely predictions have
+    them.
     """
 
     start_s: float
     objects: tuple[str, ...]
     cells: tuple[Cell, ...]
     neighbours: tuple[tuple[int, ...], ...]
+    alternatives: tuple[str, ...] = ()

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count, pairwise
 
+from rulec.partition.predictions import Predicted, entered, predicted
 from rulec.partition.regions import ExtentName, PartitionName, Region, region_of
 from rulec.partition.roadway import Roadway, coordinates, roadway
 from rulec.partition.snap import Snap, snap_table, snapped
@@ -22,15 +23,18 @@ from rulec.scenario.timing import Timing
 class Scene:
     """A scenario over time: names in the order of the file, and regions in that order.
 
-    ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``. ``instants[p]`` are the regions
-    at the moment between layers p and p + 1. ``s`` and ``d`` snap coordinates of ego and the goal.
+    ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first come obstacles as it is
+    likeliest, in ``names``, then, in ``others``, those that other predictions have there.
+    ``instants[p]`` are the regions at the moment between layers p and p + 1. ``s`` and ``d`` snap
+    coordinates of ego and the goal.
     """
 
     roadway: Roadway
     swept: tuple[tuple[Region, ...], ...]
     names: tuple[tuple[str, ...], ...]
+    others: tuple[tuple[str, ...], ...]
     instants: tuple[tuple[Region, ...], ...]
-    obstacle_of: Mapping[str, Obstacle]
+    predicted_of: Mapping[str, Predicted]
     present: Mapping[str, tuple[int, int]]
     s: Snap
     d: Snap
@@ -40,7 +44,9 @@ def scene(
     scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
 ) -> Scene:
     """Where everything is, in every layer and at every instant between two."""
-    obstacles = scenario.obstacles
+    everybody = predicted(scenario)
+    obstacles = [one.obstacle for one in everybody]
+    likeliest = len(scenario.obstacles)
     starts = [timing.start(p) for p in range(timing.layers + 1)]
     layers = list(pairwise(starts))
     moments = [(start, start) for start in starts[1:-1]]
@@ -70,15 +76,29 @@ def scene(
             for i in range(len(obstacles))
             if (body := bodies.get((i, interval))) is not None
         )
-        return tuple(region for region in found if region is not None)
+        return tuple(
+            region if region.obstacle < likeliest else entered(region)
+            for region in found
+            if region is not None
+        )
 
     layer_regions = tuple(regions(interval, interval) for interval in layers)
     # At an instant a pedestrian faces where it goes next
     instants = tuple(
         regions(moment, upcoming) for moment, upcoming in zip(moments, layers[1:], strict=True)
     )
-    names, obstacle_of, present = _appearances(obstacles, layer_regions)
-    return Scene(road, layer_regions, names, instants, obstacle_of, present, s, d)
+    names, index_of, present = _appearances(obstacles, layer_regions)
+    return Scene(
+        road,
+        layer_regions,
+        tuple(tuple(one for one in here if index_of[one] < likeliest) for here in names),
+        tuple(tuple(one for one in here if index_of[one] >= likeliest) for here in names),
+        instants,
+        {name: everybody[i] for name, i in index_of.items()},
+        present,
+        s,
+        d,
+    )
 
 
 def _wider(body: Box, half: float) -> Box:
@@ -111,11 +131,11 @@ def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:
 
 def _appearances(
     obstacles: Sequence[Obstacle], layers: Sequence[Sequence[Region]]
-) -> tuple[tuple[tuple[str, ...], ...], dict[str, Obstacle], dict[str, tuple[int, int]]]:
+) -> tuple[tuple[tuple[str, ...], ...], dict[str, int], dict[str, tuple[int, int]]]:
     """Names of the regions, layer by layer; whose they are; first and last layer of each."""
     taken = {obstacle.id for obstacle in obstacles}
     current: dict[int, str] = {}
-    obstacle_of: dict[str, Obstacle] = {}
+    index_of: dict[str, int] = {}
     present: dict[str, tuple[int, int]] = {}
     names: list[tuple[str, ...]] = []
     for p, regions in enumerate(layers):
@@ -125,11 +145,11 @@ def _appearances(
                 name = obstacles[i].id if name is None else _spare(obstacles[i].id, taken)
                 taken.add(name)
                 current[i] = name
-                obstacle_of[name] = obstacles[i]
+                index_of[name] = i
                 present[name] = (p, p)
             present[name] = (present[name][0], p)
         names.append(tuple(current[region.obstacle] for region in regions))
-    return tuple(names), obstacle_of, present
+    return tuple(names), index_of, present
 
 
 def _spare(name: str, taken: set[str]) -> str:

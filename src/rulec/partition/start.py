@@ -39,7 +39,11 @@ def start_cell(
     cells = list(first.cells_at(s, d))
     if cells:
         return cells[-1]
-    in_the_way = [region for region in places.swept[0] if region.extent.covers(s, d)]
+    in_the_way = [
+        region
+        for region in places.swept[0]
+        if region.obstacle < len(scenario.obstacles) and region.extent.covers(s, d)
+    ]
     free = places.roadway.free
     if free.d_min == free.d_max:
         raise RulecError(

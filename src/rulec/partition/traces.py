@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 
@@ -12,6 +12,9 @@ from rulec.partition.model import Cell
 from rulec.partition.regions import LATERAL_OF, STATION_OF
 from rulec.scenario import Obstacle
 from rulec.trace.model import State, TraceGraph, Value
+
+Said = Value | Mapping[str, Value]
+"""What a state says of a name."""
 
 PAPER_SURFACE = {"carriageway": "R_cw", "crossing": "R_pc"}
 
@@ -31,7 +34,9 @@ def trace_graph(graph: NavigationGraph) -> TraceGraph:
     return TraceGraph(
         step_s=graph.step_s,
         objects={name: obstacle.type for name, obstacle in graph.objects.items()},
-        present={name: there for name, there in graph.present.items() if there != (0, last)},
+        present={
+            name: graph.present[name] for name in graph.objects if graph.present[name] != (0, last)
+        },
         states=tuple(_states(graph, p) for p in range(len(graph.layers))),
         successors=graph.successors,
         weights=tuple(_weights(margins, whole) for margins in graph.margins),
@@ -44,31 +49,31 @@ def trace_graph(graph: NavigationGraph) -> TraceGraph:
 
 def _states(graph: NavigationGraph, layer: int) -> tuple[State, ...]:
     here = graph.layers[layer]
-    signals: dict[str, Value | dict[str, Value]] = dict(graph.scenario.signals)
-    signals.update(_object_signals((name, graph.objects[name]) for name in here.objects))
-    return tuple({**_relations(cell), **signals} for cell in here.cells)
+    signals = signals_of(graph, {name: graph.objects[name] for name in here.objects})
+    return tuple({**relations(cell, here.objects, cell.code), **signals} for cell in here.cells)
 
 
-def _relations(cell: Cell) -> dict[str, Value | dict[str, Value]]:
+def relations(cell: Cell, names: Sequence[str], code: bytes) -> dict[str, Said]:
+    """What a cell says: its surface, and the relations to objects by as many bytes of a code."""
     if cell.partition == "paper":
-        letters = cell.code.decode("ascii")
         return {
-            "position": dict(zip(cell.objects, letters, strict=True)),
+            "position": dict(zip(names, code.decode("ascii"), strict=False)),
             "surface": PAPER_SURFACE[cell.surface],
         }
     return {
-        "station": dict(zip(cell.objects, map(STATION_OF.__getitem__, cell.code), strict=True)),
-        "lateral": dict(zip(cell.objects, map(LATERAL_OF.__getitem__, cell.code), strict=True)),
+        "station": dict(zip(names, map(STATION_OF.__getitem__, code), strict=False)),
+        "lateral": dict(zip(names, map(LATERAL_OF.__getitem__, code), strict=False)),
         "surface": cell.surface,
     }
 
 
-def _object_signals(objects: Iterable[tuple[str, Obstacle]]) -> dict[str, dict[str, Value]]:
+def signals_of(graph: NavigationGraph, objects: Mapping[str, Obstacle]) -> dict[str, Said]:
+    """The scenario's signals, and those of some objects, which are the same in all states."""
     signals: dict[str, dict[str, Value]] = {}
-    for name, obstacle in objects:
+    for name, obstacle in objects.items():
         for signal, value in obstacle.signals.items():
             signals.setdefault(signal, {})[name] = value
-    return signals
+    return {**graph.scenario.signals, **signals}
 
 
 def _weights(margins: Margins, whole: int) -> tuple[tuple[int, ...], ...]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import click
 
 from rulec.maneuvers import Maneuvers, Pruning, Ranked
+from rulec.maneuvers.chances import Chances
+from rulec.maneuvers.otherwise import Otherwise
 from rulec.partition import NavigationGraph
-from rulec.report import prunings, ranked_maneuvers, recorded_scene, variants
+from rulec.report import chances, prunings, ranked_maneuvers, recorded_scene, variants
 from rulec.report.counts import shown_count
 from rulec.report.excerpt import visible
 from rulec.report.maneuver_lines import as_data, cell_lines, in_a_line
@@ -31,7 +33,7 @@ class Answers:
     """What was asked for beside the counts; None is what was not.
 
     ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
-    longer list of them in ``ranked``.
+    longer list of them in ``ranked``. ``chances`` are those of maneuvers, given by their nodes.
     """
 
     listed: Sequence[Maneuver] | None = None
@@ -39,6 +41,8 @@ class Answers:
     ranked: Sequence[Ranked] | None = None
     prunings: Sequence[Pruning] | None = None
     classes: tuple[Classes, Sequence[Variant]] | None = None
+    chances: Mapping[tuple[int, ...], Chances] = field(default_factory=dict)
+    worlds: Sequence[Otherwise] | None = None
 
 
 def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
@@ -66,12 +70,20 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
             {"rule": one.rule, "binding": dict(one.binding), "step": one.step}
             for one in found.violated_before
         ]
-    if answers.best is not None:
-        data["least_violating"] = [ranked_maneuvers.as_data(found, one) for one in answers.best]
+    for key, ranked in (("least_violating", answers.best), ("ranked", answers.ranked)):
+        if ranked is not None:
+            data[key] = [
+                {**ranked_maneuvers.as_data(found, one), **_chances(answers, one.maneuver)}
+                for one in ranked
+            ]
     if answers.listed is not None:
-        data["maneuvers"] = [as_data(graph, maneuver) for maneuver in answers.listed]
-    if answers.ranked is not None:
-        data["ranked"] = [ranked_maneuvers.as_data(found, one) for one in answers.ranked]
+        data["maneuvers"] = [
+            {**as_data(graph, one), **_chances(answers, one)} for one in answers.listed
+        ]
+    if any(one.alternatives for one in graph.scenario.obstacles):
+        data["likeliest"] = chances.likeliest(graph.scenario)
+    if answers.worlds is not None:
+        data["worlds"] = chances.worlds_as_data(answers.worlds)
     if answers.prunings is not None:
         data["rules"] = [prunings.as_data(found, one) for one in answers.prunings]
     if answers.classes is not None:
@@ -95,21 +107,35 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
         f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
         *_violated_before(found.violated_before or ()),
         *_by_default(found.by_default),
+        *chances.summary(graph.scenario),
+        *chances.world_lines(answers.worlds or ()),
     ]
     if answers.classes is not None:
         lines += variants.count_lines(found, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += ["", f"{number}. {in_a_line(maneuver)}", *cell_lines(graph, maneuver)]
+        lines += _chance_lines(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
-        lines += ranked_maneuvers.blocks(found, answers.best)
-    lines += ranked_maneuvers.blocks(found, answers.ranked or ())
+    for one in (*(answers.best or ()), *(answers.ranked or ())):
+        lines += ranked_maneuvers.blocks(found, [one])
+        lines += _chance_lines(answers, one.maneuver)
     if answers.prunings is not None:
         lines += ["", *prunings.table(found, answers.prunings)]
     if answers.classes is not None:
         lines += variants.blocks(found, answers.classes[1])
     return "\n".join(lines)
+
+
+def _chances(answers: Answers, maneuver: Maneuver) -> dict[str, Any]:
+    told = answers.chances.get(maneuver.nodes)
+    return {} if told is None else {"chances": chances.as_data(told)}
+
+
+def _chance_lines(answers: Answers, maneuver: Maneuver) -> list[str]:
+    told = answers.chances.get(maneuver.nodes)
+    return [] if told is None else chances.lines(told)
 
 
 def _scene(found: Maneuvers) -> Iterator[str]:

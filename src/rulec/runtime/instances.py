@@ -11,9 +11,9 @@ from rulec.rulebook.model import Strength
 from rulec.runtime.binding import Binding, bindings
 from rulec.runtime.checking import check_objects, check_state
 from rulec.runtime.facts import check_counting_facts
+from rulec.runtime.gate import Gate
 from rulec.runtime.letters import Columns, present_in
 from rulec.runtime.numbers import exact
-from rulec.runtime.online.gate import Gate
 from rulec.runtime.online.past import NO_PAST, Past
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import check_step, run

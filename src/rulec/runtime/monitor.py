@@ -99,7 +99,8 @@ class Monitor:
         """
         here, number, _ = self._now
         scene = here.scene
-        if objects == scene.objects:
+        same_objects = objects == scene.objects
+        if same_objects:
             # A method that is looked up and called at once would be looked up in the class first.
             key = scene.memory.key
             try:
@@ -110,14 +111,16 @@ class Monitor:
                 number += 1
                 self._now = after, number, changes
                 return SoFar(number, after.verdict, after.rules, changes)
-        return self._step_slowly(state, objects, place)
+        return self._step_slowly(state, objects, place, same_objects)
 
-    def _step_slowly(self, state: State, objects: Mapping[str, str], place: Place | None) -> SoFar:
+    def _step_slowly(
+        self, state: State, objects: Mapping[str, str], place: Place | None, same_objects: bool
+    ) -> SoFar:
         """As ``step``, whether such a state has been there before or not."""
         here, number, _ = self._now
         number += 1
         scene = here.scene
-        if objects != scene.objects:
+        if not same_objects:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)
@@ -127,9 +130,11 @@ class Monitor:
             scene = Scene(self._rulebook, self._teams, objects)
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
-        after, changes = onward(here, scene, scene.letters(state, number, place))
-        if scene is here.scene and after.n_violations == here.n_violations:
-            after = scene.memory.learn(state, number, here, after, changes)
+        letters, known = scene.read(state, number, place)
+        after, changes = onward(here, scene, letters)
+        same = scene is here.scene and after.n_violations == here.n_violations
+        if same and known is not None:
+            after = scene.memory.learn(known, number, here, after, changes)
         if after.n_violations > here.n_violations:
             self._note_violations(here.n_violations, number, changes)
         # All at once: whatever interrupts this, the state has been taken or it has not.

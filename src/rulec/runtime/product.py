@@ -6,12 +6,14 @@ futures. So paths are counted per node and state, layer by layer.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from operator import getitem
 from typing import Any
 
 from rulec.runtime.effects import LOST, Effect, Effects
+from rulec.runtime.room import room_for, too_many
 from rulec.runtime.ways import Step
 from rulec.trace import TraceGraph
 
@@ -27,25 +29,61 @@ ProductNode = tuple[int, Memory]
 Enter = Callable[[Sequence[Effect], Memory], Memory | None]
 """The memory behind a node that has these effects; None if the path is dropped there."""
 
+_Steps = dict[ProductNode, list[tuple[ProductNode, int]]]
 
-@dataclass(frozen=True, slots=True)
+_DROPPED = -1
+"""In place of a target's index: no path goes on there. As an index it means one behind all."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """From product nodes of a layer to those of the next one, ``targets``.
+
+    Each of the ``origins`` has in ``into`` the index of the target that each follower of its node
+    in ``rows`` leads to.
+    """
+
+    origins: list[ProductNode]
+    rows: Sequence[Sequence[Step]]
+    targets: list[ProductNode]
+    into: list[list[int]]
+
+    def steps(self) -> _Steps:
+        """The followers of each origin, with the cost of going there."""
+        return {
+            origin: [
+                (self.targets[at], cost)
+                for at, (_, cost) in zip(into, self.rows[origin[0]], strict=True)
+                if at != _DROPPED
+            ]
+            for origin, into in zip(self.origins, self.into, strict=True)
+        }
+
+
+@dataclass(frozen=True)
 class Product:
     """The part of graph times memory that can be reached.
 
     ``counts[p]`` gives for each product node of layer ``p`` how many partial paths lead to it, and
-    ``steps[p]`` its followers in layer ``p + 1`` with the cost of going there. Accepted are the
-    paths that end in one of ``ends``.
+    ``ways[p]`` leads on from there. Accepted are the paths that end in one of ``ends``.
     """
 
     graph: TraceGraph
     counts: tuple[dict[ProductNode, int], ...]
-    steps: tuple[dict[ProductNode, list[tuple[ProductNode, int]]], ...]
+    ways: tuple[Ways, ...]
     ends: frozenset[ProductNode]
 
     @property
     def accepted(self) -> int:
         """How many paths from start to a goal are accepted: exact."""
         return sum(self.counts[-1][end] for end in self.ends)
+
+    @cached_property
+    def steps(self) -> tuple[_Steps, ...]:
+        """For the product nodes of each layer their followers in the next one, with costs."""
+        different = {id(ways): ways for ways in self.ways}
+        known = {which: ways.steps() for which, ways in different.items()}
+        return tuple([known[id(ways)] for ways in self.ways])
 
 
 def count_paths(graph: TraceGraph) -> int:
@@ -71,66 +109,68 @@ def explore(effects: Effects, enter: Enter = kept, start: Memory | None = None) 
 
     Left to themselves, ``enter`` drops every path that loses a rule, and ``start``, the memory
     before the first node, is that of the machines.
+
+    Raises:
+        RulecError: R0616 if it would be too large.
     """
     graph = effects.graph
+    room = room_for(graph)
     first = effects.nodes[0][graph.start] if effects.starts else None
     memory = None if first is None else enter(first, effects.waiting if start is None else start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
-    steps = []
-    # Where nothing changes from layer to layer, nor do the ways on from there.
-    known: dict[object, _Ways] = {}
+    ways = []
+    # Where nothing changes from one layer to the next, nor do the ways on from there.
+    known: dict[tuple[int, int], Ways] = {}
     for rows, nodes in zip(effects.steps, effects.nodes[1:], strict=True):
-        key = (id(rows), id(nodes), tuple(counts[-1]))
-        if key not in known:
-            known[key] = _ways(counts[-1], rows, nodes, enter)
-        ways = known[key]
-        totals = [0] * len(ways.targets)
-        for count, indices in zip(counts[-1].values(), ways.into, strict=True):
+        key, origins = (id(rows), id(nodes)), list(counts[-1])
+        if key not in known or known[key].origins != origins:
+            known[key] = _ways(origins, rows, nodes, enter, room)
+        onward = known[key]
+        room -= len(onward.targets)
+        if room < 0:
+            raise too_many(graph)
+        # One more, in which paths come together that are dropped.
+        totals = [0] * (len(onward.targets) + 1)
+        for count, indices in zip(counts[-1].values(), onward.into, strict=True):
             for index in indices:
                 totals[index] += count
-        counts.append(dict(zip(ways.targets, totals, strict=True)))
-        steps.append(ways.steps)
-    return Product(graph, tuple(counts), tuple(steps), frozenset(counts[-1]))
-
-
-@dataclass(frozen=True, slots=True)
-class _Ways:
-    """From one layer's product nodes to the next one's: ``into`` are the targets' indices."""
-
-    targets: list[ProductNode]
-    into: list[list[int]]
-    steps: dict[ProductNode, list[tuple[ProductNode, int]]]
+        counts.append(dict(zip(onward.targets, totals, strict=False)))
+        ways.append(onward)
+    return Product(graph, tuple(counts), tuple(ways), frozenset(counts[-1]))
 
 
 def _ways(
-    origins: Iterable[ProductNode],
+    origins: list[ProductNode],
     rows: Sequence[Sequence[Step]],
     nodes: Sequence[Sequence[Effect]],
     enter: Enter,
-) -> _Ways:
-    index_of: dict[ProductNode, int] = {}
+    room: int,
+) -> Ways:
+    """The ways from these product nodes; not all, if there is no room for all they lead to."""
     targets: list[ProductNode] = []
-    entered: dict[Memory, dict[int, int | None]] = {}
+    index_of: dict[ProductNode, int] = {}
+    # By memory and node.
+    entered: dict[Memory, dict[int, int]] = {}
     every = []
-    steps = {}
-    for origin in origins:
-        node, memory = origin
-        known = entered.setdefault(memory, {})
+    for node, memory in origins:
+        known = entered.get(memory)
+        if known is None:
+            known = entered[memory] = {}
+        if len(targets) > room:
+            break
         into: list[int] = []
-        reached: list[tuple[ProductNode, int]] = []
-        for target, cost in rows[node]:
-            if target not in known:
+        for target, _ in rows[node]:
+            at = known.get(target)
+            if at is None:
                 after = enter(nodes[target], memory)
-                known[target] = None
-                if after is not None:
+                if after is None:
+                    at = _DROPPED
+                else:
                     step = (target, after)
-                    known[target] = index_of.setdefault(step, len(targets))
-                    if len(index_of) > len(targets):
+                    at = index_of.setdefault(step, len(targets))
+                    if at == len(targets):
                         targets.append(step)
-            at = known[target]
-            if at is not None:
-                into.append(at)
-                reached.append((targets[at], cost))
+                known[target] = at
+            into.append(at)
         every.append(into)
-        steps[origin] = reached
-    return _Ways(targets, every, steps)
+    return Ways(origins, rows, targets, every)

@@ -10,6 +10,7 @@ each in its place, which ``toml_places`` finds. ``recordings`` reads recorded sc
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     Account,
+    Alternative,
     ConstantAcceleration,
     Ego,
     Footprints,
@@ -25,6 +26,7 @@ from rulec.scenario.recorded.choice import Choice
 
 __all__ = [
     "Account",
+    "Alternative",
     "Box",
     "Choice",
     "ConstantAcceleration",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Literal, get_args
 
 from rulec.scenario.geometry import Box, centred
@@ -105,8 +106,19 @@ Motion = ConstantAcceleration | Trajectory | Footprints
 
 
 @dataclass(frozen=True, slots=True)
+class Alternative:
+    """What else an obstacle may do, and how probable that is."""
+
+    weight: Fraction
+    motion: Motion
+
+
+@dataclass(frozen=True, slots=True)
 class Obstacle:
     """Another traffic participant: a rectangle along the road that moves by a prediction.
+
+    ``motion`` is the likeliest, of probability ``weight``, that of the ``alternatives`` being the
+    rest.
 
     ``broader`` are more and more general words for its type, for rulebooks that lack the type's.
     ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in
@@ -121,6 +133,8 @@ class Obstacle:
     walking_direction: float | None = None
     signals: Mapping[str, SignalValue] = field(default_factory=dict)
     broader: tuple[str, ...] = ()
+    weight: Fraction = Fraction(1)
+    alternatives: tuple[Alternative, ...] = ()
 
     @property
     def walks(self) -> bool:

@@ -9,6 +9,7 @@ from rulec.scenario.check import check_signals
 from rulec.scenario.fields import Findings, quoted, read_table
 from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
+from rulec.scenario.predictions import read_predictions
 from rulec.scenario.schema import MOST_OBSTACLES, RawObstacle
 from rulec.scenario.toml_places import Table
 
@@ -23,30 +24,39 @@ def read_obstacles(raw: object, findings: Findings) -> tuple[Listed, ...]:
         return ()
     listed: list[Listed] = []
     numbers: dict[str, int] = {}
+    before = 0
     for number, item in enumerate(raw, start=1):
         place = Table("obstacle", number, _words(item, number))
         table = read_table(RawObstacle, item, place, findings)
+        ahead, before = before, before + _number_of_predictions(item)
         if isinstance(item, Mapping) and isinstance(name := item.get("id"), str):
             _check_unique(name, number, numbers, place, findings)
         if table is None:
             continue
-        motion = _motion(table, item, place, findings)
+        expected = read_predictions(table, item, place, ahead, findings, _motion)
         signals = Table("obstacle.signals", number, place.words)
         values = check_signals(table.signals, signals, findings)
-        if motion is None:
+        if expected is None:
             continue
         obstacle = Obstacle(
             table.id,
             table.type,
             table.length,
             table.width,
-            motion,
+            expected.motion,
             table.walking_direction,
             values,
+            weight=expected.weight,
+            alternatives=expected.alternatives,
         )
         _check_direction(obstacle, place, findings)
         listed.append((obstacle, place))
     return tuple(listed)
+
+
+def _number_of_predictions(item: object) -> int:
+    raw = item.get("prediction") if isinstance(item, Mapping) else None
+    return len(raw) if isinstance(raw, list) else 0
 
 
 def _words(item: object, number: int) -> str:
@@ -69,7 +79,8 @@ def _check_unique(
 
 
 def _check_direction(obstacle: Obstacle, place: Table, findings: Findings) -> None:
-    standing = obstacle.walking_direction is None and stands_forever(obstacle.motion)
+    motions = (obstacle.motion, *(one.motion for one in obstacle.alternatives))
+    standing = obstacle.walking_direction is None and any(map(stands_forever, motions))
     if obstacle.type == PEDESTRIAN and standing:
         findings.add(
             "R0603",

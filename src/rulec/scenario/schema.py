@@ -72,6 +72,17 @@ Obstacles = Annotated[
     list[Any],
     Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} `[[obstacle]]`"),
 ]
+Weight = Annotated[
+    float, Meta(gt=0, le=1, description="a probability, above 0 and at most 1, such as `0.7`")
+]
+MOST_PREDICTIONS = 10
+Predictions = Annotated[
+    list[Any],
+    Meta(
+        max_length=MOST_PREDICTIONS,
+        description=f"at most {MOST_PREDICTIONS} `[[obstacle.prediction]]`",
+    ),
+]
 
 
 class RawScenario(Struct):
@@ -143,3 +154,15 @@ class RawObstacle(Struct):
     trajectory: TimedPositions | None = None
     walking_direction: Degrees | None = None
     signals: Table = {}
+    prediction: Predictions = []
+
+
+class RawPrediction(Struct):
+    """``[[obstacle.prediction]]``: what it does not say is as its obstacle says."""
+
+    weight: Weight
+    speed: AlongSpeed | None = None
+    acceleration: Acceleration | None = None
+    lateral_speed: SidewaysSpeed | None = None
+    until_d: Across | None = None
+    trajectory: TimedPositions | None = None

@@ -1,6 +1,7 @@
 """Recordings made by hand as scenarios: who is where when, and what can be told."""
 
 from dataclasses import replace
+from fractions import Fraction
 from math import pi
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from roads import recording, rectangle, straight, vehicle
 
 from rulec.diagnostics import RulecError
-from rulec.scenario import Box, Choice, ConstantAcceleration, Footprints
+from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.convert import to_scenario
 from rulec.scenario.recorded.recording import Light, Participant
@@ -117,6 +118,24 @@ def test_constant_acceleration_instead_of_what_was_recorded():
         pytest.approx(20), pytest.approx(0), pytest.approx(10), pytest.approx(-2)
     )
     assert (obstacle.length, obstacle.width) == pytest.approx((4, 2))
+
+
+def test_one_or_the_other_prediction():
+    """Who is there later, or stands, has but one."""
+    both = Choice(prediction={"recorded": Fraction(2, 5), "constant": Fraction(3, 5)})
+    later = vehicle(8, {k: (60 + k, 4) for k in range(2, 9)})
+    parked = replace(vehicle(9, {0: (90, 4)}, kind="parkedVehicle"), standing=True)
+    first, *others = scene(drive(7, 40, 10), later, parked, choice=both).obstacles
+    alone = [
+        only(scene(drive(7, 40, 10), choice=Choice(prediction=kind))).motion
+        for kind in ("constant", "recorded")
+    ]
+    assert (first.motion, first.weight) == (alone[0], Fraction(3, 5))
+    assert first.alternatives == (Alternative(Fraction(2, 5), alone[1]),)
+    assert [(one.id, one.weight, one.alternatives) for one in others] == [
+        ("8", 1, ()),
+        ("9", 1, ()),
+    ]
 
 
 def test_constant_acceleration_against_ego():

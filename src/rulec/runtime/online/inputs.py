@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import repeat
 from typing import Any, TypeAlias
 
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead, Read
-from rulec.runtime.numbers import EXACT_IN_FLOATS, Scale, scale
+from rulec.runtime.numbers import scale
+from rulec.runtime.online.floors import Floors
 from rulec.vocabulary import Enumeration, Vocabulary
 
 Weigh: TypeAlias = Callable[[Any], int]
@@ -31,23 +30,17 @@ class Input:
     number: NumberRead | None = None
     variables: tuple[str, ...] = ()
 
-    @property
-    def digits(self) -> Callable[[Sequence[Any]], Iterable[Any]] | None:
-        """From values that have passed ``check_state`` their digits; None if these are the same.
+    def digit(self, told: Any, floors: Floors) -> Any:
+        """Its digit, by what is told of it; of a count or a sum this is the digit.
 
-        Raises a TypeError where a value is missing.
+        Raises a TypeError where a number is missing.
         """
-        if self.number is None:
-            return None
-        if self.name is None:
-            return partial(map, self.number.digit)
-        return partial(_digits, scale(self.number))
-
-
-def _digits(about: Scale, values: Sequence[Any]) -> Iterable[int]:
-    if min(values) >= -EXACT_IN_FLOATS and max(values) <= EXACT_IN_FLOATS:
-        return map(bisect_right, repeat(about.floors), values)
-    return map(about.digit, values)
+        if self.name is None or self.number is None:
+            return told
+        those = floors[self.name]
+        # A number has reached just these of its own floors that the highest one of all has reached.
+        reached = told if those is None else those[told - 1]
+        return bisect_right(scale(self.number).floors, reached)
 
 
 def inputs_of(rule: CompiledRule, vocabulary: Vocabulary) -> list[tuple[Input, Weigh]]:

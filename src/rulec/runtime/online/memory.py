@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
-from rulec.runtime.online.likeness import Floors, Key, key_like
-from rulec.vocabulary import Vocabulary
+from rulec.runtime.online.outline import Key, Outline
+from rulec.runtime.online.told import Told
 
 if TYPE_CHECKING:
     from rulec.runtime.online.standing import Change, Standing
     from rulec.runtime.online.team import Node
 
 MOST = 1 << 12
-"""So much is remembered before it is forgotten again; a key is worth a sixteenth of it."""
+"""So many states are remembered before all are forgotten again."""
+
+TRIAL = 1 << 9
+"""After so many it is asked whether that was of any help; another outline counts as a sixteenth."""
 
 REST = 16
-"""If that was of little help, nothing is remembered for so many times as many states."""
+"""If it was of little help, nothing more is remembered for so many times as many states."""
 
 
 class Memory:
@@ -26,63 +29,63 @@ class Memory:
     come between them.
     """
 
-    def __init__(self, vocabulary: Vocabulary, floors: Floors) -> None:
-        self._vocabulary = vocabulary
-        self._floors = floors
+    def __init__(self) -> None:
+        self._outline: Outline | None = None
         self._rests_until = 0
         self._stranger = -1
         self._standings: dict[tuple[Node, ...], Standing] = {}
-        self._since = 0
         self._n_learned = 0
+        self._n_tried = 0
+        self._tried_since = 0
         self.key: Key = _of_none
 
     def learn(
-        self, state: Any, number: int, here: Standing, after: Standing, changes: tuple[Change, ...]
+        self,
+        known: tuple[Outline, tuple[Told, ...]],
+        number: int,
+        here: Standing,
+        after: Standing,
+        changes: tuple[Change, ...],
     ) -> Standing:
-        """Remember where a state, which has this number, has led.
+        """Remember where a state has led, which has this number and is known by this.
 
         It has led nowhere else than a standing with the same nodes that is known from before; to
         know what follows there, go on from the one that is returned.
         """
         if number < self._rests_until:
             return after
-        if self._n_learned >= MOST:
-            helpful = number - self._since >= 2 * MOST
-            self._rests_until = 0 if helpful else number + REST * MOST
-            self._forget(number, here)
-            return after
-        key = self._key_of(state, number, here)
+        if self._n_tried >= TRIAL:
+            helpful = number - self._tried_since >= 2 * TRIAL
+            self._n_tried, self._tried_since = 0, number
+            if not helpful:
+                self._rests_until = self._tried_since = number + REST * TRIAL
+                self.key = _of_none
+                return after
+        outline, told = known
+        if outline is not self._outline:
+            # One stranger changes nothing, two in a row do.
+            if self._outline is not None and self._stranger != number - 1:
+                self._stranger = number
+                return self._standings.setdefault(after.nodes, after)
+            self._forget(here)
+            self._n_tried += TRIAL // 16
+            self._outline = outline
+        elif self._n_learned >= MOST:
+            self._forget(here)
+        self.key = outline.key
         after = self._standings.setdefault(after.nodes, after)
-        if key is not None:
-            here.after[key] = after, changes
-            self._n_learned += 1
+        here.after[outline.key_of(told)] = after, changes
+        self._n_learned += 1
+        self._n_tried += 1
         return after
 
-    def _key_of(self, state: Any, number: int, here: Standing) -> Hashable | None:
-        try:
-            return self.key(state)
-        except (LookupError, TypeError):
-            pass
-        # One stranger changes nothing, two in a row do.
-        if self.key is not _of_none and self._stranger != number - 1:
-            self._stranger = number
-            return None
-        n_learned = self._n_learned
-        self._forget(self._since, here)
-        self._n_learned = n_learned + MOST // 16
-        self.key = key_like(state, self._vocabulary, self._floors)
-        try:
-            return self.key(state)
-        except (LookupError, TypeError):
-            return None
-
-    def _forget(self, number: int, here: Standing) -> None:
+    def _forget(self, here: Standing) -> None:
         self.key = _of_none
         here.after.clear()
         self._standings = {here.nodes: here}
         self._n_learned = 0
-        self._since = number
 
 
-def _of_none(_: Any) -> NoReturn:
-    raise LookupError
+def _of_none(_: Any) -> Hashable:
+    """The key of no state."""
+    return None

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TypeAlias
 
-from rulec.runtime.online.columns import Items
 from rulec.runtime.verdict import Violation
 
-RuleFor: TypeAlias = tuple[str, Items]
+RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
 """A rule's name, and the objects that its variables stand for."""
 
 

@@ -1,94 +1,182 @@
-"""The letters that the bindings of a team read, by what is the case in the world.
+"""The letters that teams read of states of one outline, binding by binding.
 
-What the world's state and some digits come to is worked out once and remembered.
+What the world's state and some values come to is worked out once and remembered.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeAlias
 
-from rulec.runtime.online.columns import Items, OneStateColumns
+from rulec.logic.one_state import Unknown, total
+from rulec.runtime.moment import Moment
+from rulec.runtime.online.floors import Floors
 from rulec.runtime.online.inputs import Input
+from rulec.runtime.online.outline import Items, Outline
 from rulec.runtime.online.team import Team
+from rulec.runtime.online.told import MISSING, Told, default_told, values_of
+from rulec.trace import State
+from rulec.vocabulary import Enumeration, Vocabulary
 
 MOST = 1 << 12
 """So much is remembered before it is forgotten again."""
 
-
-class _Letters(dict[Any, int]):
-    """A team's letters in one state of the world, by the digits of its own inputs.
-
-    A single digit stands for itself, several are a tuple.
-    """
-
-    def __init__(self, team: Team, world: dict[Input, Any]) -> None:
-        self._team = team
-        self._world = world
-
-    def __missing__(self, own: Any) -> int:
-        digits = (own,) if len(self._team.own) == 1 else own
-        found = self._team.letter_of(
-            {**self._world, **dict(zip(self._team.own, digits, strict=True))}
-        )
-        if len(self) >= MOST:
-            self.clear()
-        self[own] = found
-        return found
+_Column: TypeAlias = Callable[[State, Sequence[Told]], Sequence[Any]]
+"""Of a state and its parts what is told of an input, for each of several bindings."""
 
 
 class Reading:
-    """What reads the letters of some bindings of a team, of which there are some."""
+    """Reads states of an outline, for teams with their bindings, of which each has some.
 
-    def __init__(self, team: Team, bindings: Sequence[Items], columns: OneStateColumns) -> None:
-        self._n_bindings = len(bindings)
-        self._columns = [(columns.column_of(one, bindings), one.digits) for one in team.own]
+    Raises:
+        LookupError, TypeError: such states need a closer look.
+    """
 
-    def letters(self, known: _Letters, columns: Sequence[Sequence[Any]]) -> Iterable[int]:
-        """A letter for each binding. Raises a LookupError or a TypeError if a value is missing."""
-        if not self._columns:
-            return (known[()],) * self._n_bindings
-        digits: list[Iterable[Any]] = [
-            columns[place] if of is None else of(columns[place]) for place, of in self._columns
+    def __init__(
+        self,
+        outline: Outline,
+        teams: Sequence[tuple[Team, Sequence[Items]]],
+        objects: Mapping[str, str],
+        vocabulary: Vocabulary,
+        floors: Floors,
+    ) -> None:
+        self.outline = outline
+        self._teams = [
+            _OfTeam(team, bindings, outline, objects, vocabulary, floors)
+            for team, bindings in teams
         ]
-        if len(digits) == 1:
-            return map(known.__getitem__, digits[0])
-        return map(known.__getitem__, zip(*digits, strict=True))
+        read = set[tuple[str, Items]]().union(*[one.read for one in self._teams])
+        # Whatever is read is looked at when a letter is made of it for the first time.
+        self._unread = list[tuple[int, slice, frozenset[object]]]()
+        for (name, items), (part, place) in outline.places.items():
+            declaration = vocabulary.declarations[name]
+            if isinstance(declaration, Enumeration) and (name, items) not in read:
+                values = frozenset([*declaration.values, MISSING])
+                self._unread.append((part, slice(place, place + 1), values))
+        self._known: dict[tuple[Told, ...], list[_Letters]] = {}
 
+    def letters(self, state: State, parts: tuple[Told, ...]) -> list[int]:
+        """For each binding of each team, one after the other, the letter that it reads.
 
-class World:
-    """What teams read of the world's state, and the letters that they read there."""
-
-    def __init__(self, teams: Sequence[Team]) -> None:
-        self._teams = teams
-        inputs = list(dict.fromkeys(one for team in teams for one in team.world))
-        self._plain = [one for one in inputs if one.number is None]
-        self._numbers = [one for one in inputs if one.number is not None]
-        self.names = [str(one.name) for one in (*self._plain, *self._numbers)]
-        self._digits = [_one_digit(one) for one in self._numbers]
-        self._known: dict[tuple[Any, ...], list[_Letters]] = {}
-
-    def letters(self, values: Sequence[Any]) -> list[_Letters]:
-        """For each team, where the world has these values of ``names``.
-
-        Raises a TypeError if a number is missing.
+        Raises a LookupError or a TypeError if the state needs a closer look.
         """
-        key = tuple(values)
-        if self._digits:
-            n_plain = len(self._plain)
-            digits = [of(value) for of, value in zip(self._digits, key[n_plain:], strict=True)]
-            key = (*key[:n_plain], *digits)
-        found = self._known.get(key)
-        if found is None:
-            world = dict(zip((*self._plain, *self._numbers), key, strict=True))
-            found = [_Letters(team, world) for team in self._teams]
+        for part, places, values in self._unread:
+            if not values.issuperset(parts[part][places]):
+                raise LookupError
+        world = parts[: self.outline.n_world]
+        known = self._known.get(world)
+        if known is None:
             if len(self._known) >= MOST:
                 self._known.clear()
-            self._known[key] = found
+            known = self._known[world] = [one.in_world(world) for one in self._teams]
+        found: list[int] = []
+        for one, letters in zip(self._teams, known, strict=True):
+            found += one.letters(letters, state, parts)
         return found
 
 
-def _one_digit(one: Input) -> Callable[[Any], Any]:
-    of = one.digits
-    assert of is not None
-    return lambda value: next(iter(of((value,))))
+class _Letters(dict[Any, int]):
+    """A team's letters by what is told of its own inputs, with the digits of all others.
+
+    What is told of a single input stands for itself, of several it is a tuple.
+    """
+
+    def __init__(
+        self, team: Team, own: Sequence[Input], others: Mapping[Input, Any], floors: Floors
+    ) -> None:
+        self._team = team
+        self._own = own
+        self._others = others
+        self._floors = floors
+
+    def __missing__(self, key: Any) -> int:
+        told = (key,) if len(self._own) == 1 else key
+        own = {
+            one: one.digit(each, self._floors) for one, each in zip(self._own, told, strict=True)
+        }
+        found = self._team.letter_of({**self._others, **own})
+        if len(self) >= MOST:
+            self.clear()
+        self[key] = found
+        return found
+
+
+class _OfTeam:
+    """What reads the letters of a team; ``read`` are the values that it looks at."""
+
+    def __init__(
+        self,
+        team: Team,
+        bindings: Sequence[Items],
+        outline: Outline,
+        objects: Mapping[str, str],
+        vocabulary: Vocabulary,
+        floors: Floors,
+    ) -> None:
+        self.read = set[tuple[str, Items]]()
+        self._team = team
+        self._floors = floors
+        self._n_bindings = len(bindings)
+        self._not_given: dict[Input, Any] = {}
+        self._world: list[tuple[Input, int, int]] = []
+        self._own: list[Input] = []
+        self._columns: list[_Column] = []
+        for one in (*team.world, *team.own):
+            about = [tuple([binding[place] for place in one.places]) for binding in bindings]
+            if one.name is None:
+                self._own.append(one)
+                self._columns.append(_summed(one, about, objects, vocabulary))
+                continue
+            if one.name not in outline.names:
+                default = default_told(vocabulary.declarations[one.name], floors)
+                self._not_given[one] = one.digit(default, floors)
+                continue
+            self.read.update((one.name, items) for items in about)
+            places = [outline.places[one.name, items] for items in about]
+            if one.places:
+                self._own.append(one)
+                self._columns.append(_given(places, outline))
+            else:
+                self._world.append((one, *places[0]))
+
+    def in_world(self, world: Sequence[Told]) -> _Letters:
+        """The letters where the parts of a state about the world are these."""
+        digits = {
+            one: one.digit(world[part][place], self._floors) for one, part, place in self._world
+        }
+        return _Letters(self._team, self._own, {**self._not_given, **digits}, self._floors)
+
+    def letters(self, known: _Letters, state: State, parts: Sequence[Told]) -> Iterable[int]:
+        """A letter for each binding."""
+        columns = [column(state, parts) for column in self._columns]
+        if not columns:
+            return (known[()],) * self._n_bindings
+        if len(columns) == 1:
+            return map(known.__getitem__, columns[0])
+        return map(known.__getitem__, zip(*columns, strict=True))
+
+
+def _given(places: Sequence[tuple[int, int]], outline: Outline) -> _Column:
+    """What is told at these places, which are all in one part."""
+    part = places[0][0]
+    if [place for _, place in places] == list(range(outline.sizes[part])):
+        return lambda _, parts: parts[part]
+    pick = values_of([place for _, place in places])
+    return lambda _, parts: pick(parts[part])
+
+
+def _summed(
+    one: Input, about: Sequence[Items], objects: Mapping[str, str], vocabulary: Vocabulary
+) -> _Column:
+    number = one.number
+    assert number is not None
+    bound = [dict(zip(one.variables, items, strict=True)) for items in about]
+
+    def column(state: State, _: Sequence[Told]) -> Sequence[int]:
+        moment = Moment(state, objects, vocabulary)
+        found = [total(number.terms, each, moment) for each in bound]
+        if any(isinstance(each, Unknown) for each in found):
+            raise LookupError
+        return [number.digit(each) for each in found if not isinstance(each, Unknown)]
+
+    return column

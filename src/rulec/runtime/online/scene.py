@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from rulec.automata.compiled import CompiledRulebook
 from rulec.automata.facts import counts
@@ -12,17 +13,25 @@ from rulec.diagnostics import Place
 from rulec.runtime.checking import check_state
 from rulec.runtime.facts import check_counting_facts
 from rulec.runtime.letters import Columns
-from rulec.runtime.online.columns import Items, OneStateColumns
-from rulec.runtime.online.gate import Gate
 from rulec.runtime.online.memory import Memory
+from rulec.runtime.online.outline import Items, Outline
 from rulec.runtime.online.prefix import Edge
-from rulec.runtime.online.reading import Reading, World
+from rulec.runtime.online.reading import Reading
 from rulec.runtime.online.team import Node, Ready, Team, Teams
+from rulec.runtime.online.told import Told
 from rulec.trace import State
 from rulec.vocabulary.choices import choices
 
 Letters: TypeAlias = list[int]
 """For each binding of each team, one after the other, the letter that it reads."""
+
+
+MOST_OUTLINES = 64
+"""So many outlines of states are remembered before they are forgotten again."""
+
+
+Known: TypeAlias = tuple[Outline, tuple[Told, ...]]
+"""The outline of a state, and what is told of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,51 +61,54 @@ class Scene:
     ) -> None:
         self.objects = dict(objects)
         self.teams = teams
-        self.memory = Memory(rulebook.vocabulary, teams.floors)
+        self.memory = Memory()
         self._rulebook = rulebook
-        self._gate = Gate(rulebook.vocabulary, self.objects)
-        self._careful = any(counts(fact.formula) for fact in rulebook.facts)
-        self._columns = OneStateColumns(rulebook.vocabulary, self.objects)
-        self._readings: list[tuple[int, Reading]] = []
-        self._world = World(teams.teams)
+        self._counting = any(counts(fact.formula) for fact in rulebook.facts)
+        self._readings: dict[tuple[str, ...], Reading | None] = {}
+        self._bound: list[tuple[Team, tuple[Items, ...]]] = []
         crowds: dict[str, Crowd] = {}
         end = 0
-        for index, team in enumerate(teams.teams):
+        for team in teams.teams:
             bindings = tuple(choices(team.types, self.objects, rulebook.vocabulary))
             begin, end = end, end + len(bindings)
             for number, ready in enumerate(team.rules):
                 place = slice(begin, end)
                 crowds[ready.rule.name] = Crowd(ready, bindings, team, place, number)
             if bindings:
-                self._readings.append((index, Reading(team, bindings, self._columns)))
+                self._bound.append((team, bindings))
         self.crowds = tuple([crowds[ready.rule.name] for ready in teams.rules])
-        declarations = rulebook.vocabulary.declarations
-        self._asked: list[tuple[str, Any]] = [
-            (name, declarations[name].default) for name in self._world.names
-        ]
 
-    def letters(self, state: State, number: int, place: Place | None) -> Letters:
-        """What the teams read of a state.
+    def read(self, state: State, number: int, place: Place | None) -> tuple[Letters, Known | None]:
+        """What the teams read of a state, and by what it is known, if that can be said.
 
         Raises:
             RulecError: R0502 to R0505 or R0508, naming the state by its ``number``.
         """
-        if self._gate.passes(state) and not self._careful:
-            found: Letters = []
-            get: Callable[[str, Any], Any] = state.get
-            try:
-                world = self._world.letters([get(name, default) for name, default in self._asked])
-                columns = self._columns.fetched(state)
-                for index, reading in self._readings:
-                    found += reading.letters(world[index], columns)
-            except (LookupError, TypeError):
-                pass
-            else:
-                return found
-        return self._careful_letters(state, number, place)
+        known = None
+        try:
+            reading = self._reading_of(tuple(state))
+            if reading is not None:
+                told = reading.outline.told(state)
+                known = reading.outline, told
+                if not self._counting:
+                    return reading.letters(state, told), known
+        except (LookupError, TypeError):
+            pass
+        return self._careful_letters(state, number, place), known
+
+    def _reading_of(self, names: tuple[str, ...]) -> Reading | None:
+        """What reads states that give values to these names; None if they need a closer look."""
+        if names not in self._readings:
+            if len(self._readings) >= MOST_OUTLINES:
+                self._readings.clear()
+            about = (self.objects, self._rulebook.vocabulary, self.teams.floors)
+            self._readings[names] = None
+            with suppress(LookupError, TypeError):
+                self._readings[names] = Reading(Outline(names, *about), self._bound, *about)
+        return self._readings[names]
 
     def _careful_letters(self, state: State, number: int, place: Place | None) -> Letters:
-        """As ``letters``, the way ``verify`` goes, which knows every case and every complaint."""
+        """Their letters, the way ``verify`` goes, which knows every case and every complaint."""
         where = f"state {number}"
         check_state(state, self.objects, self._rulebook.vocabulary, where, place)
         columns = Columns(

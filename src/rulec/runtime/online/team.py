@@ -12,8 +12,8 @@ from typing import Any
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.machine import IMPOSSIBLE
+from rulec.runtime.online.floors import Floors, floors_of
 from rulec.runtime.online.inputs import Input, Weigh, inputs_of
-from rulec.runtime.online.likeness import Floors, floors_of
 from rulec.runtime.online.prefix import Edge, Links, Prefix, linked
 
 MOST_LEARNED = 1 << 16
@@ -95,7 +95,8 @@ class Team:
     def letter_of(self, digits: dict[Input, Any]) -> int:
         """The letter where inputs have these digits.
 
-        Raises a LookupError or a TypeError if one is missing, or if there is no such state.
+        Raises a LookupError or a TypeError if one is missing or wrong, or if there is no such
+        state.
         """
         classes = []
         for ready in self.rules:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from math import cos, degrees, pi
 
 import numpy as np
 
+from rulec.scenario.alternatives import weighted
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import (
     PEDESTRIAN,
@@ -80,8 +82,11 @@ class View:
         return [box if box.overlaps(wide) else None for box in boxes]
 
 
-def obstacles(view: View, ego: str | None, prediction: Prediction) -> Iterator[Obstacle]:
+def obstacles(
+    view: View, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
+) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
+    predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [one for one in view.recording.participants if one.id != ego]
     since = [
         [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0] for one in others
@@ -90,9 +95,14 @@ def obstacles(view: View, ego: str | None, prediction: Prediction) -> Iterator[O
     boxes = iter(view.boxes(outlines))
     for one, steps in zip(others, since, strict=True):
         own = [next(boxes) for _ in steps]
-        motion = _motion(view, one, steps, own, prediction)
-        if motion is None:
+        motions = [
+            (weight, motion)
+            for kind, weight in predictions.items()
+            if (motion := _motion(view, one, steps, own, kind)) is not None
+        ]
+        if not motions:
             continue
+        expected = weighted(motions)
         first = next(box for box in own if box is not None)
         words = WORDS.get(one.type, WORDS["unknown"])
         yield Obstacle(
@@ -100,10 +110,12 @@ def obstacles(view: View, ego: str | None, prediction: Prediction) -> Iterator[O
             words[0],
             first.s_max - first.s_min,
             first.d_max - first.d_min,
-            motion,
+            expected.motion,
             _walking_direction(view, one) if words[0] == PEDESTRIAN else None,
             _signals(one),
             words[1:],
+            expected.weight,
+            expected.alternatives,
         )
 
 

@@ -1,0 +1,42 @@
+"""What an obstacle may do: one motion, or several with their probabilities."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.scenario.model import Alternative, Motion
+
+_ROUNDING = Fraction(1, 1000)
+
+
+@dataclass(frozen=True, slots=True)
+class Weighted:
+    """The likeliest motion with its weight, and the others; the weights add up to 1."""
+
+    motion: Motion
+    weight: Fraction = Fraction(1)
+    alternatives: tuple[Alternative, ...] = ()
+
+
+def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
+    """Motions in order of their weights, which become probabilities; those that are equal as one.
+
+    Of equally likely ones the first stays first.
+    """
+    together: dict[Motion, Fraction] = {}
+    for weight, motion in motions:
+        together[motion] = together.get(motion, Fraction(0)) + weight
+    whole = sum(together.values(), Fraction(0))
+    (first, likeliest), *rest = sorted(together.items(), key=lambda item: -item[1])
+    return Weighted(
+        first,
+        likeliest / whole,
+        tuple(Alternative(weight / whole, motion) for motion, weight in rest),
+    )
+
+
+def adds_up(total: Fraction) -> bool:
+    """Is it 1, as far as weights are written, such as three times 0.333?"""
+    return abs(total - 1) <= _ROUNDING
