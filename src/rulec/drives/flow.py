@@ -71,7 +71,7 @@ def _queues(view: View) -> tuple[Flags, Values]:
             allowed = np.maximum(
                 limits.queue_gap_m, limits.queue_headway_s * speed[rows[:-1], state]
             )
-            queue[state, lane] = np.median(gaps / allowed) <= 1.0
+            queue[state, lane] = np.mean(gaps <= allowed) >= 0.5
             middle[state, lane] = np.median(speed[rows, state]) * KMH
     return queue, middle
 

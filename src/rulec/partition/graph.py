@@ -129,7 +129,7 @@ def navigation_graph(
         for (before, after), instant in zip(pairwise(planes), instants, strict=True)
     ]
     layers = tuple(
-        Layer(times.start(p), names, others, flat.cells, neighbours(flat, adjacency))
+        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
         for p, (flat, names, others) in enumerate(
             zip(planes, places.names, places.others, strict=True)
         )

@@ -109,6 +109,6 @@ class Layer:
 
     start_s: float
     objects: tuple[str, ...]
-    alternatives: tuple[str, ...]
     cells: tuple[Cell, ...]
     neighbours: tuple[tuple[int, ...], ...]
+    alternatives: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.runtime.batch.joint import joined
-from rulec.runtime.batch.long import first_lost_of_one, is_long
+from rulec.runtime.batch.long import first_lost_of_one, run_alone
 from rulec.runtime.batch.running import first_lost, run
 from rulec.runtime.batch.tasks import Task
 from rulec.trace.columns import Array, Layout
@@ -58,7 +58,7 @@ class Judged:
         first, last = self.task.stretch
         ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
         machine = self.task.rule.machine
-        if len(ends) and is_long(len(ends), int(ends[0]) - first, len(machine.following)):
+        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.following)):
             meant = np.array(self._letters)
             words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
             lost = np.array([first_lost_of_one(machine, meant.take(word)) for word in words])

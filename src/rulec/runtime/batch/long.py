@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 from rulec.automata.machine import Machine
 from rulec.trace.columns import Array
 
+_FEW = 16
+"""A step of so few traces side by side takes longer than one step of each."""
+
 FEWEST_STEPS = 1 << 10
 """Shorter traces are not long."""
 
@@ -28,8 +31,10 @@ _STEP_IN_PIECES = 64
 """How much longer a step of all pieces takes than finding where one of them begins."""
 
 
-def is_long(n_traces: int, n_steps: int, n_states: int) -> bool:
+def run_alone(n_traces: int, n_steps: int, n_states: int) -> bool:
     """Are these traces run one by one, by a machine with so many states?"""
+    if n_traces <= _FEW and n_steps >= _FEW:
+        return True
     return n_steps >= FEWEST_STEPS and n_traces * min(n_states, _MOST_STATES) <= _MOST_RUNS
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rulec.automata.machine import Machine
 from rulec.runtime.batch.joint import Joint
 from rulec.runtime.batch.leaping import pays, run_leaping
-from rulec.runtime.batch.long import is_long, visited
+from rulec.runtime.batch.long import run_alone, visited
 from rulec.runtime.batch.steps import Step, steps_of
 from rulec.trace.columns import Array, Layout, smallest_unsigned
 
@@ -34,7 +34,7 @@ def run(
         For each trace a joint verdict, as in ``Joint``.
     """
     n_states, n_cells = len(joint.following), len(joint.letters)
-    if is_long(layout.n_traces, layout.n_steps - first, n_states):
+    if run_alone(layout.n_traces, layout.n_steps - first, n_states):
         return _run_long(joint, cells, layout, first, last)
     steps = steps_of(layout, first, last)
     if pays(n_states, n_cells, layout.n_traces):

@@ -36,7 +36,7 @@ MOST_STATES = 1 << 18
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
 
-_LONG = 1 << 9
+_LONG = 1 << 6
 """Fewer of them are judged together, too, if they have so many states."""
 
 _SHARED = 4
