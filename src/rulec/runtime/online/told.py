@@ -69,9 +69,10 @@ def _truths(values: Told) -> Told:
 
 def _numbers(values: Told) -> Told:
     # Whole numbers and floats of this size that are equal have the same decimals. nan has no size.
-    if _NUMBERS.issuperset(map(type, values)) and sum(map(abs, values)) <= EXACT_IN_FLOATS:
-        return values
-    raise LookupError
+    for value in values:
+        if not -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS or type(value) not in _NUMBERS:
+            raise LookupError
+    return values
 
 
 def _digits(floors: Sequence[float], values: Told) -> Told:
