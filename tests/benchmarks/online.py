@@ -1,6 +1,7 @@
 """How long a state of a running trace takes a monitor, encoding and checking it included.
 
-States differ from each other, in that every other vehicle has moved on, and were made before.
+States differ from each other, in that every other vehicle has moved on and numbers have changed,
+and were made before. A drive goes on from round to round, so none comes again but by chance.
 Judging the growing trace anew at each state by `verify` is measured beside, on short traces.
 """
 
@@ -9,11 +10,14 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from functools import partial
+from itertools import islice
 from typing import Any
 
+from driving import PLACES, drive
 from figure import Figure, Result
 from peer import peers
 from program import run
+from stream import streamed
 from timing import in_turns, processor_time
 
 import rulec
@@ -24,29 +28,17 @@ N_STATES = 300
 N_PREFIXES = 30
 VEHICLES = (1, 4, 16, 52)
 PROGRAMS = {"rtamt": "rtamt_online", "reelay": "reelay_online"}
-PLACES = {
-    "esterle2019": [{"position": place} for place in "bbblllff"],
-    "vienna": [
-        {"station": station, "lateral": lateral, "gap": 30.5}
-        for station, lateral in [
-            ("behind", "same_lane"),
-            ("behind", "left_of"),
-            ("beside", "left_of"),
-            ("in_front_of", "left_of"),
-            ("in_front_of", "same_lane"),
-        ]
-    ],
-}
 RESPONSE = "always (p implies once[<= 3 steps] q)"
 WANTED_NS = 150
 
 
 def measure(rounds: int) -> Iterator[Result]:
-    """Rulebooks and vehicles, then other libraries."""
+    """Rulebooks and vehicles, other libraries, and a stream."""
     for name, places in PLACES.items():
         yield driven(name, places, rounds)
     yield prefixes(rounds)
     yield compared(rounds)
+    yield streamed(min(rounds, 5))
 
 
 def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
@@ -55,16 +47,15 @@ def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
     tasks, n_instances = {}, {}
     for n_vehicles in VEHICLES:
         objects = {f"v{number}": "vehicle" for number in range(n_vehicles)}
-        states = list(drive(places, list(objects), N_STATES))
+        states = drive(places, list(objects))
         monitor = Monitor(rules)
         label = f"{n_vehicles} vehicle{'s' if n_vehicles > 1 else ''}"
-        n_instances[label] = sum(map(len, bindings(monitor, states[0], objects)))
-        work = partial(taken_in, monitor, states, objects)
-        tasks[label] = processor_time(work, N_STATES * n_instances[label])
+        n_instances[label] = sum(map(len, bindings(monitor, next(states), objects)))
+        tasks[label] = partial(further, monitor, states, objects, n_instances[label])
     return Result(
         f"Online: {name}",
-        f"{N_STATES} states of a drive, {len(rules.rules)} rules; per state and rule instance, "
-        "which is a rule with objects bound",
+        f"{N_STATES} states of a drive at a time, {len(rules.rules)} rules; per state and rule "
+        "instance, which is a rule with objects bound",
         [
             one.figure(
                 f"{label}, {n_instances[label]} instances "
@@ -74,15 +65,23 @@ def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
             )
             for label, one in in_turns(tasks, rounds).items()
         ],
-        ["A state takes a few microseconds however little it says; few instances share them."],
+        ["A state takes a while however little it says; few instances share it."],
     )
+
+
+def further(
+    monitor: Monitor, states: Iterator[Any], objects: dict[str, str], n_instances: int
+) -> float:
+    """Nanoseconds per state and instance of a drive that goes on."""
+    some = list(islice(states, N_STATES))
+    return processor_time(partial(taken_in, monitor, some, objects), N_STATES * n_instances)()
 
 
 def prefixes(rounds: int) -> Result:
     """A monitor, and the growing trace judged anew."""
     rules = rulec.compile_rulebook("esterle2019")
     objects = {"v0": "vehicle"}
-    states = list(drive(PLACES["esterle2019"], ["v0"], N_PREFIXES))
+    states = list(islice(drive(PLACES["esterle2019"], ["v0"]), N_PREFIXES))
     traces = [
         rulec.Trace("t", 1.0, objects, tuple(states[:number]))
         for number in range(1, N_PREFIXES + 1)
@@ -104,18 +103,6 @@ def prefixes(rounds: int) -> Result:
             taken[again].figure("verify of the trace so far", "ns"),
         ],
     )
-
-
-def drive(places: list[dict[str, Any]], names: list[str], n_states: int) -> Iterator[Any]:
-    """States in which vehicles move on, from one place to the next, every other one at a time."""
-    chance = random.Random(5)
-    at = [chance.randrange(len(places)) for _ in names]
-    for _ in range(n_states):
-        at = [(place + chance.randint(0, 1)) % len(places) for place in at]
-        yield {
-            relation: {name: places[place][relation] for name, place in zip(names, at, strict=True)}
-            for relation in places[0]
-        }
 
 
 def bindings(monitor: Monitor, state: Any, objects: Any) -> Iterator[list[Any]]:

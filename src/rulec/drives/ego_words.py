@@ -27,8 +27,8 @@ def ego_words(view: View) -> Words:
     limits = view.thresholds
     count = view.states
     (participant,) = view.ego.participants
-    speed = rounded(standing_at_0(np.abs(view.ego.speed[0]) * KMH, limits))
-    gained = view.ego.acceleration[0] * np.sign(view.ego.speed[0])
+    speed = rounded(standing_at_0(view.ego.speed[0] * KMH, limits))
+    gained = view.ego.acceleration[0]
     there = view.road.lanes_at(view.own.s[0])
     lane = steady_lane(view, there)
     return Words(

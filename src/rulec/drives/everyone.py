@@ -23,7 +23,7 @@ Flags: TypeAlias = NDArray[bool_]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Everyone:
-    """NaN where somebody is not there. Speeds (m/s) are along ``heading``, from displacement."""
+    """NaN where somebody is not there. Velocities (m/s) and accelerations are from displacement."""
 
     participants: tuple[Participant, ...]
     first: int
@@ -31,6 +31,8 @@ class Everyone:
     x: Values
     y: Values
     heading: Values
+    vx: Values
+    vy: Values
     speed: Values
     acceleration: Values
 
@@ -73,13 +75,15 @@ def everyone(recording: Recording, thresholds: Thresholds) -> Everyone:
     reach = max(1, round(thresholds.smoothing_s / 2 / recording.step_s))
     duration, before, after = _around(there, reach)
     lines = np.arange(shape[0])[:, None]
-    ahead = np.cos(heading) * (x[lines, after] - x[lines, before])
-    ahead += np.sin(heading) * (y[lines, after] - y[lines, before])
     seconds = np.where(duration > 0, duration, np.nan) * recording.step_s
-    speed = np.where(duration > 0, ahead / seconds, said)
+    vx = (x[lines, after] - x[lines, before]) / seconds
+    vy = (y[lines, after] - y[lines, before]) / seconds
+    once = there & (duration == 0)
+    vx, vy = np.where(once, said * np.cos(heading), vx), np.where(once, said * np.sin(heading), vy)
+    speed = np.hypot(vx, vy)
     gained = (speed[lines, after] - speed[lines, before]) / seconds
     acceleration = np.where(there, np.nan_to_num(gained), np.nan)
-    return Everyone(people, first, there, x, y, heading, speed, acceleration)
+    return Everyone(people, first, there, x, y, heading, vx, vy, speed, acceleration)
 
 
 def _places(one: Participant) -> dict[int, tuple[float, float, float, float]]:

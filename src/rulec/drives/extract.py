@@ -20,6 +20,7 @@ from rulec.drives.junction_words import junction_words
 from rulec.drives.junctions import in_junctions
 from rulec.drives.lane_change_words import lane_change_words
 from rulec.drives.map_words import map_words
+from rulec.drives.mark_words import mark_words
 from rulec.drives.nearness import near
 from rulec.drives.other_words import other_words
 from rulec.drives.placed import Placed, placed
@@ -182,7 +183,7 @@ def _unbroken(people: Everyone, row: int, moments: Moments) -> Iterator[Moments]
 
 def _told(seen: View, ego: str, name: str, telling: Telling) -> Drive:
     words = ego_words(seen) | other_words(seen) | map_words(seen) | junction_words(seen)
-    words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen)
+    words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen) | mark_words(seen)
     types = [WORDS.get(one.type, WORDS["unknown"]) for one in seen.people.participants]
     if telling.vocabulary is not None:
         words = fitted(words, types, telling.vocabulary, telling.names)

@@ -110,7 +110,7 @@ def _cut(all_placed: Placed, rows: NDArray[intp] | list[int], span: slice) -> Pl
 
 
 def _people(people: Everyone, rows: NDArray[intp] | list[int], span: slice) -> Everyone:
-    names = ("there", "x", "y", "heading", "speed", "acceleration")
+    names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
     return replace(
         people,
         participants=tuple(people.participants[row] for row in rows),

@@ -99,7 +99,8 @@ class Monitor:
         """
         here, number, _ = self._now
         scene = here.scene
-        if objects == scene.objects:
+        same_objects = objects == scene.objects
+        if same_objects:
             # A method that is looked up and called at once would be looked up in the class first.
             key = scene.memory.key
             try:
@@ -110,14 +111,16 @@ class Monitor:
                 number += 1
                 self._now = after, number, changes
                 return SoFar(number, after.verdict, after.rules, changes)
-        return self._step_slowly(state, objects, place)
+        return self._step_slowly(state, objects, place, same_objects)
 
-    def _step_slowly(self, state: State, objects: Mapping[str, str], place: Place | None) -> SoFar:
+    def _step_slowly(
+        self, state: State, objects: Mapping[str, str], place: Place | None, same_objects: bool
+    ) -> SoFar:
         """As ``step``, whether such a state has been there before or not."""
         here, number, _ = self._now
         number += 1
         scene = here.scene
-        if objects != scene.objects:
+        if not same_objects:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)

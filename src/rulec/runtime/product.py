@@ -13,6 +13,7 @@ from operator import getitem
 from typing import Any
 
 from rulec.runtime.effects import LOST, Effect, Effects
+from rulec.runtime.room import room_for, too_many
 from rulec.runtime.ways import Step
 from rulec.trace import TraceGraph
 
@@ -108,8 +109,12 @@ def explore(effects: Effects, enter: Enter = kept, start: Memory | None = None) 
 
     Left to themselves, ``enter`` drops every path that loses a rule, and ``start``, the memory
     before the first node, is that of the machines.
+
+    Raises:
+        RulecError: R0616 if it would be too large.
     """
     graph = effects.graph
+    room = room_for(graph)
     first = effects.nodes[0][graph.start] if effects.starts else None
     memory = None if first is None else enter(first, effects.waiting if start is None else start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
@@ -119,8 +124,11 @@ def explore(effects: Effects, enter: Enter = kept, start: Memory | None = None) 
     for rows, nodes in zip(effects.steps, effects.nodes[1:], strict=True):
         key, origins = (id(rows), id(nodes)), list(counts[-1])
         if key not in known or known[key].origins != origins:
-            known[key] = _ways(origins, rows, nodes, enter)
+            known[key] = _ways(origins, rows, nodes, enter, room)
         onward = known[key]
+        room -= len(onward.targets)
+        if room < 0:
+            raise too_many(graph)
         # One more, in which paths come together that are dropped.
         totals = [0] * (len(onward.targets) + 1)
         for count, indices in zip(counts[-1].values(), onward.into, strict=True):
@@ -136,7 +144,9 @@ def _ways(
     rows: Sequence[Sequence[Step]],
     nodes: Sequence[Sequence[Effect]],
     enter: Enter,
+    room: int,
 ) -> Ways:
+    """The ways from these product nodes; not all, if there is no room for all they lead to."""
     targets: list[ProductNode] = []
     index_of: dict[ProductNode, int] = {}
     # By memory and node.
@@ -146,6 +156,8 @@ def _ways(
         known = entered.get(memory)
         if known is None:
             known = entered[memory] = {}
+        if len(targets) > room:
+            break
         into: list[int] = []
         for target, _ in rows[node]:
             at = known.get(target)

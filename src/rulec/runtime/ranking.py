@@ -16,6 +16,7 @@ from operator import add, getitem, gt
 from rulec.runtime.effects import LOST, SAFE, Effect, Effects
 from rulec.runtime.penalties import Penalty, Ranks
 from rulec.runtime.product import Joint, Product, explore
+from rulec.runtime.room import room_for, too_many
 
 Paying = tuple[Joint, Penalty]
 """The machines' states, and what has been violated so far."""
@@ -85,7 +86,11 @@ def _ascending(
     """The penalties of paths in the order of ``ranks``; only what is ``worth`` it is extended.
 
     Of partial paths with one penalty the longer ones come first, so goals are soon found.
+
+    Raises:
+        RulecError: R0616 if there are too many partial paths worth it.
     """
+    room = room_for(effects.graph)
     fee = _fees(effects, ranks)
     known: dict[tuple[int, int, Joint], tuple[Joint, Penalty]] = {}
     queue: list[tuple[Penalty, int, int, int, Joint]] = []
@@ -106,6 +111,9 @@ def _ascending(
         penalty, earlier, _, node, joint = heappop(queue)
         if not worth((-earlier, node, joint), penalty):
             continue
+        room -= 1
+        if room < 0:
+            raise too_many(effects.graph)
         if -earlier == len(effects.steps):
             yield penalty
             continue

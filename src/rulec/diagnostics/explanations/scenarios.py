@@ -47,6 +47,16 @@ cat > fcd.xml <<'END'
 END
 """
 
+_WEIGHTS = """\
+{{ echo "rulebook many use road"; nexts=""; w=1; for rule in $(seq 16); do
+    echo "soft rule r$rule (v: vehicle) weight {weight} {{ require $nexts same_lane(v) }}"
+    nexts="$nexts next"; w=$((2 * w)); done
+  echo "soft rule same (v: vehicle) weight $w {{ require $nexts same_lane(v) }}"
+  echo "soft rule other (v: vehicle) weight $w {{ require $nexts not same_lane(v) }}"
+}} > many.rules
+rulec maneuvers s2 --step 0.25 --rank 1 -r ./many.rules
+"""
+
 SCENARIOS = {
     "R0601": Explanation(
         "a scenario's name is unknown",
@@ -177,6 +187,17 @@ SCENARIOS = {
         "everybody is near its roads. Data with geographic coordinates cannot be used.",
         _NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
         _NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+        "command",
+    ),
+    "R0616": Explanation(
+        "rules keep too many maneuvers apart",
+        "Maneuvers are counted and ranked together where they are at one place, the automata of "
+        "all rules are in one state, and what is violated costs the same. Rules of the law come to "
+        "few such states and costs, but there can be as many states as the product of all automata "
+        "has, and as many costs as rules have subsets. Judge by fewer rules at a time, choose a "
+        "larger step, or let rules that matter alike have one weight.",
+        _WEIGHTS.format(weight="$w"),
+        _WEIGHTS.format(weight="1"),
         "command",
     ),
 }

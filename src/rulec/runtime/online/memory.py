@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NoReturn
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Any
 
 from rulec.runtime.online.outline import Key, Outline
 from rulec.runtime.online.told import Told
@@ -12,10 +13,13 @@ if TYPE_CHECKING:
     from rulec.runtime.online.team import Node
 
 MOST = 1 << 12
-"""So much is remembered before it is forgotten again; another outline costs a sixteenth of it."""
+"""So many states are remembered before all are forgotten again."""
+
+TRIAL = 1 << 9
+"""After so many it is asked whether that was of any help; another outline counts as a sixteenth."""
 
 REST = 16
-"""If that was of little help, nothing is remembered for so many times as many states."""
+"""If it was of little help, nothing more is remembered for so many times as many states."""
 
 
 class Memory:
@@ -30,8 +34,9 @@ class Memory:
         self._rests_until = 0
         self._stranger = -1
         self._standings: dict[tuple[Node, ...], Standing] = {}
-        self._since = 0
         self._n_learned = 0
+        self._n_tried = 0
+        self._tried_since = 0
         self.key: Key = _of_none
 
     def learn(
@@ -49,12 +54,13 @@ class Memory:
         """
         if number < self._rests_until:
             return after
-        if self._n_learned >= MOST:
-            helpful = number - self._since >= 2 * MOST
-            self._rests_until = 0 if helpful else number + REST * MOST
-            self._forget(here)
-            self._n_learned, self._since = 0, number
-            return after
+        if self._n_tried >= TRIAL:
+            helpful = number - self._tried_since >= 2 * TRIAL
+            self._n_tried, self._tried_since = 0, number
+            if not helpful:
+                self._rests_until = self._tried_since = number + REST * TRIAL
+                self.key = _of_none
+                return after
         outline, told = known
         if outline is not self._outline:
             # One stranger changes nothing, two in a row do.
@@ -62,18 +68,24 @@ class Memory:
                 self._stranger = number
                 return self._standings.setdefault(after.nodes, after)
             self._forget(here)
-            self._n_learned += MOST // 16
-            self._outline, self.key = outline, outline.key
+            self._n_tried += TRIAL // 16
+            self._outline = outline
+        elif self._n_learned >= MOST:
+            self._forget(here)
+        self.key = outline.key
         after = self._standings.setdefault(after.nodes, after)
         here.after[outline.key_of(told)] = after, changes
         self._n_learned += 1
+        self._n_tried += 1
         return after
 
     def _forget(self, here: Standing) -> None:
-        self._outline, self.key = None, _of_none
+        self.key = _of_none
         here.after.clear()
         self._standings = {here.nodes: here}
+        self._n_learned = 0
 
 
-def _of_none(_: Any) -> NoReturn:
-    raise LookupError
+def _of_none(_: Any) -> Hashable:
+    """The key of no state."""
+    return None

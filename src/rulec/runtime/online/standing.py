@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
-from operator import attrgetter
+from operator import attrgetter, getitem
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
@@ -48,12 +48,14 @@ class Standing(msgspec.Struct, frozen=True, eq=False):
     """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
 
     ``nodes`` say where the machines of each team stand for each binding, in the order of the
-    scene's teams. ``n_violations`` is how many bindings have violated their rule for good.
+    scene's teams; ``verdicts`` are theirs. ``n_violations`` is how many bindings have violated
+    their rule for good.
     ``after`` is what is remembered of the standings behind this one, by the keys of states.
     """
 
     scene: Scene
     nodes: tuple[Node, ...]
+    verdicts: list[tuple[Prefix, ...]]
     verdict: Prefix
     rules: Mapping[str, Prefix]
     n_violations: int
@@ -95,14 +97,17 @@ def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
     Takes no longer for a long past than for a short one.
     """
     if scene is here.scene:
-        before, changes = here.nodes, list[Change]()
-        nodes = tuple([node[letter] for node, letter in zip(before, letters, strict=True)])
-        if not _differ(before, nodes):
-            return Standing(scene, nodes, here.verdict, here.rules, here.n_violations), ()
+        before = here.nodes
+        nodes = tuple(map(getitem, before, letters))
+        verdicts = [*map(_VERDICTS, nodes)]
+        if verdicts == here.verdicts:
+            same = (here.verdict, here.rules, here.n_violations)
+            return Standing(scene, nodes, verdicts, *same), ()
+        changes: list[Change] = []
     else:
         edges, changes = carried_over(here.scene, here.nodes, scene)
         before = nodes_at(scene, edges)
-        nodes = tuple([node[letter] for node, letter in zip(before, letters, strict=True)])
+        nodes = tuple(map(getitem, before, letters))
     changes += _changes(scene, before, nodes)
     lost = {rule for rule, verdict in here.rules.items() if verdict == "violated"}
     lost.update(one.rule for one in changes if one.verdict == "violated")
@@ -134,12 +139,6 @@ def carried_over(
     return entered, ended
 
 
-def _differ(before: Sequence[Node], after: Sequence[Node]) -> bool:
-    """Has any binding another verdict than before?"""
-    # Nodes that are alike are identical: then no machine has moved.
-    return before != after and [*map(_VERDICTS, before)] != [*map(_VERDICTS, after)]
-
-
 def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
     """The bindings with another verdict than before."""
     for crowd in scene.crowds:
@@ -158,7 +157,8 @@ def _standing(scene: Scene, nodes: tuple[Node, ...], lost: Set[str], n_violation
     }
     hard = (crowd.ready.rule for crowd in scene.crowds if crowd.ready.rule.strength == "hard")
     verdict = together(rules[rule.name] for rule in hard)
-    return Standing(scene, nodes, verdict, MappingProxyType(rules), n_violations)
+    verdicts = [*map(_VERDICTS, nodes)]
+    return Standing(scene, nodes, verdicts, verdict, MappingProxyType(rules), n_violations)
 
 
 def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from math import inf
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from xml.parsers.expat import XMLParserType
 
@@ -21,7 +22,7 @@ import numpy as np
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.scenario.commonroad.countries import side_in
 from rulec.scenario.commonroad.moving import participants_of, problem_of
-from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Points, Recording
+from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Mark, Points, Recording
 from rulec.scenario.safe_xml import XmlFormat, is_packed, scan, short
 
 LONGEST_M = 20_000.0
@@ -34,6 +35,20 @@ COMMONROAD = XmlFormat(
     "CommonRoad's format is described at https://commonroad.in.tum.de",
 )
 VERSIONS = ("2018b", "2020a")
+
+
+_MARKS: Mapping[str, Mark] = MappingProxyType(
+    {
+        "solid": "solid",
+        "broad_solid": "solid",
+        "solid_solid": "solid",
+        "dashed": "broken",
+        "broad_dashed": "broken",
+        "dashed_dashed": "broken",
+        "no_marking": "none",
+    }
+)
+"""CommonRoad's words for marks; those of two kinds say no more than nothing, for want of a side."""
 
 
 def read_commonroad(path: Path) -> Recording:
@@ -165,6 +180,8 @@ def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]
         frozenset(element.traffic_sign_element_id.name for element in elements),
         min(limits, default=None),
         tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
+        _MARKS.get(lanelet.line_marking_left_vertices.value),
+        _MARKS.get(lanelet.line_marking_right_vertices.value),
     )
 
 

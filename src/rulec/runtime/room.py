@@ -1,0 +1,27 @@
+"""How much may be kept apart: rules can make that grow exponentially, and a graph cannot tell."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.trace import TraceGraph
+
+MOST = 1 << 17
+"""So many kinds of partial paths are kept apart at most, whatever the graph."""
+
+MOST_PER_NODE = 32
+"""So many for each of its nodes, if that is more. Rules of the law come to less than one."""
+
+
+def room_for(graph: TraceGraph) -> int:
+    """How many kinds of partial paths may be kept apart in a graph."""
+    return max(MOST, MOST_PER_NODE * sum(map(len, graph.states)))
+
+
+def too_many(graph: TraceGraph) -> RulecError:
+    """There is no room for so many."""
+    message = (
+        f"these rules keep more than {room_for(graph):,} kinds of partial maneuvers apart, by "
+        "where they are, what the automata remember, and what is violated"
+    )
+    help_text = "take fewer rules at a time, a larger step, or the same weight for several rules"
+    return RulecError(Diagnostic("R0616", message, help=help_text))
