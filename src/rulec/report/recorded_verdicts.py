@@ -54,7 +54,7 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = judged.recording
     lines = [
-        f"recording   {recording.name}: {tally.judged} drives in steps of {recording.step_s:g} s",
+        f"recording   {recording.name}: {_drives(tally.judged)} in steps of {recording.step_s:g} s",
         *_not_judged(tally.not_judged),
     ]
     if judged.mirrored:
@@ -69,6 +69,10 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
+
+
+def _drives(count: int) -> str:
+    return f"{count:,} {'drive' if count == 1 else 'drives'}"
 
 
 def _not_judged(found: Sequence[NoDrive]) -> Iterator[str]:
