@@ -99,6 +99,10 @@ CASES_OF_TIME = {
         ([Q, NEITHER, NEITHER, P], ("goes_on @ 0", "since_q @ 3", "began @ 3")),
         ([Q, BOTH], ("goes_on @ 0", "began @ 1")),
     ),
+    "the past, the last state of the only trace going on": case(
+        f"rulebook past\n{SIGNALS}{PAST}",
+        ([Q, P, P], ("goes_on @ 0", "began @ 1", "since_q")),
+    ),
     "the past, where a trace ends": case(
         f"rulebook past\nsemantics finite\n{SIGNALS}{PAST}",
         ([P], ("goes_on", "since_q @ 0")),
@@ -130,13 +134,20 @@ CASES_OF_TIME = {
         f"rulebook bounds\n{SIGNALS}"
         "hard rule soon  { require always (p implies eventually[<= 2 steps] q) }\n"
         "hard rule later { require always (p implies next[2 steps] q) }\n"
-        "hard rule while { require p implies p until[2 steps .. 3 steps] q }\n",
-        ([P, P, Q], ()),
-        ([P, NEITHER, Q], ("while @ 1",)),
-        ([P, NEITHER, NEITHER, Q], ("soon @ 2", "later @ 2", "while @ 1")),
-        ([P, P], ("soon", "later", "while")),
+        "hard rule while { require p implies p until[2 steps .. 3 steps] q }\n"
+        "soft rule at_ease { require p weak until[2 steps .. 3 steps] q }\n"
+        "soft rule insisting { require q strong release[2 steps .. 3 steps] p }\n",
+        ([P, P, Q], ("insisting @ 2",)),
+        ([P, NEITHER, Q], ("while @ 1", "at_ease @ 1", "insisting @ 2")),
+        (
+            [P, NEITHER, NEITHER, Q],
+            ("soon @ 2", "later @ 2", "while @ 1", "at_ease @ 1", "insisting @ 2"),
+        ),
+        ([P, P], ("soon", "later", "while", "insisting")),
+        # Within the range there is always p, but not on the way there.
+        ([P, NEITHER, P], ("soon @ 2", "later @ 2", "while @ 1", "at_ease @ 1", "insisting")),
         # q goes on, so it is there two and three steps later, but p is not until then.
-        ([P, Q], ("while @ 1",)),
+        ([P, Q], ("while @ 1", "at_ease @ 1")),
         ([BOTH], ()),
     ),
     "more pending than a byte can tell apart": case(
