@@ -159,6 +159,16 @@ CASES_OF_TIME = {
         ([{"a1": True, "a2": True}, {"b2": True, "a0": True}, {"b0": True}], ("answered",)),
         *(([{one: True}], ("answered",)) for one in ASKED),
     ),
+    "a thousand states and more": case(
+        f"rulebook long\n{SIGNALS}"
+        "hard rule not_both { require never (p and q) }\n"
+        "hard rule in_time { require always (p implies next q) }\n"
+        "hard rule comes { require eventually q }",
+        ([NEITHER] * 1500, ("comes",)),
+        ([*[NEITHER] * 1200, P, Q, *[NEITHER] * 400], ()),
+        ([*[P, Q] * 550, BOTH, *[Q] * 10], ("not_both @ 1100",)),
+        ([*[P, Q] * 550, P, NEITHER, BOTH], ("in_time @ 1101", "not_both @ 1102")),
+    ),
     "bounds in seconds": case(
         f"rulebook bounds\nstep 0.5 s\n{SIGNALS}"
         "hard rule soon { require always (p implies eventually[<= 1 s] q) }",
