@@ -28,6 +28,8 @@ def as_json(
     """One line of JSON for a drive: as for any trace, and what became of the recording."""
     recording = judged.recording
     about = {"recording": recording.name, "mirrored": judged.mirrored}
+    if recording.remarks:
+        about["remarks"] = list(recording.remarks)
     if isinstance(one, NoDrive):
         return json.dumps({"trace": one.ego, **about, "why_not": one.why}, ensure_ascii=False)
     drive = one.drive
@@ -64,6 +66,7 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
     defaults = _everything(judged, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {_some(defaults)}: the recording does not say")
+    lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
 
