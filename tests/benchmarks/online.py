@@ -13,9 +13,11 @@ from functools import partial
 from itertools import islice
 from typing import Any
 
+from driving import PLACES, drive
 from figure import Figure, Result
 from peer import peers
 from program import run
+from stream import streamed
 from timing import in_turns, processor_time
 
 import rulec
@@ -26,29 +28,17 @@ N_STATES = 300
 N_PREFIXES = 30
 VEHICLES = (1, 4, 16, 52)
 PROGRAMS = {"rtamt": "rtamt_online", "reelay": "reelay_online"}
-PLACES = {
-    "esterle2019": [{"position": place} for place in "bbblllff"],
-    "vienna": [
-        {"station": station, "lateral": lateral, "gap": 30.5}
-        for station, lateral in [
-            ("behind", "same_lane"),
-            ("behind", "left_of"),
-            ("beside", "left_of"),
-            ("in_front_of", "left_of"),
-            ("in_front_of", "same_lane"),
-        ]
-    ],
-}
 RESPONSE = "always (p implies once[<= 3 steps] q)"
 WANTED_NS = 150
 
 
 def measure(rounds: int) -> Iterator[Result]:
-    """Rulebooks and vehicles, then other libraries."""
+    """Rulebooks and vehicles, other libraries, and a stream."""
     for name, places in PLACES.items():
         yield driven(name, places, rounds)
     yield prefixes(rounds)
     yield compared(rounds)
+    yield streamed(min(rounds, 5))
 
 
 def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
@@ -113,20 +103,6 @@ def prefixes(rounds: int) -> Result:
             taken[again].figure("verify of the trace so far", "ns"),
         ],
     )
-
-
-def drive(places: list[dict[str, Any]], names: list[str]) -> Iterator[Any]:
-    """States in which vehicles move on, from one place to the next, every other one at a time."""
-    chance = random.Random(5)
-    at = [chance.randrange(len(places)) for _ in names]
-    while True:
-        at = [(place + chance.randint(0, 1)) % len(places) for place in at]
-        yield {
-            relation: {name: places[place][relation] for name, place in zip(names, at, strict=True)}
-            if isinstance(example, str)
-            else {name: round(example + chance.uniform(-9, 9), 2) for name in names}
-            for relation, example in places[0].items()
-        }
 
 
 def bindings(monitor: Monitor, state: Any, objects: Any) -> Iterator[list[Any]]:

@@ -112,6 +112,9 @@ def following(gap):
 # A number that only a fact looks at; numbers whose difference matters.
 @example([turning(5), turning(5), turning(5), turning(7)], SIZES[-1])
 @example([following(3), following(3), following(3), following(4)], SIZES[-1])
+# A number that is larger than any float.
+@example([following(10**400), {**following(10**400), "speed": 10**400}], SIZES[-1])
+@example([{**following(1.5), "gap": {"a": 1.5, "b": 10**400}}], SIZES[-1])
 # Keys of two outlines that look the same, in the standing where the outline changes and elsewhere.
 @example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, ICY], SIZES[-1])
 @example([FOGGY, FOGGY, FOGGY, ICY, FOGGY, ICY, NOT_ICY, FOGGY, ICY], SIZES[-1])

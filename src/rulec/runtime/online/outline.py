@@ -65,11 +65,16 @@ class Outline:
                 self._add(_inside(one.name, told), items)
         self.key: Key = self.told
         self.key_of: Callable[[tuple[Told, ...]], Hashable] = lambda told: told
-        if len(about) == 1 and isinstance(about[0], Enumeration) and len(about[0].parameters) == 1:
-            (there,) = fitting
-            if there:
-                self.key = _key_of_one_relation(about[0].name, there)
-                self.key_of = lambda told: told[0] if len(there) > 1 else told[0][0]
+        if len(self._parts) == 1:
+            # In one go, because there may be nothing else to do.
+            self.key_of = lambda told: told[0]
+            self.key = _key_of_one_part(self._parts[0], self._n_names)
+            if isinstance(about[0], Enumeration) and len(about[0].parameters) == 1:
+                (there,) = fitting
+                if there:
+                    self.key = _key_of_one_relation(about[0].name, there)
+                if len(there) == 1:
+                    self.key_of = lambda told: told[0][0]
 
     def _add(self, part: _Part, values: Sequence[tuple[str, Items]]) -> None:
         self.places |= {one: (len(self._parts), place) for place, one in enumerate(values)}
@@ -87,11 +92,17 @@ class Outline:
         return tuple([part(state) for part in self._parts])
 
 
-def _key_of_one_relation(name: str, items: Items) -> Key:
-    """By what a state is known that only says which values of an enumeration objects have.
+def _key_of_one_part(part: _Part, n_names: int) -> Key:
+    def key(state: Any) -> Hashable:
+        if type(state) is dict and len(state) == n_names:
+            return part(state)
+        raise LookupError
 
-    In one go, because there may be nothing else to do.
-    """
+    return key
+
+
+def _key_of_one_relation(name: str, items: Items) -> Key:
+    """Of a single object the key is its value."""
     n_items = len(items)
     values: Key = itemgetter(*items)
 

@@ -22,14 +22,13 @@ number itself.
 MISSING: Final = object()
 """In place of what is told of a value that is not given and has no default."""
 
-Check: TypeAlias = Callable[[Sequence[Any]], Told]
+Check: TypeAlias = Callable[[tuple[Any, ...]], Told]
 """From values what is told of them.
 
 Raises a LookupError or a TypeError if one does not fit the declaration or needs a closer look;
 values of an enumeration may be wrong.
 """
 
-_TRUTHS = frozenset({bool})
 _NUMBERS = frozenset({int, float})
 
 
@@ -60,21 +59,23 @@ def values_of(names: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda _: ()
 
 
-def _truths(values: Sequence[Any]) -> Told:
+def _truths(values: Told) -> Told:
     # As keys 1 and true are the same; as values of a signal they are not.
-    if _TRUTHS.issuperset(map(type, values)):
-        return tuple(values)
-    raise LookupError
+    for value in values:
+        if value is not True and value is not False:
+            raise LookupError
+    return values
 
 
-def _numbers(values: Sequence[Any]) -> Told:
+def _numbers(values: Told) -> Told:
     # Whole numbers and floats of this size that are equal have the same decimals. nan has no size.
-    if _NUMBERS.issuperset(map(type, values)) and sum(map(abs, values)) <= EXACT_IN_FLOATS:
-        return tuple(values)
-    raise LookupError
+    for value in values:
+        if not -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS or type(value) not in _NUMBERS:
+            raise LookupError
+    return values
 
 
-def _digits(floors: Sequence[float], values: Sequence[Any]) -> Told:
+def _digits(floors: Sequence[float], values: Told) -> Told:
     digits = tuple([bisect_right(floors, value) for value in values])
     # nan is above all floors.
     if 0 in digits or len(floors) in digits or not _NUMBERS.issuperset(map(type, values)):
