@@ -7,6 +7,7 @@ from judged import violated
 from roads import lanelet, recording, straight, vehicle
 
 from rulec.drives.extract import Drives
+from rulec.drives.thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
 from rulec.workflow import machines
 
@@ -14,8 +15,8 @@ STEP_S = 0.5
 GERMAN = machines("de")
 
 
-def states(found, ego, side="right"):
-    (drive,) = Drives(found, side).of(ego)
+def states(found, ego, side="right", **thresholds):
+    (drive,) = Drives(found, side, Thresholds(**thresholds)).of(ego)
     return drive.trace.states
 
 
@@ -175,3 +176,6 @@ def test_a_turn_to_the_left(side, turn):
     one = vehicle(7, {**places, 5: (104.0, 0.8), 6: (107.6, 3.0)})
     told = states(recording(lanes, [one]), "7", side)
     assert [state["turn"] for state in told] == ["straight_on"] * 3 + [turn] * 4
+    # One second is two states
+    soon = states(recording(lanes, [one]), "7", side, preparing_s=1.0)
+    assert [state["preparing_to_leave"] for state in soon] == [False] + [True] * 6
