@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rulec.trace import Trace as Trace
     from rulec.workflow import compile_rulebook as compile_rulebook
     from rulec.workflow import find_maneuvers as find_maneuvers
+    from rulec.workflow import judge_recording as judge_recording
     from rulec.workflow import load_rulebook as load_rulebook
     from rulec.workflow import navigation_graph as navigation_graph
     from rulec.workflow import read_traces as read_traces
@@ -51,6 +52,7 @@ _HOME = {
     "Verdict": "rulec.runtime.verdict",
     "compile_rulebook": "rulec.workflow",
     "find_maneuvers": "rulec.workflow",
+    "judge_recording": "rulec.workflow",
     "load_rulebook": "rulec.workflow",
     "load_scenario": "rulec.scenario",
     "navigation_graph": "rulec.workflow",

@@ -26,11 +26,14 @@ from rulec.trace import Trace
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
     from rulec.automata.any_step import AnyStep
+    from rulec.drives.judging import JudgedRecording
+    from rulec.drives.wanted import Wanted
     from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
     from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
     from rulec.scenario import Scenario
+    from rulec.scenario.recorded.recording import Recording
 
 
 def load_rulebook(
@@ -160,6 +163,28 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
     with opened(Path(path)) as stream:
         for chunk in read_chunks(stream, str(path), format_of(str(path))):
             yield from chunk
+
+
+def judge_recording(
+    recording: str | Path | Recording,
+    rulebook: str | Path | Rulebook | CompiledRulebook | AnyStep,
+    wanted: Wanted | None = None,
+    net: str | Path | None = None,
+) -> JudgedRecording:
+    """What the vehicles of recorded traffic did, given by path or itself, judged by a rulebook.
+
+    ``net`` is for SUMO's data. Raises RulecError.
+    """
+    from rulec.drives.judging import JudgedRecording
+    from rulec.drives.wanted import Wanted
+    from rulec.scenario.recordings import read_recording
+
+    if isinstance(recording, str | Path):
+        file = str(recording)
+        recording = read_recording(Path(file), None if net is None else Path(net))
+    else:
+        file = recording.name
+    return JudgedRecording(recording, machines(rulebook), wanted or Wanted(), file)
 
 
 def read_past(path: Path) -> Before:

@@ -27,6 +27,8 @@ from rulec.runtime.verify import verify
 EVERY = 400
 SPOT = "Spot, a word automaton per trace"
 COPY = "copying the cells"
+COPY_BOOLEANS = "copying the Boolean columns"
+ALONE = (SPOT, COPY, COPY_BOOLEANS)
 WANTED = {
     "machines, from cells": (0.3, 1500),
     "bits, from Boolean columns": (0.15, None),
@@ -56,6 +58,9 @@ def measure(rounds: int) -> Iterator[Result]:
             "a trace at a time": processor_time(lambda: [verify(x, rules) for x in sample], share),
             **{name: processor_time(engine, work) for name, engine in engines.items()},
             COPY: processor_time(cells.cells.copy, work),
+            COPY_BOOLEANS: processor_time(
+                lambda: [column.copy() for column in booleans.values()], work
+            ),
         },
         rounds,
     )
@@ -65,9 +70,9 @@ def measure(rounds: int) -> Iterator[Result]:
         [
             taken[name].against(taken[SPOT], "Spot", name, "ns", *WANTED.get(name, ()))
             for name in taken
-            if name not in (SPOT, COPY)
+            if name not in ALONE
         ]
-        + [taken[name].figure(name, "ns") for name in (SPOT, COPY)],
+        + [taken[name].figure(name, "ns") for name in ALONE],
         [f"Spot, and what judges a trace at a time, judge {len(sample)} of the traces."],
     )
     inputs = {

@@ -14,7 +14,7 @@ from page import page
 
 HERE = Path(__file__).parent
 PAGE = HERE.parents[1] / "docs" / "benchmarks.md"
-NAMES = ("batch", "peers", "long", "online", "graph", "compiling", "starting")
+NAMES = ("batch", "reading", "peers", "long", "online", "graph", "world", "compiling", "starting")
 
 
 @click.command()

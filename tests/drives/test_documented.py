@@ -28,8 +28,8 @@ def test_every_word():
     lane = straight(1, 0, 99, signs=lane.signs, limit_mps=9.0, types=frozenset({"highway"}))
     found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
     (drive,) = Drives(found, "right").of("1")
-    lamps = {"light", "crosses_light_line", "indicator"}
-    assert drive.words | lamps == documented
+    lamps = {"light", "crosses_light_line", "indicator", "marked_lanes"}
+    assert drive.words | lamps | {"on_solid_line", "broken_on_own_side"} == documented
 
 
 def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():

@@ -3,12 +3,9 @@
 from math import pi
 
 import pytest
+from judged import violated
 from roads import recording, straight, vehicle
 
-from rulec.drives.extract import NoDrive
-from rulec.drives.judging import JudgedRecording
-from rulec.drives.wanted import Wanted
-from rulec.runtime.verdict import Verdict
 from rulec.workflow import machines
 
 STEP_S = 0.5
@@ -29,20 +26,6 @@ def going(number, x, y, mps, count=20, **more):
     """Straight on, at a constant speed."""
     places = {k: (x + mps * STEP_S * k, y) for k in range(count)}
     return vehicle(number, places, speed=mps, **more)
-
-
-def violated(found, book, **wanted):
-    """Ego -> the rules that it violated, with when first."""
-    judged = JudgedRecording(found, book, Wanted(**wanted), "by hand")
-    answers = {}
-    for one in judged.answers():
-        assert not isinstance(one, NoDrive)
-        assert isinstance(one.answer, Verdict), one.answer
-        times = answers.setdefault(one.drive.ego, {})
-        for violation in one.answer.violations:
-            at = one.drive.time_s(violation.step)
-            times[violation.rule] = min(at, times.get(violation.rule, at))
-    return answers
 
 
 def test_overtaking_on_the_right_on_a_motorway():

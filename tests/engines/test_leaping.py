@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.runtime.batch.joint import Joint
-from rulec.runtime.batch.leaping import pays, run_leaping
+from rulec.runtime.batch.leaping import _lengths, pays, run_leaping
 from rulec.runtime.batch.running import run
 from rulec.runtime.batch.steps import steps_of
 from rulec.trace.columns import layout_of, smallest_unsigned
@@ -27,7 +27,7 @@ def walked(following, verdicts, words):
 def random_machine(chance, n_states, n_letters):
     following = [[chance.randrange(n_states) for _ in range(n_letters)] for _ in range(n_states)]
     verdicts = [[chance.randrange(256) for _ in range(n_letters)] for _ in range(n_states)]
-    return following, verdicts
+    return tuple(map(tuple, following)), tuple(map(tuple, verdicts))
 
 
 def column_of(words, layout, dtype):
@@ -60,6 +60,16 @@ def test_verdicts_are_those_of_the_words(n_states, n_letters, n_traces, longest,
         assert found.tolist() == walked(following, verdicts, words)
 
 
+@given(st.integers(1, 40), st.integers(1, 9), st.integers(1, 9))
+def test_steps_are_parted_into_few_leaps(n_steps, first, later):
+    first = max(first, later)
+    found = list(_lengths(n_steps, first, later))
+    assert sum(found) == n_steps
+    assert 1 <= found[0] <= first
+    assert all(1 <= length <= later for length in found[1:])
+    assert n_steps > first + later * (len(found) - 2) or len(found) == 1
+
+
 @pytest.mark.parametrize("n_cells", [3, 16, 17, 250, 300, 60_000])
 @pytest.mark.parametrize("n_states", [1, 15, 16, 60, 300])
 def test_every_way_to_run_gives_the_same(n_cells, n_states):
@@ -68,7 +78,7 @@ def test_every_way_to_run_gives_the_same(n_cells, n_states):
     n_letters = min(n_cells, 7)
     following, verdicts = random_machine(chance, n_states, n_letters)
     meant = tuple(chance.choices(range(n_letters), k=n_cells))
-    joint = Joint((0,), meant, tuple(map(tuple, following)), tuple(map(tuple, verdicts)))
+    joint = Joint((0,), meant, following, verdicts)
     words = words_of(chance, 1200, n_cells, 8, 8)
     layout = layout_of(list(map(len, words)))
     cells = column_of(words, layout, smallest_unsigned(n_cells))

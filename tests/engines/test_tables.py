@@ -2,8 +2,11 @@
 
 import csv
 import io
+import subprocess
+import sys
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from random import Random
 from unittest import mock
 
@@ -13,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 
+from rulec.automata.compiled_file import to_json
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.batch import blocks
 from rulec.runtime.batch.blocks import judge_items, rulebook_for
@@ -243,3 +247,46 @@ def test_large_csv_without_arrow(monkeypatch):
     data = written(drives()[:40], "csv")
     expected = [judge(trace, traffic()) for trace in drives()[:40]]
     assert by_columns(data, "csv", traffic()) == expected
+
+
+PEAK = """
+import sys
+from pathlib import Path
+import rulec
+from rulec.runtime.batch.blocks import judge_items
+from rulec.trace import csv_table
+from rulec.trace.arrow import csv, parquet
+from rulec.trace.formats import read_chunks
+
+csv_table.LARGE_BYTES, csv._BLOCK_BYTES, parquet._ROWS_AT_ONCE = 1, 1 << 18, 1 << 13
+rulebook, file, form = sys.argv[1:]
+rules = rulec.compile_rulebook(rulebook)
+with open(file, "rb") as stream:
+    print(sum(len(judge_items(one, rules)[1]) for one in read_chunks(stream, file, form)))
+(peak,) = (one for one in Path("/proc/self/status").read_text().splitlines() if "VmHWM" in one)
+print(int(peak.split()[1]) << 10)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="says what memory was used")
+@pytest.mark.parametrize("form", FORMS)
+def test_a_larger_file_takes_no_more_memory(form, tmp_path):
+    (tmp_path / "traffic.json").write_text(to_json(traffic()))
+    peaks = []
+    for copies in (4, 60):
+        file = tmp_path / f"{copies}.{form}"
+        if form == "csv":
+            head, _, body = written(drives(), form).partition(b"\n")
+            file.write_bytes(b"\n".join([head, body * copies]))
+        else:
+            table = parquet.read_table(io.BytesIO(written(drives(), form)))
+            whole = pyarrow.concat_tables([table] * copies)
+            parquet.write_table(whole, file, row_group_size=1 << 13)
+            assert whole.nbytes > copies * 500_000
+        command = [sys.executable, "-c", PEAK, tmp_path / "traffic.json", file, form]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        n_judged, peak = map(int, done.stdout.split())
+        assert n_judged == copies * len(drives())
+        peaks.append(peak)
+    # The larger file holds forty megabytes more, as Parquet seventy once it is read.
+    assert peaks[1] - peaks[0] < 20_000_000

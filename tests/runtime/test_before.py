@@ -1,31 +1,21 @@
 """Futures judged after a past, against judging past and future together, path by path."""
 
 import json
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from books import P, Q, always, book, both, compile_here, eventually, far, implies, near, no, rule
+from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
 from graphs import graphs
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from journeys import as_trace
-from words import formulas
 
 import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
-from rulec.logic.formula import atoms_of
 from rulec.runtime.before import only_trace, past_of
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances, violations
-from rulec.runtime.letters import present_in
+from rulec.runtime.instances import instances
 from rulec.runtime.monitor import Monitor
-from rulec.runtime.online.replay import said_of
-from rulec.runtime.product import explore
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
-from rulec.trace.paths import paths
 
 HALF = Fraction(1, 2)
 CARS = ("car1", "car2")
@@ -59,60 +49,6 @@ def after(rules, past):
     for state, objects in past:
         judge.step(state, objects)
     return judge
-
-
-def along(graph, path):
-    """The states of a path, each with the objects that are there."""
-    for layer, node in enumerate(path):
-        there = present_in(layer, graph.objects, graph.present)
-        yield said_of(there, graph.states[layer][node]), there
-
-
-def named(violations):
-    """With the objects' names as they were before each stay got a name of its own."""
-    return sorted(
-        (one.rule, [name.split()[0] for name in one.binding.values()], str(one.step))
-        for one in violations
-    )
-
-
-def judged_together(rules, past, graph, path):
-    """What past and path violate: by the end of the past, and later."""
-    trace = as_trace([*past, *along(graph, path)])
-    before, later = [], []
-    for one in verify(trace, rules).violations:
-        if one.strength == "hard":
-            ends = min((trace.present[name][1] for name in one.binding.values()), default=len(past))
-            decided = ends if one.step is None else one.step
-            (before if decided < len(past) else later).append(one)
-    return before, later
-
-
-def check(rules, past, graph):
-    found = past_of(graph, after(rules, past), rules, HALF)
-    bound = instances(graph, rules, past=found)
-    satisfying = 0
-    for path in paths(graph):
-        before, later = judged_together(rules, past, graph, path)
-        assert named(before) == named(found.violations)
-        satisfying += not later
-        shown = [
-            replace(one, step=None if one.step is None else one.step + len(past))
-            for one in violations(bound, path)
-        ]
-        assert named(shown) == named(later)
-    assert explore(effects(graph, bound)).accepted == satisfying
-
-
-@given(pasts(), graphs(objects=CARS))
-def test_counts_are_those_of_judging_past_and_paths_together(past, graph):
-    check(RULES, past, graph)
-
-
-@given(formulas, st.sampled_from(["stutter", "finite"]), pasts(), graphs(objects=CARS))
-def test_any_rule_goes_on_where_it_stood(formula, semantics, past, graph):
-    x = ("x: thing",) if any(atom.arguments for atom in atoms_of(formula)) else ()
-    check(compile_here(replace(book(rule("A", formula, *x)), semantics=semantics)), past, graph)
 
 
 @given(pasts(), graphs(objects=CARS))

@@ -2,66 +2,23 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import groupby, islice
 from math import comb
 
 from graphs import graphs
 from hypothesis import given
-from random_priorities import RULES, rulebooks
+from random_priorities import RULES
 
 from rulec.automata.stuttering import stutter_invariant
-from rulec.runtime.cheapest import cheapest
 from rulec.runtime.classes import Classes, count_classes, variants
 from rulec.runtime.effects import effects
 from rulec.runtime.instances import instances
 from rulec.runtime.places import places
 from rulec.runtime.product import explore
-from rulec.runtime.verify import verify
 from rulec.trace import TraceGraph
-from rulec.trace.paths import paths, trace_of
 
 STUTTERING = replace(
     RULES, rules=tuple(one for one in RULES.rules if stutter_invariant(one.machine))
 )
-
-
-def by_class(graph):
-    """Every path under the places that it visits."""
-    where = places(graph)
-    classes = {}
-    for path in paths(graph):
-        visited = [where[layer][node] for layer, node in enumerate(path)]
-        classes.setdefault(tuple(place for place, _ in groupby(visited)), []).append(path)
-    return classes
-
-
-@given(graphs(objects=("car1",)), rulebooks(strengths=("hard",)))
-def test_classes_are_counted_by_their_members_verdicts(graph, rulebook):
-    found = effects(graph, instances(graph, rulebook))
-    counts = {(True,): 0, (False,): 0, (False, True): 0}
-    satisfying = {}
-    for word, members in by_class(graph).items():
-        verdicts = {path: verify(trace_of(graph, path, ""), rulebook).satisfied for path in members}
-        counts[tuple(sorted(set(verdicts.values())))] += 1
-        if any(verdicts.values()):
-            satisfying[word] = [path for path, fine in verdicts.items() if fine]
-    assert count_classes(found, places(graph)) == Classes(
-        counts[True,], counts[False,], counts[False, True]
-    )
-    product = explore(found)
-    cost = {maneuver.nodes: maneuver for maneuver in cheapest(product)}
-    listed = list(variants(product, places(graph)))
-    assert {one.places: one.members for one in listed} == {
-        word: len(members) for word, members in satisfying.items()
-    }
-    assert len(listed) == len(satisfying)
-    assert [one.cheapest.cost for one in listed] == sorted(one.cheapest.cost for one in listed)
-    for one in listed:
-        members = satisfying[one.places]
-        assert one.cheapest.nodes in members
-        assert one.cheapest == cost[one.cheapest.nodes]
-        assert one.cheapest.cost == min(cost[path].cost for path in members)
-    assert list(islice(variants(product, places(graph)), 2)) == listed[:2]
 
 
 @given(graphs(objects=("car1",)))

@@ -1,22 +1,19 @@
 """Counting and searching without enumerating, against enumerating."""
 
 from fractions import Fraction
-from itertools import islice, pairwise, product
 
-from books import P, Q, always, book, both, compile_here, eventually, far, implies, near, no, rule
+from books import P, Q, always, book, both, eventually, far, implies, near, no, rule
+from brute_force import every_path
 from graphs import graphs
 from hypothesis import given
-from words import formulas
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.logic.formula import atoms_of
 from rulec.runtime.cheapest import cheapest
 from rulec.runtime.effects import effects
 from rulec.runtime.instances import instances
 from rulec.runtime.product import count_paths, explore
-from rulec.runtime.verify import verify
 from rulec.trace import TraceGraph
-from rulec.trace.paths import all_traces, paths, trace_of
+from rulec.trace.paths import paths
 
 RULES = compile_rulebook(
     book(
@@ -28,60 +25,10 @@ RULES = compile_rulebook(
 )
 
 
-def enumerate_paths(graph):
-    """Every sequence of nodes that is a path: by trying them all."""
-    for path in product(*(range(len(layer)) for layer in graph.states)):
-        if (
-            path[0] == graph.start
-            and path[-1] in graph.goals
-            and all(
-                after in graph.successors[layer][here]
-                for layer, (here, after) in enumerate(pairwise(path))
-            )
-        ):
-            yield path
-
-
 @given(graphs())
 def test_paths_are_all_the_paths_in_order(graph):
-    assert list(paths(graph)) == list(enumerate_paths(graph))
-    assert count_paths(graph) == len(list(enumerate_paths(graph)))
-
-
-@given(graphs(objects=("car1", "car2")))
-def test_counts_are_those_of_enumeration(graph):
-    satisfying = [
-        path
-        for path in enumerate_paths(graph)
-        if verify(trace_of(graph, path, ""), RULES).satisfied
-    ]
-    explored = explore(effects(graph, instances(graph, RULES)))
-    assert explored.accepted == len(satisfying)
-    assert sorted(maneuver.nodes for maneuver in cheapest(explored)) == satisfying
-
-
-@given(formulas, graphs())
-def test_any_rule_counts_as_enumeration_does(formula, graph):
-    x = ("x: thing",) if any(atom.arguments for atom in atoms_of(formula)) else ()
-    rules = compile_here(book(rule("A", formula, *x)))
-    verdicts = [verify(trace, rules).satisfied for trace in all_traces(graph, "t", 10**6)]
-    assert explore(effects(graph, instances(graph, rules))).accepted == sum(verdicts)
-
-
-@given(graphs())
-def test_the_cheapest_come_first_with_their_cost_and_margin(graph):
-    explored = explore(effects(graph, instances(graph, RULES)))
-    found = list(cheapest(explored))
-    assert [(m.cost, m.nodes) for m in found] == sorted((m.cost, m.nodes) for m in found)
-    assert list(islice(cheapest(explored), 3)) == found[:3]
-    for maneuver in found:
-        margins = [
-            graph.margins[layer][here][graph.successors[layer][here].index(after)]
-            for layer, (here, after) in enumerate(pairwise(maneuver.nodes))
-        ]
-        changes = [Fraction(margin, 2) for margin in margins if margin is not None]  # in s
-        assert maneuver.cost == float(sum(1 / margin for margin in changes))
-        assert maneuver.margin_s == (float(min(changes)) if changes else None)
+    assert list(paths(graph)) == [*every_path(graph)]
+    assert count_paths(graph) == len([*every_path(graph)])
 
 
 def test_paths_do_not_wander_into_dead_ends():

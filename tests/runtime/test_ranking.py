@@ -1,4 +1,4 @@
-"""The least violating paths, against judging them all.
+"""The order of penalties, and the least violating maneuvers by whole rulebooks.
 
 How bad a path is is written down again here, rule by rule and without ranks.
 """
@@ -8,16 +8,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from graphs import graphs
 from hypothesis import given
 from random_priorities import LEVELS, RULES, closed, rulebooks
 
 from rulec.maneuvers import judged, partition_for
-from rulec.runtime.cheapest import cheapest
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import HARD, SOFT, instances, violations
 from rulec.runtime.penalties import Rank, ranks_of
-from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.verify import verify
 from rulec.trace.paths import paths, trace_of
 from rulec.workflow import compile_rulebook, navigation_graph
@@ -57,63 +52,6 @@ def at_most(one, other, order):
         )
         for place in every
     )
-
-
-def searched(graph, rulebook):
-    return effects(graph, instances(graph, rulebook, strengths=(*HARD, *SOFT))), ranks_of(rulebook)
-
-
-@given(graphs(objects=("car1", "car2")), rulebooks())
-def test_the_front_is_what_nothing_is_better_than(graph, rulebook):
-    every = {path: penalty(rulebook, graph, path) for path in paths(graph)}
-    order = rulebook.priorities
-    best = sorted(
-        path
-        for path, mine in every.items()
-        if not any(
-            at_most(other, mine, order) and not at_most(mine, other, order)
-            for other in every.values()
-        )
-    )
-    found, ranks = searched(graph, rulebook)
-    penalties = list(front(found, ranks))
-    assert len(set(penalties)) == len(penalties)
-    products = [with_penalty(found, ranks, one) for one in penalties]
-    assert sorted(m.nodes for product in products for m in cheapest(product)) == best
-    assert sum(product.accepted for product in products) == len(best)
-
-
-@given(graphs(objects=("car1", "car2")), rulebooks())
-def test_every_penalty_comes_once_behind_all_better_ones(graph, rulebook):
-    every = {path: penalty(rulebook, graph, path) for path in paths(graph)}
-    order = rulebook.priorities
-
-    def place(mine):
-        better = [
-            other
-            for other in every.values()
-            if at_most(other, mine, order) and not at_most(mine, other, order)
-        ]
-        return 1 + max(map(place, better), default=0)
-
-    found, ranks = searched(graph, rulebook)
-    seen = []
-    for position, one in ranked(found, ranks):
-        members = [m.nodes for m in cheapest(with_penalty(found, ranks, one))]
-        assert {place(every[path]) for path in members} == {position}
-        assert all(at_most(every[path], every[members[0]], order) for path in members)
-        assert not any(at_most(every[members[0]], every[path], order) for path in seen)
-        seen += members
-    assert sorted(seen) == sorted(every)
-
-
-@given(graphs(objects=("car1", "car2")), rulebooks())
-def test_what_a_path_violates_is_what_its_trace_does(graph, rulebook):
-    bound = instances(graph, rulebook, strengths=(*HARD, *SOFT))
-    key = repr
-    for path in paths(graph):
-        verdict = verify(trace_of(graph, path, ""), rulebook)
-        assert sorted(violations(bound, path), key=key) == sorted(verdict.violations, key=key)
 
 
 @given(rulebooks())

@@ -17,6 +17,8 @@ hard rule closer (v: car, w: car) { require never gap(v) - gap(w) > 1 m }
 """
 
 
+MANY = [f"s{n}" for n in range(9)]
+
 VEHICLE = {"v": "vehicle"}
 
 
@@ -56,6 +58,21 @@ CASES_OF_RULEBOOKS = {
         ([room(-1e300, speed=36), room(1e300, -1e300)], ("below @ 1",)),
         ((CARS, [room(0, gap={"a": 1.5, "b": 0.5})]), ()),
         ((CARS, [room(0, gap={"a": 0.5, "b": 1.6})]), ("closer b a @ 0",)),
+    ),
+    "more states than a byte can tell apart": case(
+        "rulebook fast\nquantity speed in km/h\nquantity rank in km\n"
+        "hard rule slow { require always speed <= 250 km/h }\n"
+        "hard rule order { require always rank <= 299 km }",
+        ([{"speed": n, "rank": 300 - n} for n in range(300)], ("slow @ 251", "order @ 0")),
+        ([{"speed": n, "rank": n} for n in range(251)], ()),
+    ),
+    "more at once than a byte can tell apart": case(
+        f"rulebook many\nsignal {', '.join(MANY)} default false\n"
+        f"hard rule together {{ require never ({' and '.join(MANY)}) }}\n"
+        + "\n".join(f"soft rule of_{name} {{ require eventually {name} }}" for name in MANY),
+        ([dict.fromkeys(MANY, True)], ("together @ 0",)),
+        ([dict.fromkeys(MANY[:8], True)], ("of_s8",)),
+        ([dict.fromkeys(MANY[1:], True), dict.fromkeys(MANY[:3], True)], ()),
     ),
     "hard and soft rules, levels and weights": case(
         f"rulebook levels\npriority high > low\n{SIGNALS}"

@@ -10,6 +10,18 @@ soft rule settles  {{ require eventually always p }}
 """
 
 
+INSIDE = """
+hard rule within    { require eventually (p and next not p) }
+hard rule back      { require eventually previously previously p }
+hard rule ever      { require once always p }
+hard rule window    { require always (q implies once[2 steps .. 3 steps] p) }
+hard rule mixed     { require always eventually always[<= 3 steps] p }
+hard rule unsettled { require next always once[1 steps .. 3 steps] next p }
+"""
+ASKED, SAID = [[f"{name}{n}" for n in range(4)] for name in "ab"]
+ANSWERED = " and ".join(
+    f"({asked} implies eventually {said})" for asked, said in zip(ASKED, SAID, strict=True)
+)
 NEXT = """
 hard rule at_once { require always (p implies next q) }
 hard rule if_ever { require always (p implies weak next q) }
@@ -57,6 +69,24 @@ CASES_OF_TIME = {
         ([BOTH], ("at_once",)),
         ([P, Q], ()),
         ([NEITHER, P, P, Q], ("at_once @ 2", "if_ever @ 2")),
+    ),
+    "the past inside of the future": case(
+        f"rulebook inside\n{SIGNALS}{INSIDE}",
+        ([P], ("within",)),
+        ([P, NEITHER], ("ever @ 1", "mixed", "unsettled @ 1")),
+        ([NEITHER, P], ("within", "ever @ 0")),
+        ([NEITHER, P, NEITHER], ("ever @ 0", "mixed", "unsettled")),
+        # q goes on; one step later p is four steps ago.
+        ([P, NEITHER, NEITHER, Q], ("ever @ 1", "window", "mixed", "unsettled @ 1")),
+        ([P, NEITHER, NEITHER, NEITHER, Q], ("ever @ 1", "window @ 4", "mixed", "unsettled @ 1")),
+    ),
+    "a trace that may end but not go on": case(
+        f"rulebook ends\nsemantics finite\n{SIGNALS}"
+        "hard rule only { require weak next false }\n"
+        "hard rule last { require always (p implies weak next false) }",
+        ([P], ()),
+        ([NEITHER, P], ("only @ 1",)),
+        ([P, NEITHER, NEITHER], ("only @ 1", "last @ 1")),
     ),
     "the past, the last state going on": case(
         f"rulebook past\n{SIGNALS}{PAST}",
@@ -108,6 +138,15 @@ CASES_OF_TIME = {
         # q goes on, so it is there two and three steps later, but p is not until then.
         ([P, Q], ("while @ 1",)),
         ([BOTH], ()),
+    ),
+    "more pending than a byte can tell apart": case(
+        f"rulebook answers\nsignal {', '.join(ASKED)}, {', '.join(SAID)} default false\n"
+        f"hard rule answered {{ require always ({ANSWERED}) }}",
+        ([dict.fromkeys(ASKED, True), dict.fromkeys(SAID, True)], ()),
+        ([dict.fromkeys(ASKED, True), dict.fromkeys(SAID[1:], True)], ("answered",)),
+        ([{"a1": True}, {"a3": True}, {"b3": True}, {"b1": True}, NEITHER], ()),
+        ([{"a1": True, "a2": True}, {"b2": True, "a0": True}, {"b0": True}], ("answered",)),
+        *(([{one: True}], ("answered",)) for one in ASKED),
     ),
     "bounds in seconds": case(
         f"rulebook bounds\nstep 0.5 s\n{SIGNALS}"

@@ -1,53 +1,74 @@
-"""Random graphs of traces over the small vocabulary."""
+"""Random graphs of traces, by a source of chance."""
 
 from fractions import Fraction
 from itertools import pairwise
 from math import lcm
 
 from hypothesis import strategies as st
+from seeds import seeds
 
 from rulec.trace import TraceGraph
+
+UNIT = lcm(1, 2, 3, 4)
 
 
 @st.composite
 def graphs(draw, objects=("car1",)):
-    """A layered graph with any edges, dead ends included; margins of 1 to 4 layers or staying."""
-    per_state = st.fixed_dictionaries(
-        {
-            "place": st.fixed_dictionaries(
-                {name: st.sampled_from(["near", "far", "gone"]) for name in objects}
-            ),
-            "p": st.booleans(),
-            "q": st.booleans(),
+    """Over the small vocabulary, about cars."""
+    chance = draw(seeds)
+
+    def state():
+        return {
+            "place": {name: chance.choice(["near", "far", "gone"]) for name in objects},
+            "p": chance.random() < 0.5,
+            "q": chance.random() < 0.5,
         }
-    )
-    sizes = draw(st.lists(st.integers(1, 4), min_size=1, max_size=5))
-    layers = tuple(tuple(draw(per_state) for _ in range(size)) for size in sizes)
+
+    return layered(chance, dict.fromkeys(objects, "car"), state, chance.choice([1, 2, 3, 4, 5, 5]))
+
+
+def layered(chance, objects, state, n_layers):
+    """A layered graph with any edges, dead ends included; margins of 1 to 4 layers or staying."""
+    sizes = [chance.choice([1, 2, 3, 3, 4]) for _ in range(n_layers)]
+    many = chance.choice([0.5, 0.8, 0.9, 1])
+    states = [[state() for _ in range(sizes[0])]]
+    for size in sizes[1:]:
+        # Often one can stay where one is.
+        here = [one if chance.random() < 0.8 else state() for one in states[-1]][:size]
+        states.append(here + [state() for _ in range(size - len(here))])
     successors, margins = [], []
     for here, onward in pairwise(sizes):
-        edges = [sorted(draw(st.sets(st.integers(0, onward - 1)))) for _ in range(here)]
-        successors.append(tuple(tuple(row) for row in edges))
+        edges = [[one for one in range(onward) if chance.random() < many] for _ in range(here)]
+        successors.append(tuple(map(tuple, edges)))
         margins.append(
-            tuple(tuple(draw(st.sampled_from([None, 1, 2, 3, 4])) for _ in row) for row in edges)
+            tuple(
+                tuple(margin(chance, stays=one == node) for one in row)
+                for node, row in enumerate(edges)
+            )
         )
-    unit = lcm(1, 2, 3, 4)
     weights = tuple(
-        tuple(tuple(0 if m is None else unit // m for m in row) for row in rows) for rows in margins
+        tuple(tuple(0 if m is None else UNIT // m for m in row) for row in rows) for rows in margins
     )
     present = {}
     for name in objects:
-        if draw(st.booleans()):
-            first = draw(st.integers(0, len(sizes) - 1))
-            present[name] = (first, draw(st.integers(first, len(sizes) - 1)))
+        if chance.random() < 0.5:
+            first = chance.randrange(len(sizes))
+            present[name] = (first, chance.randrange(first, len(sizes)))
     return TraceGraph(
         step_s=0.5,
-        objects=dict.fromkeys(objects, "car"),
+        objects=objects,
         present=present,
-        states=layers,
+        states=tuple(map(tuple, states)),
         successors=tuple(successors),
         weights=weights,
         margins=tuple(margins),
-        cost_unit=Fraction(2, unit),
-        start=draw(st.integers(0, sizes[0] - 1)),
-        goals=tuple(sorted(draw(st.sets(st.integers(0, sizes[-1] - 1))))),
+        cost_unit=Fraction(2, UNIT),
+        start=chance.randrange(sizes[0]),
+        goals=tuple(goal for goal in range(sizes[-1]) if chance.random() < many),
     )
+
+
+def margin(chance, *, stays):
+    if chance.random() < (0.8 if stays else 0.2):
+        return None
+    return chance.choice([1, 2, 3, 4])

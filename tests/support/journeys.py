@@ -3,7 +3,7 @@
 from rulec.trace import Trace
 
 
-def as_trace(journey):
+def as_trace(journey, step_s=1.0):
     """The trace in which each stay of an object has a name of its own, such as ``a 2``."""
     objects, present, renamed, stays = {}, {}, [], {}
     before = {}
@@ -17,12 +17,11 @@ def as_trace(journey):
             first, _ = present.get(names[name], (number, number))
             present[names[name]] = (first, number)
         before = there
-        renamed.append(
-            {
-                key: {names.get(name, name): inner for name, inner in value.items()}
-                if isinstance(value, dict)
-                else value
-                for key, value in state.items()
-            }
-        )
-    return Trace("t", 1.0, objects, tuple(renamed), present)
+        renamed.append({key: _renamed(value, names) for key, value in state.items()})
+    return Trace("t", step_s, objects, tuple(renamed), present)
+
+
+def _renamed(value, names):
+    if not isinstance(value, dict):
+        return value
+    return {names.get(name, name): _renamed(inner, names) for name, inner in value.items()}

@@ -1,13 +1,14 @@
-"""Random rulebooks over a vocabulary that has one of everything."""
+"""Random rulebooks over a vocabulary that has one of everything, by a source of chance."""
 
+from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
-from hypothesis import assume
-from hypothesis import strategies as st
 from past_in_spot import is_easy
 from possible import possible_letters
 from random_priorities import LEVELS, PAIRS, closed
-from timed import RELATIONS, operations
+from timed import BOOLEAN, DISTANCE, RELATIONS
+from world import WORLD
 
 from rulec.logic.formula import (
     Atom,
@@ -24,28 +25,9 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.rulebook.model import Fact, Rule, Rulebook, Variable
-from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
-from rulec.vocabulary import Quantity as DeclaredQuantity
-
-WORLD = Vocabulary(
-    "world",
-    {"thing": ObjectType("thing"), "car": ObjectType("car", "thing")},
-    {
-        "place": Enumeration("place", ("thing",), ("near", "far", "gone")),
-        "light": Enumeration("light", (), ("red", "green"), "red"),
-        "p": Signal("p", (), False),
-        "q": Signal("q", (), None),
-        "loud": Signal("loud", ("thing",), False),
-        "follows": Signal("follows", ("thing", "thing"), False),
-        "speed": DeclaredQuantity("speed", (), "m/s"),
-        "pace": DeclaredQuantity("pace", (), "m/s", 1.0),
-        "gap": DeclaredQuantity("gap", ("thing",), "m"),
-        "apart": DeclaredQuantity("apart", ("thing", "thing"), "m", 0.3),
-    },
-)
 
 NO = UnaryOperator.NOT
-BOOLEAN = [BinaryOperator(word) for word in ("and", "or", "implies", "iff", "xor")]
+JOINING = [one for one in BinaryOperator if one.value in BOOLEAN]
 NEAR, FAR = "near", "far"
 
 
@@ -89,37 +71,50 @@ Y_SUMS = [
     number("gap(x) - gap(y)", (1, quantity("gap", "x")), (-1, quantity("gap", "y"))),
 ]
 LIMITS = [Fraction(limit) for limit in ("0", "3/10", "1", "3/2", "2")]
-
-
-def comparisons(sums):
-    def compared(of, relation, limit):
-        text, terms = of
-        return Comparison(terms, relation, limit, f"{text} {relation} {limit}")
-
-    return st.builds(compared, st.sampled_from(sums), st.sampled_from(RELATIONS), limits)
-
-
-limits = st.sampled_from(LIMITS)
+LOUD = number("count o: thing (loud(o))", (1, Count("o", "thing", Atom("loud", ("o",)))))
 X, CAR_X = Variable("x", "thing"), Variable("x", "car")
 Y, CAR_Y = Variable("y", "thing"), Variable("y", "car")
-ALONE = st.sampled_from(WORLD_ATOMS) | comparisons(WORLD_SUMS)
-WITH_X = ALONE | st.sampled_from(X_ATOMS) | comparisons(X_SUMS) | st.sampled_from(X_ATOMS)
-WITH_Y = WITH_X | st.sampled_from(Y_ATOMS) | comparisons(Y_SUMS) | st.sampled_from(Y_ATOMS)
-HEADS = [
-    ((), ALONE),
-    ((X,), WITH_X),
-    ((CAR_X,), WITH_X),
-    ((CAR_X, Y), WITH_Y),
-    ((X, CAR_Y), WITH_Y),
-]
+HEADS = [(), (X,), (CAR_X,), (CAR_X, Y), (X, CAR_Y)]
 
 
-def formulas(leaves):
-    return st.recursive(
-        leaves | st.builds(Constant, st.booleans()),
-        lambda inner: operations(inner, "steps", Fraction(1)),
-        max_leaves=4,
-    ).filter(is_easy)
+def leaf(chance, variables):
+    """An atom or a comparison; mostly about all the variables, if there are any."""
+    if chance.random() < 0.05:
+        return Constant(chance.random() < 0.5)
+    about = chance.choice([*range(len(variables) + 1), len(variables)])
+    if chance.random() < 0.6:
+        return chance.choice([WORLD_ATOMS, X_ATOMS, Y_ATOMS][about])
+    return comparison(chance, chance.choice([WORLD_SUMS, X_SUMS, Y_SUMS][about]))
+
+
+def comparison(chance, of):
+    text, terms = of
+    relation, limit = chance.choice(RELATIONS), chance.choice(LIMITS)
+    return Comparison(terms, relation, limit, f"{text} {relation} {limit}")
+
+
+def bound(chance, operator):
+    if operator.value in BOOLEAN or chance.random() < 0.5:
+        return None
+    low = Fraction(chance.randint(0, 3))
+    if operator.value in DISTANCE:
+        return Bound(low, low, "steps")
+    return Bound(low, chance.choice([None, low, low + 1, low + 3]), "steps")
+
+
+def formula(chance, leaf, n_leaves, unary=tuple(UnaryOperator), binary=tuple(BinaryOperator)):
+    """Any formula with so many leaves."""
+    if n_leaves == 1:
+        found = leaf(chance)
+    else:
+        left = chance.randint(1, n_leaves - 1)
+        operator = chance.choice(binary)
+        sides = [formula(chance, leaf, n, unary, binary) for n in (left, n_leaves - left)]
+        found = Binary(operator, *sides, bound(chance, operator))
+    while chance.random() < 0.4:
+        operator = chance.choice(unary)
+        found = Unary(operator, found, bound(chance, operator))
+    return found
 
 
 def in_seconds(formula, step_s):
@@ -140,61 +135,95 @@ def seconds_of(bound, step_s):
     return Bound(bound.low * step_s, high, "s")
 
 
-@st.composite
-def rules(draw, name, step_s):
-    variables, leaves = draw(st.sampled_from(HEADS))
-    formula = draw(formulas(leaves))
+def always(formula):
+    return Unary(UnaryOperator.ALWAYS, formula)
+
+
+def never_both(one, other):
+    return always(Unary(NO, Binary(BinaryOperator.AND, one, other)))
+
+
+def eventually(formula):
+    return Unary(UnaryOperator.EVENTUALLY, formula)
+
+
+P, Q = Atom("p"), Atom("q")
+SOON = Bound(Fraction(0), Fraction(1), "steps")
+TELLING = [
+    ((), Unary(UnaryOperator.NEXT, Q)),
+    ((), Unary(UnaryOperator.EVENTUALLY, P, SOON)),
+    ((X,), Unary(UnaryOperator.EVENTUALLY, at(FAR, "x"), SOON)),
+    ((), always(Binary(BinaryOperator.IMPLIES, P, eventually(Q)))),
+    ((), eventually(always(Q))),
+    ((), always(Binary(BinaryOperator.IMPLIES, P, Unary(UnaryOperator.NEXT, P)))),
+    ((), Binary(BinaryOperator.UNTIL, Unary(NO, P), Q)),
+    ((), eventually(Binary(BinaryOperator.AND, P, Q))),
+    ((X,), eventually(at(NEAR, "x"))),
+    ((X,), eventually(always(at(FAR, "x")))),
+    ((CAR_X,), never_both(at(NEAR, "x"), eventually(at(FAR, "x")))),
+    ((CAR_X, Y), never_both(at(NEAR, "x"), at(NEAR, "y"))),
+]
+"""Rules that many traces keep and many violate; of random ones most come out one way."""
+
+
+def rule(chance, name, step_s, telling):
+    variables, meant = chance.choice(TELLING)
+    if chance.random() > telling:
+        variables, meant = chance.choice(HEADS), None
+    while meant is None or not is_easy(meant):
+        n_leaves = chance.randint(1, 4)
+        meant = formula(chance, partial(leaf, variables=variables), n_leaves)
+    return placed(
+        chance, name, variables, in_seconds(meant, step_s) if chance.random() < 0.5 else meant
+    )
+
+
+def placed(chance, name, variables, meant):
     return Rule(
         name,
-        draw(st.sampled_from(["hard", "soft"])),
+        chance.choice(["hard", "soft"]),
         variables,
-        in_seconds(formula, step_s) if draw(st.booleans()) else formula,
-        level=draw(st.sampled_from(["", *LEVELS])),
-        weight=draw(st.sampled_from([Fraction(1), Fraction(2), Fraction(1, 3)])),
+        meant,
+        level=chance.choice(["", *LEVELS]),
+        weight=chance.choice([Fraction(1), Fraction(2), Fraction(1, 3)]),
     )
 
 
-LOUD = comparisons(
-    [number("count o: thing (loud(o))", (1, Count("o", "thing", Atom("loud", ("o",)))))]
-)
-
-
-@st.composite
-def facts(draw, rule):
+def fact(chance, rules):
     """A fact about the objects of a rule; mostly of what the rule reads, sometimes it counts."""
+    about = chance.choice(rules)
     read = [
         one
-        for one in dict.fromkeys(atoms_of(rule.formula))
+        for one in atoms_of(about.formula)
         if isinstance(one, Atom) or isinstance(one.terms[0][1], Quantity)
     ]
-    leaves = st.sampled_from([*read, *WORLD_ATOMS[2:]]) | st.sampled_from(WORLD_ATOMS)
-    leaves = LOUD if draw(st.integers(0, 4)) == 0 else leaves
-    formula = st.recursive(
-        leaves,
-        lambda inner: (
-            st.builds(Unary, st.just(NO), inner)
-            | st.builds(Binary, st.sampled_from(BOOLEAN), inner, inner)
-        ),
-        max_leaves=3,
+    leaves = [*read, *read, *WORLD_ATOMS[2:]]
+    if chance.random() < 0.2:
+        leaves = [comparison(chance, LOUD)]
+    said = formula(
+        chance, lambda chance: chance.choice(leaves), chance.randint(1, 3), (NO,), tuple(JOINING)
     )
-    return Fact(rule.variables, draw(formula))
+    return Fact(about.variables, said)
 
 
-@st.composite
-def rulebooks(draw, step_s, with_facts=True):
-    """Of up to three rules, for traces of a step; its facts do not contradict each other."""
-    every = tuple(draw(rules(f"r{n}", step_s)) for n in range(draw(st.integers(1, 3))))
-    known = ()
-    if with_facts and draw(st.booleans()):
-        known = tuple(draw(st.lists(st.sampled_from(every).flatmap(facts), max_size=2)))
-    book = Rulebook(
-        "random",
-        WORLD,
-        every,
-        semantics=draw(st.sampled_from(["stutter", "finite"])),
-        facts=known,
-        levels=LEVELS,
-        priorities=closed(draw(st.sets(st.sampled_from(PAIRS), max_size=3))),
+def rulebook(chance, step_s, for_graphs=False):
+    """For traces of a step; facts do not contradict each other. For graphs there are none."""
+    n_rules = chance.randint(1, 4 if for_graphs else 3)
+    telling, n_facts = (0.7, 0) if for_graphs else (0.2, chance.choice([0, 1, 2]))
+    rules = tuple(rule(chance, f"r{n}", step_s, telling) for n in range(n_rules))
+    if for_graphs and chance.random() < 0.7:
+        # What cannot both be kept: something has to give.
+        ends = eventually(always(chance.choice([P, Q, Binary(BinaryOperator.OR, P, Q)])))
+        rules += (
+            placed(chance, "one", (), ends),
+            placed(chance, "other", (), Unary(NO, ends)),
+        )
+    semantics, pairs = (
+        chance.choice(["stutter", "finite"]),
+        chance.sample(PAIRS, chance.choice([0, 0, 1, 2, 3])),
     )
-    assume(all(possible_letters(one.formula, one.variables, book) for one in book.rules))
-    return book
+    while True:
+        known = tuple(fact(chance, rules) for _ in range(n_facts))
+        book = Rulebook("random", WORLD, rules, semantics=semantics, facts=known)
+        if all(possible_letters(one.formula, one.variables, book) for one in rules):
+            return replace(book, levels=LEVELS, priorities=closed(pairs))

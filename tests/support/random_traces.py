@@ -1,7 +1,9 @@
-"""Random traces over the vocabulary of the random rulebooks, and the names that they leave out."""
+"""Random traces over the vocabulary of the random rulebooks, by a source of chance."""
 
-from hypothesis import strategies as st
-from random_rulebooks import WORLD
+from dataclasses import replace
+
+from present import there
+from world import WORLD
 
 from rulec.trace import Trace
 
@@ -17,26 +19,24 @@ VALUES = {
 }
 
 
-@st.composite
-def states(draw, objects, *, gaps):
-    """All that has no default, and some of what has; with ``gaps`` not quite all."""
+def state_of(chance, objects, *, gaps):
     state = {}
     for name, declaration in WORLD.declarations.items():
-        values = st.sampled_from(VALUES.get(name, [True, False]))
-        if declaration.default is not None and draw(st.booleans()):
+        if declaration.default is not None and chance.random() < 0.3:
             continue
-        if gaps and draw(st.integers(0, 9)) == 0:
+        if gaps and chance.random() < 0.1:
             continue
-        said = said_about(draw, values, objects, len(declaration.parameters))
+        values = VALUES.get(name, [True, False])
+        said = said_about(chance, values, objects, len(declaration.parameters))
         if said != {}:
             state[name] = said
     return state
 
 
-def said_about(draw, values, objects, n_objects):
+def said_about(chance, values, objects, n_objects):
     if n_objects == 0:
-        return draw(values)
-    return {name: said_about(draw, values, objects, n_objects - 1) for name in objects}
+        return chance.choice(values)
+    return {name: said_about(chance, values, objects, n_objects - 1) for name in objects}
 
 
 def only(state, there):
@@ -53,30 +53,22 @@ def of_these(value, there):
     return {name: of_these(inner, there) for name, inner in value.items() if name in there}
 
 
-@st.composite
-def traces(draw, step_s, n_traces=6):
+def traces(chance, step_s):
     """Of one or two shapes; objects come late and leave early, and states are met again."""
     found = []
-    for shape in range(draw(st.integers(1, 2))):
-        objects = {name: KINDS[name] for name in sorted(draw(st.sets(st.sampled_from("abc"))))}
-        pool = draw(st.lists(states(objects, gaps=draw(st.booleans())), min_size=1, max_size=4))
-        shortest, present = 1, {}
+    for shape in range(chance.randint(1, 2)):
+        objects = {name: KINDS[name] for name in sorted(chance.sample("abc", chance.randint(0, 3)))}
+        gaps = chance.random() < 0.3
+        pool = [state_of(chance, objects, gaps=gaps) for _ in range(chance.randint(1, 5))]
+        present = {}
         for name in objects:
-            if draw(st.integers(0, 2)) == 0:
-                first = draw(st.integers(0, 2))
-                present[name] = (first, first + draw(st.integers(0, 2)))
-                shortest = max(shortest, present[name][1] + 1)
-        for number in range(draw(st.integers(1, n_traces))):
-            n = draw(st.integers(shortest, max(shortest, 5)))
-            word = draw(st.lists(st.sampled_from(pool), min_size=n, max_size=n))
-            there = [
-                [
-                    one
-                    for one in objects
-                    if one not in present or present[one][0] <= t <= present[one][1]
-                ]
-                for t in range(n)
-            ]
-            word = tuple(only(state, names) for state, names in zip(word, there, strict=True))
-            found.append(Trace(f"{shape}.{number}", float(step_s), objects, word, present))
+            if chance.random() < 0.3:
+                first = chance.randint(0, 2)
+                present[name] = (first, first + chance.randint(0, 2))
+        shortest = max([1, *(last + 1 for _, last in present.values())])
+        for number in range(chance.randint(1, 4)):
+            word = chance.choices(pool, k=chance.randint(shortest, max(shortest, 6)))
+            trace = Trace(f"{shape}.{number}", float(step_s), objects, tuple(word), present)
+            said = tuple(only(state, there(trace, n)) for n, state in enumerate(word))
+            found.append(replace(trace, states=said))
     return found

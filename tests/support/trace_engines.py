@@ -7,9 +7,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 
-import oracle
 from engine import each, told
-from oracle import Refused, Said
+from oracle import Oracle, Refused, Said
 from present import there
 from reading import below
 
@@ -27,7 +26,7 @@ from rulec.vocabulary import Enumeration, Quantity, Signal
 
 @each
 def by_oracle(rulebook, compiled, trace):
-    found = oracle.judged(rulebook, trace)
+    found = Oracle(rulebook).judged(trace)
     return min(found.codes) if isinstance(found, Refused) else found
 
 

@@ -149,16 +149,16 @@ class _Run:
     def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
         """Judge every drive of a recording."""
         from rulec.diagnostics import RulecError
-        from rulec.drives.judging import Judged, JudgedRecording
+        from rulec.drives.judging import Judged
         from rulec.drives.tally import Tally
         from rulec.report import recorded_verdicts as report
         from rulec.report.console import print_result, progress
         from rulec.runtime.explanation import explain
         from rulec.runtime.verdict import NotJudged, Verdict
-        from rulec.scenario.recordings import read_recording
+        from rulec.workflow import judge_recording
 
         try:
-            judged = JudgedRecording(read_recording(Path(file), net), self.rules, wanted, file)
+            judged = judge_recording(Path(file), self.rules, wanted, net)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True

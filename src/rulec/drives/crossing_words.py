@@ -43,9 +43,10 @@ def _crossing_use(view: View) -> NDArray[intp]:
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
-    walks = np.abs(view.people.speed) * KMH >= limits.standing_kmh
+    walks = view.people.speed * KMH >= limits.standing_kmh
     towards = _towards(view)
-    on = beside & view.on_crosswalk & (view.touched.any(axis=-1) | ~walks | (towards > 0))
+    crossing = beside & view.on_crosswalk & view.in_the_road
+    on = crossing & (view.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     soon = beside & walks & (towards > 0) & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
@@ -56,7 +57,7 @@ def _crossing_use(view: View) -> NDArray[intp]:
 def _towards(view: View) -> Values:
     """The speed towards the middle of the road, across it (m/s)."""
     straight = view.road.lanes.straight
-    left = np.sin(view.others.turned) * view.people.speed
+    left = view.others.across
     towards: Values = np.where(view.others.w < (straight[0] + straight[-1]) / 2, left, -left)
     return towards
 
@@ -64,7 +65,7 @@ def _towards(view: View) -> Values:
 def _stopped(view: View) -> Flags:
     """Who stands before the crossing that lies ahead of ego, near to it."""
     start, _ = ahead_of_ego(view)
-    stands = np.abs(view.others.along) * KMH < view.thresholds.standing_kmh
+    stands = view.people.speed * KMH < view.thresholds.standing_kmh
     way = start - view.others.s_max
     found: Flags = (
         stands & view.touched.any(axis=-1) & (way >= 0) & (way <= 2 * view.thresholds.zone_m)

@@ -6,7 +6,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -23,7 +23,7 @@ Flags: TypeAlias = NDArray[bool_]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Everyone:
-    """NaN where somebody is not there. Speeds (m/s) are along ``heading``, from displacement."""
+    """NaN where somebody is not there. Velocities (m/s) and accelerations are from displacement."""
 
     participants: tuple[Participant, ...]
     first: int
@@ -31,6 +31,8 @@ class Everyone:
     x: Values
     y: Values
     heading: Values
+    vx: Values
+    vy: Values
     speed: Values
     acceleration: Values
 
@@ -45,8 +47,18 @@ class Everyone:
             if one.standing:
                 yield row, 0, next(iter(one.outlines.values()))
                 continue
-            for step, outline in one.outlines.items():
-                yield row, step - self.first, outline
+            for column in np.flatnonzero(self.there[row]).tolist():
+                yield row, column, one.outlines[self.first + column]
+
+    def part(self, rows: NDArray[np.intp], columns: slice) -> Everyone:
+        """Some of them, for some time."""
+        names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
+        return replace(
+            self,
+            participants=tuple(self.participants[row] for row in rows),
+            first=self.first + columns.start,
+            **{name: getattr(self, name)[rows][:, columns] for name in names},
+        )
 
     def of_kind(self, word: str) -> Flags:
         """Whose type is this one, or one of its subtypes?"""
@@ -73,13 +85,15 @@ def everyone(recording: Recording, thresholds: Thresholds) -> Everyone:
     reach = max(1, round(thresholds.smoothing_s / 2 / recording.step_s))
     duration, before, after = _around(there, reach)
     lines = np.arange(shape[0])[:, None]
-    ahead = np.cos(heading) * (x[lines, after] - x[lines, before])
-    ahead += np.sin(heading) * (y[lines, after] - y[lines, before])
     seconds = np.where(duration > 0, duration, np.nan) * recording.step_s
-    speed = np.where(duration > 0, ahead / seconds, said)
+    vx = (x[lines, after] - x[lines, before]) / seconds
+    vy = (y[lines, after] - y[lines, before]) / seconds
+    once = there & (duration == 0)
+    vx, vy = np.where(once, said * np.cos(heading), vx), np.where(once, said * np.sin(heading), vy)
+    speed = np.hypot(vx, vy)
     gained = (speed[lines, after] - speed[lines, before]) / seconds
     acceleration = np.where(there, np.nan_to_num(gained), np.nan)
-    return Everyone(people, first, there, x, y, heading, speed, acceleration)
+    return Everyone(people, first, there, x, y, heading, vx, vy, speed, acceleration)
 
 
 def _places(one: Participant) -> dict[int, tuple[float, float, float, float]]:

@@ -45,31 +45,30 @@ class JudgedRecording:
         step = exact(recording.step_s)
         self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
         rules = self.rules
-        self._drives = wanted_drives(
+        self.drives = wanted_drives(
             recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
         )
-        self.recording = self._drives.recording
-        self.mirrored = self._drives.mirrored
-        self.egos = self._drives.egos
+        self.recording = self.drives.recording
+        self.mirrored = self.drives.mirrored
+        self.egos = self.drives.egos
 
     def answers(self) -> Iterator[Judged | NoDrive]:
         """What each vehicle did, in the order of the file."""
-        waiting: list[Drive] = []
-        for ego in self.egos:
-            for one in self._drives.of(ego):
-                if isinstance(one, NoDrive):
-                    yield one
-                else:
-                    waiting.append(one)
-            if sum(len(one.trace.states) for one in waiting) >= MOST_STATES:
+        waiting: list[Drive | NoDrive] = []
+        states = 0
+        for one in (one for ego in self.egos for one in self.drives.of(ego)):
+            waiting.append(one)
+            states += len(one.trace.states) if isinstance(one, Drive) else 0
+            if states >= MOST_STATES:
                 yield from self._judged(waiting)
-                waiting = []
+                waiting, states = [], 0
         yield from self._judged(waiting)
 
-    def _judged(self, drives: list[Drive]) -> Iterator[Judged]:
-        answers = judge_chunk([one.trace for one in drives], self.rules)
-        for drive, answer in zip(drives, answers, strict=True):
-            yield Judged(drive, answer)
+    def _judged(self, drives: list[Drive | NoDrive]) -> Iterator[Judged | NoDrive]:
+        traces = [one.trace for one in drives if isinstance(one, Drive)]
+        answers = iter(judge_chunk(traces, self.rules))
+        for one in drives:
+            yield Judged(one, next(answers)) if isinstance(one, Drive) else one
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """For every rule what it reads beyond these words, so that it has its default all along.

@@ -13,16 +13,21 @@ NO_LIMIT_KMH = 1000.0
 NO_CROSSING_M = 1000.0
 
 _SIGNS = {
-    "YIELD": "give_way_sign",
-    "STOP": "stop_sign",
-    "NO_OVERTAKING_START": "no_overtaking_sign",
+    "YIELD": ("give_way_sign", True),
+    "STOP": ("stop_sign", True),
+    "NO_OVERTAKING_START": ("no_overtaking_sign", False),
 }
+"""Sign -> word, and whether it is for the line at the lanelet's end."""
+
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
 
 
 def map_words(view: View) -> Words:
     """Words about the road where ego is. What the map has no word about at all is not there."""
-    lanelets = lanelets_under(view)
+    lanelets = _lanelets_at(view, view.own.s[0])
+    # Where ego's front was one state before, so that who crosses a line still has its sign
+    front = view.own.s_max[0]
+    left = _lanelets_at(view, np.append(front[:1], front[:-1]))
     to_crossing = way_to_crossing(view)
     on = to_crossing <= 0
     world = {
@@ -38,15 +43,16 @@ def map_words(view: View) -> Words:
     if any(classes):
         world["road_class"] = np.array(classes)
         unknown["road_class"] = world["road_class"] == ""
-    for sign, word in _SIGNS.items():
+    for sign, (word, at_line) in _SIGNS.items():
         if any(sign in one.signs for one in view.recording.lanelets.values()):
-            world[word] = np.array([sign in one.signs for one in lanelets])
+            under = left if at_line else lanelets
+            world[word] = np.array([sign in one.signs for one in under])
     return Words(world, unknown=unknown)
 
 
-def lanelets_under(view: View) -> list[Lanelet]:
-    """The lanelet that ego's middle is on, by state."""
-    pieces = view.road.piece(view.own.s[0]).tolist()
+def _lanelets_at(view: View, s: Values) -> list[Lanelet]:
+    """The lanelet of ego's lane at places, one for each state."""
+    pieces = view.road.piece(s).tolist()
     lanes = view.lane.tolist()
     return [view.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
 
@@ -76,6 +82,6 @@ def _surface(view: View, on_crossing: Flags) -> Column:
     found = np.full(view.states, "carriageway", dtype="<U11")
     for start, end in view.road.junctions:
         found[(middle > start) & (middle < end)] = "junction"
-    found[["busLane" in one.types for one in lanelets_under(view)]] = "bus_lane"
+    found[["busLane" in one.types for one in _lanelets_at(view, middle)]] = "bus_lane"
     found[on_crossing] = "crossing"
     return found

@@ -45,6 +45,8 @@ def _lanelet(lanelet: Lanelet) -> Lanelet:
         centre=_points(lanelet.centre),
         left_of=lanelet.right_of,
         right_of=lanelet.left_of,
+        left_mark=lanelet.right_mark,
+        right_mark=lanelet.left_mark,
     )
 
 

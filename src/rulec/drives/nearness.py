@@ -34,6 +34,6 @@ def near(
 
 def _drives(people: Everyone, thresholds: Thresholds) -> Flags:
     """Who moves at some time?"""
-    fastest = np.nan_to_num(np.abs(people.speed)).max(axis=1, initial=0.0)
+    fastest = np.nan_to_num(people.speed).max(axis=1, initial=0.0)
     moves: Flags = fastest * 3.6 >= thresholds.standing_kmh
     return moves

@@ -32,7 +32,7 @@ def other_words(view: View) -> Words:
             "safe_gap": np.logical_or(~follows, gap >= safe_distance(view)),
             "precedes": _precedes(view, follows, gap),
             "oncoming": comes(view) | _waits_to_come(view),
-            "stopped": np.abs(others.along) * KMH < limits.standing_kmh,
+            "stopped": view.people.speed * KMH < limits.standing_kmh,
             "parked": _for_good(view, [one.standing for one in view.people.participants]),
             "two_wheeled": _for_good(
                 view, [one.type in _TWO_WHEELED for one in view.people.participants]

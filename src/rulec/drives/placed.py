@@ -20,8 +20,8 @@ _SPREAD, _MORE_M = 2.0, 3.0
 class Placed:
     """The bounds of what everybody occupies, and the middle of these.
 
-    ``turned`` is the heading as seen from the road's direction (radians), ``along`` and ``gained``
-    speed (m/s) and acceleration (m/s²) along the road.
+    ``turned`` is the heading as seen from the road's direction (radians), ``along`` and ``across``
+    the velocity along the road and to its left (m/s).
     """
 
     s_min: Values
@@ -32,7 +32,7 @@ class Placed:
     w_max: Values
     turned: Values
     along: Values
-    gained: Values
+    across: Values
 
     @property
     def s(self) -> Values:
@@ -75,8 +75,7 @@ def placed(people: Everyone, road: Road) -> Placed:
         for bound in bounds:
             bound[standing] = bound[standing][:, :1]
     directions = _directions(road, (bounds[0] + bounds[1]) / 2)
-    turned = (people.heading - directions + np.pi) % (2 * np.pi) - np.pi
-    along = np.cos(turned)
+    cos, sin = np.cos(directions), np.sin(directions)
     s_min, s_max, d_min, d_max, w_min, w_max = bounds
     return Placed(
         s_min,
@@ -85,9 +84,9 @@ def placed(people: Everyone, road: Road) -> Placed:
         d_max,
         w_min,
         w_max,
-        turned,
-        people.speed * along,
-        people.acceleration * along,
+        (people.heading - directions + np.pi) % (2 * np.pi) - np.pi,
+        people.vx * cos + people.vy * sin,
+        people.vy * cos - people.vx * sin,
     )
 
 

@@ -24,6 +24,7 @@ RIGHT_OF, SAME_LANE, LEFT_OF = range(3)
 assert STATIONS == ("behind", "beside", "in_front_of")
 assert LATERALS == ("right_of", "same_lane", "left_of")
 
+_STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
@@ -105,7 +106,12 @@ def position(
 
 
 def _facing(others: Placed) -> Codes:
-    """Headings rounded to a right angle of the road; half-way counts as across it."""
-    angle = np.round(np.degrees(np.nan_to_num(others.turned)), 6)
+    """Where people go, or look if they stand, rounded to a right angle of the road.
+
+    Half-way counts as across it.
+    """
+    moves = np.hypot(others.along, others.across) > _STANDS_MPS
+    angle = np.where(moves, np.arctan2(others.across, others.along), others.turned)
+    angle = np.round(np.degrees(np.nan_to_num(angle)), 6)
     across = np.where(angle > 0, 1, 3)
     return np.where(np.abs(angle) < 45, 0, np.where(np.abs(angle) > 135, 2, across))

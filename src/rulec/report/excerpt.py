@@ -27,7 +27,7 @@ class Mark:
 
 def visible(text: str) -> str:
     """The text with control characters, line ends and reordering marks written as escapes."""
-    return "".join(_shown(character) for character in text)
+    return text if text.isprintable() else "".join(_shown(character) for character in text)
 
 
 def _shown(character: str) -> str:

@@ -7,7 +7,6 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.choice import Choice
-from rulec.scenario.recorded.convert import to_scenario
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.safe_xml import XmlFormat, is_xml, root_of, short
 
@@ -63,6 +62,8 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
     Raises:
         RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
     """
+    from rulec.scenario.recorded.convert import to_scenario
+
     recording = read_recording(path, choice.net)
     try:
         return to_scenario(recording, choice, str(path))

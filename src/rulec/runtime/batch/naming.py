@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from rulec.runtime.verdict import Violation
@@ -61,7 +60,9 @@ def in_own_names(
     if not violations or objects == own:
         return tuple(violations)
     names = dict(zip(objects, own, strict=True))
-    return tuple(
-        replace(one, binding={variable: names[item] for variable, item in one.binding.items()})
-        for one in violations
-    )
+    return tuple([_bound_to(one, names) for one in violations])
+
+
+def _bound_to(one: Violation, names: Mapping[str, str]) -> Violation:
+    binding = {variable: names[item] for variable, item in one.binding.items()}
+    return Violation(one.rule, one.strength, binding, one.step)

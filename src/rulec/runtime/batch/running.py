@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.machine import Machine
 from rulec.runtime.batch.joint import Joint
-from rulec.runtime.batch.leaping import pays, run_leaping
+from rulec.runtime.batch.leaping import Rows, pays, run_leaping
 from rulec.runtime.batch.long import run_alone, visited
 from rulec.runtime.batch.steps import Step, steps_of
 from rulec.trace.columns import Array, Layout, smallest_unsigned
@@ -50,12 +51,12 @@ def run(
     return _run_wide(joint, letters, steps)
 
 
-def _by_cells(joint: Joint) -> tuple[list[list[int]], list[list[int]]]:
+@lru_cache(maxsize=64)
+def _by_cells(joint: Joint) -> tuple[Rows, Rows]:
     """What follows and what is the verdict, by state and cell."""
-    return (
-        [[row[letter] for letter in joint.letters] for row in joint.following],
-        [[row[letter] for letter in joint.letters] for row in joint.verdicts],
-    )
+    following = [tuple([row[letter] for letter in joint.letters]) for row in joint.following]
+    verdicts = [tuple([row[letter] for letter in joint.letters]) for row in joint.verdicts]
+    return tuple(following), tuple(verdicts)
 
 
 def spelled(cells: Array, letters: Sequence[int]) -> Array:

@@ -19,6 +19,7 @@ FARTHEST_M = 1e8
 """Numbers in a file are smaller than this, places included: the earth is not so large."""
 
 Side = Literal["left", "right"]
+Mark = Literal["solid", "broken", "none"]
 Lamp = Literal["left_indicator", "right_indicator", "brake_light"]
 """What a vehicle shows others."""
 
@@ -50,7 +51,8 @@ class Lanelet:
     """A piece of a lane. ``left`` and ``right`` are its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
-    the names of those that hold here; ``lights`` are those that have a programme.
+    the names of those that hold here; ``lights`` are those that have a programme. Marks are those
+    of its bounds, None where the file does not say.
     """
 
     id: str
@@ -65,6 +67,8 @@ class Lanelet:
     signs: frozenset[str]
     limit_mps: float | None
     lights: tuple[Light, ...] = ()
+    left_mark: Mark | None = None
+    right_mark: Mark | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,11 @@
-"""One suite over every engine: each says of a word what direct evaluation says."""
+"""Machines and automata of formulas: their whole language, their form, and which are the same."""
 
 import pytest
 import spot
-from hypothesis import example, given
-from past_in_spot import in_spot, spot_automaton
-from words import VOCABULARY, formulas, letters, words
+from hypothesis import given
+from past_in_spot import spot_automaton
+from words import VOCABULARY, formulas
 
-from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.automata.letters import count_letters, reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
@@ -20,11 +19,6 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.semantics import holds
-from rulec.rulebook.model import Variable
-from rulec.runtime.letters import Columns
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.verify import run
 
 
 def machine_of(formula):
@@ -32,105 +26,12 @@ def machine_of(formula):
     return build_machine(explore(translate(formula, reads), reads), reads, count_letters(reads))
 
 
-def classes(machine, word):
-    rule = CompiledRule("rule", "hard", (), "", "", Constant(True), machine, "")
-    columns = Columns(word, VOCABULARY, "state {}".format)
-    return columns.word(rule, {"x": "car1"}, 0, len(word) - 1)
-
-
-def spot_membership(automaton, formula, word):
-    """Spot's word automaton meets the automaton. The word decides every atom of the formula."""
-    known = {atom for letter in word for atom in letter} | set(atoms_of(formula))
-    conjunctions = [
-        " & ".join(("" if atom in letter else "!") + in_spot(atom) for atom in known)
-        for letter in word
-    ]
-    text = "; ".join([*conjunctions[:-1], f"cycle{{{conjunctions[-1]}}}"])
-    return spot.parse_word(text).as_automaton().intersects(automaton)
-
-
-def by_table(formula, word):
-    machine = machine_of(formula)
-    return run(machine, classes(machine, word))[0]
-
-
-def by_monitor(formula, word):
-    """State by state; what it says behind the last one is what is so if the word ends there."""
-    variables = (Variable("x", "thing"),)
-    rule = CompiledRule("rule", "hard", variables, "", "", Constant(True), machine_of(formula), "")
-    monitor = Monitor(CompiledRulebook("book", VOCABULARY, (rule,), "", "", "", (), "", ""))
-    found = [monitor.step(state, {"car1": "car"}) for state in word]
-    return found[-1].verdict in ("satisfied", "holds so far")
-
-
-def by_spot(formula, word):
-    return spot_membership(spot_automaton(formula), formula, letters(word))
-
-
-def by_hoa(formula, word):
-    reads = reads_of(formula, VOCABULARY)
-    automaton = translate(formula, reads).automaton
-    text = in_hoa(automaton, "rule", ('a "quoted" \\ text */ 0 /* and /*/', "and\nmore"))
-    return spot_membership(spot.automaton(text), formula, letters(word))
-
-
-ENGINES = {"table": by_table, "monitor": by_monitor, "Spot": by_spot, "HOA file": by_hoa}
-
-P, NEAR, FAR = Atom("p"), Atom("place", ("x",), "near"), Atom("place", ("x",), "far")
+P = Atom("p")
 GFP = Unary(UnaryOperator.ALWAYS, Unary(UnaryOperator.EVENTUALLY, P))
-PHASES = Binary(BinaryOperator.THEN, NEAR, Binary(BinaryOperator.THEN, FAR, P))
-CAR_NEAR = {"place": {"car1": "near"}, "light": "red", "p": True, "q": False}
-# Its machine has a state that some letters keep and others leave: no trap.
-P_ONCE_THEN_NOT = Unary(
-    UnaryOperator.EVENTUALLY,
-    Binary(BinaryOperator.AND, P, Unary(UnaryOperator.NEXT, Unary(UnaryOperator.NOT, P))),
-)
-CAR_FAR = {**CAR_NEAR, "place": {"car1": "far"}, "p": False}
 
 
 def previously(formula: Formula) -> Formula:
     return Unary(UnaryOperator.PREVIOUSLY, formula)
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-@given(formulas, words)
-@example(GFP, [CAR_NEAR])
-@example(GFP, [CAR_NEAR, CAR_FAR])
-@example(Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.ALWAYS, NEAR)), [CAR_FAR, CAR_NEAR])
-@example(Binary(BinaryOperator.AND, NEAR, FAR), [CAR_NEAR])
-@example(Constant(False), [CAR_NEAR])
-@example(P_ONCE_THEN_NOT, [CAR_FAR, CAR_NEAR, CAR_FAR])
-@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(P))), [CAR_NEAR])
-@example(Unary(UnaryOperator.EVENTUALLY, previously(previously(NEAR))), [CAR_NEAR, CAR_FAR])
-@example(Unary(UnaryOperator.ONCE, Unary(UnaryOperator.ALWAYS, P)), [CAR_FAR, CAR_NEAR])
-@example(PHASES, [CAR_NEAR, CAR_FAR, CAR_NEAR])
-@example(PHASES, [CAR_NEAR, CAR_NEAR])
-def test_engine_agrees_with_direct_evaluation(engine, formula, word):
-    assert ENGINES[engine](formula, word) == holds(formula, letters(word))
-
-
-@given(formulas, words)
-@example(P_ONCE_THEN_NOT, [CAR_FAR, CAR_NEAR, CAR_FAR])
-def test_lost_is_said_as_early_as_possible_and_never_wrongly(formula, word):
-    """After the step no continuation helps; before it, one does."""
-    machine = machine_of(formula)
-    symbols = classes(machine, word)
-    _, lost = run(machine, symbols)
-    state = 0
-    for index, symbol in enumerate(symbols):
-        state = machine.following[state][symbol]
-        assert (index >= lost if lost is not None else False) == (not can_be_saved(machine, state))
-
-
-def can_be_saved(machine, state):
-    seen, waiting = {state}, [state]
-    while waiting:
-        here = waiting.pop()
-        if any(machine.accepting[here]):
-            return True
-        waiting += set(machine.following[here]) - seen
-        seen |= set(machine.following[here])
-    return False
 
 
 @given(formulas)

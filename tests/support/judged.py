@@ -1,0 +1,20 @@
+"""Recordings before a rulebook, as mappings that tests can look into."""
+
+from rulec.drives.extract import NoDrive
+from rulec.drives.judging import JudgedRecording
+from rulec.drives.wanted import Wanted
+from rulec.runtime.verdict import Verdict
+
+
+def violated(found, book, **wanted):
+    """Ego -> the rules that it violated, with when first (s of the recording)."""
+    judged = JudgedRecording(found, book, Wanted(**wanted), "by hand")
+    answers = {}
+    for one in judged.answers():
+        assert not isinstance(one, NoDrive)
+        assert isinstance(one.answer, Verdict), one.answer
+        times = answers.setdefault(one.drive.ego, {})
+        for violation in one.answer.violations:
+            at = one.drive.time_s(violation.step)
+            times[violation.rule] = min(at, times.get(violation.rule, at))
+    return answers
