@@ -77,6 +77,7 @@ def test_uneven_times(tmp_path):
         ('shape="0.00,-4.80 ', 'shape="0.00 ', "has no x and y"),
         ('shape="0.00,-4.80 ', 'shape="0.00,nan ', "`shape` of a `lane` is `nan`"),
         ('shape="0.00,-4.80 ', 'shape="1e300,0 ', "`shape` of a `lane` is `1e300`"),
+        ('shape="0.00,-4.80 ', 'shape="-9e6,-4.80 ', "a lane is longer than 20 km"),
         ('width="2.00"', 'width="-2"', "`width` of a `lane` is -2"),
         ('width="2.00"', 'width="2000"', "a lane is 2000 m wide"),
         ('speed="13.89"', 'speed="0"', "`speed` of a `lane` is 0"),

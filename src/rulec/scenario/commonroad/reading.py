@@ -22,11 +22,15 @@ from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.scenario.commonroad.countries import side_in
 from rulec.scenario.commonroad.form import COMMONROAD, check_form
 from rulec.scenario.commonroad.moving import participants_of, problem_of
-from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Mark, Points, Recording
-
-LONGEST_M = 20_000.0
-"""Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
-
+from rulec.scenario.recorded.recording import (
+    FARTHEST_M,
+    LONGEST_M,
+    Lanelet,
+    Light,
+    Mark,
+    Points,
+    Recording,
+)
 
 _MARKS: Mapping[str, Mark] = MappingProxyType(
     {

@@ -18,6 +18,9 @@ Points = NDArray[float64]
 FARTHEST_M = 1e8
 """Numbers in a file are smaller than this, places included: the earth is not so large."""
 
+LONGEST_M = 20_000.0
+"""Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
+
 Side = Literal["left", "right"]
 Mark = Literal["solid", "broken", "none"]
 Lamp = Literal["left_indicator", "right_indicator", "brake_light"]

@@ -9,7 +9,7 @@ from xml.parsers.expat import XMLParserType
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import Points, Side
+from rulec.scenario.recorded.recording import LONGEST_M, Points, Side
 from rulec.scenario.safe_xml import XmlFormat, scan
 from rulec.scenario.sumo.attributes import Element
 
@@ -142,6 +142,8 @@ def _lane(element: Element, edge: Edge) -> Lane:
         if len(numbers) not in (2, 3):
             raise element.wrong("a place in the `shape` of a `lane` has no x and y")
         places.append(numbers[:2])
+    if np.ptp(places, axis=0).max() > LONGEST_M:
+        raise element.wrong(f"a lane is longer than {LONGEST_M / 1000:g} km")
     width = element.positive("width", LANE_WIDTH_M)
     if width > WIDEST_M:
         raise element.wrong(f"a lane is {width:g} m wide", f"{WIDEST_M:g} m at most")
