@@ -7,6 +7,7 @@ from judged import violated
 from roads import lanelet, recording, straight, vehicle
 
 from rulec.drives.extract import Drives
+from rulec.drives.thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
 from rulec.workflow import machines
 
@@ -14,8 +15,8 @@ STEP_S = 0.5
 GERMAN = machines("de")
 
 
-def states(found, ego, side="right"):
-    (drive,) = Drives(found, side).of(ego)
+def states(found, ego, side="right", **thresholds):
+    (drive,) = Drives(found, side, Thresholds(**thresholds)).of(ego)
     return drive.trace.states
 
 
@@ -60,6 +61,15 @@ def test_who_walks():
     on = uses[far + soon + enters :]
     assert uses[: far + soon + enters] == expected
     assert on == ["on_crossing"] * 7 + ["not_crossing"] * 2
+
+
+def test_who_walks_along_the_pavement_does_not_come_to_cross():
+    # At 1.2 m/s along the road, drifting towards it by 0.4 m/s: 0.65 m from the lane at first, it
+    # would be there in less than 2 s, which is not where it goes
+    places = {k: (99.0 + 0.6 * k, -2.9 + 0.2 * k) for k in range(3)}
+    people = [going(7, 40, 2.0, count=3), on_foot(8, places)]
+    found = recording([ROAD, zebra()], people)
+    assert {state["crossing_use"]["8"] for state in states(found, "7")} == {"not_crossing"}
 
 
 def test_driving_over_a_crossing_somebody_is_on():
@@ -166,3 +176,6 @@ def test_a_turn_to_the_left(side, turn):
     one = vehicle(7, {**places, 5: (104.0, 0.8), 6: (107.6, 3.0)})
     told = states(recording(lanes, [one]), "7", side)
     assert [state["turn"] for state in told] == ["straight_on"] * 3 + [turn] * 4
+    # One second is two states
+    soon = states(recording(lanes, [one]), "7", side, preparing_s=1.0)
+    assert [state["preparing_to_leave"] for state in soon] == [False] + [True] * 6

@@ -3,47 +3,17 @@
 import json
 
 import pytest
-from roads import ROAD_XML
+from recorded_cars import three_cars
 
 from rulec.cli.main import main
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 
-# Car 3 stands in its only state for 2 s; 4 comes from behind at 20 m/s and stops for nobody. They
-# are on one lane, from 4 m behind 3 on a hand's breadth to its left.
-MOVING = """
-  <obstacle id="{number}">
-    <role>dynamic</role>
-    <type>car</type>
-    <shape><rectangle><length>4</length><width>1.5</width></rectangle></shape>
-    <initialState>
-      <position><point><x>{x}</x><y>{y}</y></point></position>
-      <orientation><exact>0</exact></orientation><time><exact>0</exact></time>
-      <velocity><exact>{speed}</exact></velocity>
-    </initialState>
-    <trajectory>{states}</trajectory>
-  </obstacle>
-"""
-STATE = """<state><position><point><x>{x}</x><y>{y}</y></point></position>
-  <orientation><exact>0</exact></orientation><time><exact>{step}</exact></time>
-  <velocity><exact>{speed}</exact></velocity></state>"""
-
-
-def car(number, x, y, speed, steps=30):
-    states = (
-        STATE.format(x=x + speed * 0.1 * step, y=y, step=step, speed=speed)
-        for step in range(1, steps)
-    )
-    return MOVING.format(number=number, x=x, y=y, speed=speed, states="".join(states))
-
 
 @pytest.fixture
 def road(tmp_path):
-    start, end = ROAD_XML.index("  <obstacle"), ROAD_XML.index("  <planning")
-    cars = car(3, 10, 0, 12) + car(4, 2, 0, 14) + car(5, 60, 0, 4)
-    file = tmp_path / "DEU_Road-1_1_T-1.xml"
-    file.write_text(ROAD_XML[:start] + cars + ROAD_XML[end:])
-    return str(file)
+    # 4 follows 3 with a gap of 4 m at 14 m/s; 5 is far ahead
+    return three_cars(tmp_path)
 
 
 def verdicts(capsys, *arguments):

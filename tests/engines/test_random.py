@@ -13,7 +13,7 @@ from seeds import seeds
 
 
 @given(seeds)
-@settings(max_examples=2 * settings.default.max_examples, phases=[Phase.generate])
+@settings(phases=[Phase.generate])
 def test_all_engines_agree(chance):
     step_s = chance.choice([Fraction(1), Fraction(1, 2)])
     book, every = rulebook(chance, step_s), traces(chance, step_s)

@@ -68,6 +68,18 @@ def test_an_object_that_a_variable_names_counts_too():
     assert counted(Count("x", "car", others), {"v": "car1"}, HERE) == ("car2",)
 
 
+@pytest.mark.parametrize("same", [Same("x", "v"), Same("v", "x")])
+def test_only_the_one_that_a_variable_names(same):
+    for body in (both(near("x"), same), both(both(same, near("x")), near("x"))):
+        assert counted(Count("x", "car", body), {"v": "car2"}, HERE) == ("car2",)
+        assert counted(Count("x", "car", body), {"v": "tree"}, HERE) == ()
+        assert counted(Count("x", "thing", body), {"v": "tree"}, HERE) == ()
+    unknown = counted(Count("x", "car", both(same, close("v", "x"))), {"v": "car1"}, HERE)
+    assert unknown == Unknown("gap", ("car1", "car1"))
+    away = Moment({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
+    assert counted(Count("x", "car", same), {"v": "car2"}, away) == ()
+
+
 def test_a_count_within_a_count():
     has_company = less(0, times(-1, Count("y", "car", both(near("y"), no(Same("x", "y"))))))
     assert counted(Count("x", "thing", has_company), {}, HERE) == ("car1", "car2", "tree")

@@ -72,7 +72,10 @@ CASES_OF_OBJECTS = {
         f"{OBJECTS}"
         "hard rule quiet { require always count o: thing (loud(o)) < 2 }\n"
         "hard rule alone (v: car) { require never some o: thing (o != v and loud(o)) }\n"
-        "hard rule itself (v: car) { require always (loud(v) implies some o: car (loud(o))) }",
+        "hard rule itself (v: car) { require always (loud(v) implies some o: car (loud(o))) }\n"
+        "hard rule few { require always count o: car (near(o)) < 1.5 }",
+        ((CARS, [places(a="near")]), ()),
+        ((CARS, [places(a="near", b="near")]), ("few @ 0",)),
         ((CARS, [loud("a")]), ("alone b @ 0",)),
         ((CARS, [{}, loud("a", "b")]), ("quiet @ 1", "alone a @ 1", "alone b @ 1")),
         ((MIXED, [loud("t", "a")]), ("quiet @ 0", "alone a @ 0")),
@@ -116,6 +119,13 @@ CASES_OF_OBJECTS = {
             (CARS, [loud("a"), loud("b")], {"a": (0, 0), "b": (1, 1)}),
             ("of_both @ 0", "of_loud a", "of_loud b"),
         ),
+    ),
+    "facts about two objects, in either order": case(
+        "rulebook facts\ntype car\nsignal follows(v: car, w: car), loud(v: car) default false\n"
+        "fact follows(v, w) implies loud(w)\n"
+        "hard rule of_two (v: car, w: car) { require never (follows(w, v) and not loud(v)) }",
+        ((CARS, [{"follows": {"a": {"b": True}}}]), "R0508"),
+        ((CARS, [{"follows": {"a": {"b": True}}, **loud("b")}]), ()),
     ),
     "facts about a type say nothing of those above it": case(
         "rulebook facts\ntype car\ntype bus is car\nsignal loud(v: car) default false\n"

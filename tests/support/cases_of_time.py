@@ -99,6 +99,10 @@ CASES_OF_TIME = {
         ([Q, NEITHER, NEITHER, P], ("goes_on @ 0", "since_q @ 3", "began @ 3")),
         ([Q, BOTH], ("goes_on @ 0", "began @ 1")),
     ),
+    "the past, the last state of the only trace going on": case(
+        f"rulebook past\n{SIGNALS}{PAST}",
+        ([Q, P, P], ("goes_on @ 0", "began @ 1", "since_q")),
+    ),
     "the past, where a trace ends": case(
         f"rulebook past\nsemantics finite\n{SIGNALS}{PAST}",
         ([P], ("goes_on", "since_q @ 0")),
@@ -130,13 +134,20 @@ CASES_OF_TIME = {
         f"rulebook bounds\n{SIGNALS}"
         "hard rule soon  { require always (p implies eventually[<= 2 steps] q) }\n"
         "hard rule later { require always (p implies next[2 steps] q) }\n"
-        "hard rule while { require p implies p until[2 steps .. 3 steps] q }\n",
-        ([P, P, Q], ()),
-        ([P, NEITHER, Q], ("while @ 1",)),
-        ([P, NEITHER, NEITHER, Q], ("soon @ 2", "later @ 2", "while @ 1")),
-        ([P, P], ("soon", "later", "while")),
+        "hard rule while { require p implies p until[2 steps .. 3 steps] q }\n"
+        "soft rule at_ease { require p weak until[2 steps .. 3 steps] q }\n"
+        "soft rule insisting { require q strong release[2 steps .. 3 steps] p }\n",
+        ([P, P, Q], ("insisting @ 2",)),
+        ([P, NEITHER, Q], ("while @ 1", "at_ease @ 1", "insisting @ 2")),
+        (
+            [P, NEITHER, NEITHER, Q],
+            ("soon @ 2", "later @ 2", "while @ 1", "at_ease @ 1", "insisting @ 2"),
+        ),
+        ([P, P], ("soon", "later", "while", "insisting")),
+        # Within the range there is always p, but not on the way there.
+        ([P, NEITHER, P], ("soon @ 2", "later @ 2", "while @ 1", "at_ease @ 1", "insisting")),
         # q goes on, so it is there two and three steps later, but p is not until then.
-        ([P, Q], ("while @ 1",)),
+        ([P, Q], ("while @ 1", "at_ease @ 1")),
         ([BOTH], ()),
     ),
     "more pending than a byte can tell apart": case(
@@ -147,6 +158,16 @@ CASES_OF_TIME = {
         ([{"a1": True}, {"a3": True}, {"b3": True}, {"b1": True}, NEITHER], ()),
         ([{"a1": True, "a2": True}, {"b2": True, "a0": True}, {"b0": True}], ("answered",)),
         *(([{one: True}], ("answered",)) for one in ASKED),
+    ),
+    "a thousand states and more": case(
+        f"rulebook long\n{SIGNALS}"
+        "hard rule not_both { require never (p and q) }\n"
+        "hard rule in_time { require always (p implies next q) }\n"
+        "hard rule comes { require eventually q }",
+        ([NEITHER] * 1500, ("comes",)),
+        ([*[NEITHER] * 1200, P, Q, *[NEITHER] * 400], ()),
+        ([*[P, Q] * 550, BOTH, *[Q] * 10], ("not_both @ 1100",)),
+        ([*[P, Q] * 550, P, NEITHER, BOTH], ("in_time @ 1101", "not_both @ 1102")),
     ),
     "bounds in seconds": case(
         f"rulebook bounds\nstep 0.5 s\n{SIGNALS}"

@@ -5,12 +5,14 @@ from graph_engines import after, as_a_trace, count, path, saved
 from monitor_engines import watched
 from trace_engines import (
     across,
+    as_it_is,
     by_oracle,
     command,
     compiled_file,
     one_by_one,
     repeated,
     through,
+    with_own_names,
     with_own_states,
 )
 from word_engines import by_hoa, by_spot, direct, on_bits, word_by_word
@@ -33,10 +35,13 @@ ENGINES = {
     ),
     "one by one": Engine(one_by_one),
     "compiled file": Engine(compiled_file),
-    "together, in cells": Engine(repeated(lambda trace: trace)),
+    "together, in cells": Engine(repeated(as_it_is)),
     "together, in columns": Engine(repeated(with_own_states)),
+    "together, with names of their own": Engine(repeated(with_own_names)),
     "JSON Lines": Engine(through("jsonl")),
-    "rulec verify": Engine(command),
+    "rulec verify": Engine(command("jsonl")),
+    "rulec verify, CSV": Engine(command("csv"), TABLES),
+    "rulec verify, Parquet": Engine(command("parquet"), TABLES),
     "CSV": Engine(through("csv"), TABLES),
     "Parquet": Engine(through("parquet"), TABLES),
     "monitor": Engine(watched(lambda n, length: False), STATES_COME),

@@ -3,6 +3,7 @@
 Spot's automaton is not the compiler's: it has no registers, and a past that is guessed.
 """
 
+from bisect import bisect_left
 from functools import cached_property
 
 import spot
@@ -26,7 +27,10 @@ class Hope:
         """The index of the first letter after which nothing helps; None if there is hope still."""
         if self._can_be_saved(word):
             return None
-        return next(n for n in range(len(word)) if not self._can_be_saved(word[: n + 1]))
+        # What is lost stays so.
+        return bisect_left(
+            range(len(word)), True, key=lambda n: not self._can_be_saved(word[: n + 1])
+        )
 
     def _can_be_saved(self, word):
         names = [in_spot(one) for one in self._known]

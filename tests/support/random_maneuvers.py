@@ -22,6 +22,10 @@ class Given:
     def step(self):
         return Fraction(str(self.traces.step_s))
 
+    @property
+    def objects(self):
+        return self.traces.objects
+
     def trace_graph(self):
         return self.traces
 

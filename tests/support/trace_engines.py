@@ -39,17 +39,33 @@ def compiled_file(rulebook, compiled, traces):
     return one_by_one(rulebook, again, traces)
 
 
-def command(rulebook, compiled, traces):
-    """``rulec verify``, with its files."""
-    with tempfile.TemporaryDirectory() as folder:
-        rules, file = Path(folder, "book.json"), Path(folder, "traces.jsonl")
-        rules.write_text(to_json(compiled), encoding="utf-8")
-        with file.open("wb") as stream:
-            write_traces(traces, stream, str(file), "jsonl", {})
-        out = io.StringIO()
-        with redirect_stdout(out), redirect_stderr(io.StringIO()):
-            main(["verify", str(file), "-r", str(rules), "--json"])
-    return [answered(json.loads(line)) for line in out.getvalue().splitlines()]
+def command(form):
+    """``rulec verify``, with its files; there are several traces like each."""
+
+    def judge_all(rulebook, compiled, traces):
+        every = [replace(one, id=f"{one.id}~{n}") for n in range(COPIES) for one in traces]
+        kinds = kinds_in(state for trace in traces for state in trace.states)
+        with tempfile.TemporaryDirectory() as folder:
+            rules, file = Path(folder, "book.json"), Path(folder, f"traces.{form}")
+            rules.write_text(to_json(compiled), encoding="utf-8")
+            with file.open("wb") as stream:
+                write_traces(every, stream, str(file), form, kinds)
+            out = io.StringIO()
+            with redirect_stdout(out), redirect_stderr(io.StringIO()):
+                main(["verify", str(file), "-r", str(rules), "--json"])
+        return alike([answered(json.loads(line)) for line in out.getvalue().splitlines()])
+
+    return judge_all
+
+
+COPIES = 8
+
+
+def alike(answers):
+    """The answers to the first copies, which are those to the others."""
+    first = answers[: len(answers) // COPIES]
+    assert answers == first * COPIES
+    return first
 
 
 def answered(line):
@@ -69,19 +85,45 @@ def answered(line):
 
 
 def repeated(copy):
-    """Many together: each trace eight times, among the others."""
+    """Many together: several copies of each trace, among those of the others."""
 
     def judge_all(rulebook, compiled, traces):
-        many = [copy(trace) for _ in range(8) for trace in traces]
-        answers = list(map(told, verify_many(many, compiled)))
-        first = answers[: len(traces)]
-        assert answers == first * 8
-        return first
+        many = [copy(trace, n) for n in range(COPIES) for trace in traces]
+        return alike([in_common_names(told(one)) for one in verify_many(many, compiled)])
 
     return judge_all
 
 
-def with_own_states(trace):
+def as_it_is(trace, number):
+    return trace
+
+
+def with_own_names(trace, number):
+    """Its objects are called otherwise than those of other copies."""
+    names = {name: f"{name}~{number}" for name in trace.objects}
+    states = tuple(renamed(state, names) for state in trace.states)
+    objects, present = renamed(trace.objects, names), renamed(trace.present, names)
+    return replace(trace, objects=objects, states=states, present=present)
+
+
+def renamed(value, names):
+    if not isinstance(value, dict):
+        return value
+    return {names.get(name, name): renamed(inner, names) for name, inner in value.items()}
+
+
+def in_common_names(answer):
+    if isinstance(answer, str):
+        return answer
+    own = (replace(one, objects=tuple(map(first_part, one.objects))) for one in answer)
+    return tuple(sorted(own))
+
+
+def first_part(name):
+    return name.split("~")[0]
+
+
+def with_own_states(trace, number):
     """As if read from columns: no state is met again."""
     return replace(trace, states=tuple(json.loads(json.dumps(trace.states))))
 

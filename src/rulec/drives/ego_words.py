@@ -56,11 +56,10 @@ def steady_lane(view: View, there: Flags) -> NDArray[intp]:
     """Ego's lane by its middle; one is left only when the middle is well beyond the mark."""
     straight = view.road.lanes.straight
     found = np.array(view.lane)
+    middle = view.own.w[0]
     for state in range(1, len(found)):
         before = found[state - 1]
-        beyond = max(
-            straight[before] - view.own.w[0, state], view.own.w[0, state] - straight[before + 1]
-        )
+        beyond = max(straight[before] - middle[state], middle[state] - straight[before + 1])
         if beyond < view.thresholds.changed_m and there[state, before]:
             found[state] = before
     return found

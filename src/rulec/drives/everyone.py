@@ -6,7 +6,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -47,8 +47,18 @@ class Everyone:
             if one.standing:
                 yield row, 0, next(iter(one.outlines.values()))
                 continue
-            for step, outline in one.outlines.items():
-                yield row, step - self.first, outline
+            for column in np.flatnonzero(self.there[row]).tolist():
+                yield row, column, one.outlines[self.first + column]
+
+    def part(self, rows: NDArray[np.intp], columns: slice) -> Everyone:
+        """Some of them, for some time."""
+        names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
+        return replace(
+            self,
+            participants=tuple(self.participants[row] for row in rows),
+            first=self.first + columns.start,
+            **{name: getattr(self, name)[rows][:, columns] for name in names},
+        )
 
     def of_kind(self, word: str) -> Flags:
         """Whose type is this one, or one of its subtypes?"""

@@ -37,6 +37,9 @@ from rulec.vocabulary import Vocabulary
 
 FEWEST_STATES = 2
 
+MOST_PLACES = 1 << 19
+"""Of longer recordings only those are placed along a road who are there while ego drives on it."""
+
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 _DRIVERS = ("vehicle", "light_rider")
 
@@ -109,7 +112,7 @@ class Drives:
             on_crosswalks(recording, self._people),
         )
         self._moments = whereabouts(recording, self._people)
-        self._roads: dict[tuple[str, ...], tuple[Road, Placed] | str] = {}
+        self._roads: dict[tuple[str, ...], tuple[Road, Placed | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
         """Whoever moves and steers, in the order of the file."""
@@ -146,29 +149,38 @@ class Drives:
         if isinstance(answer, str):
             return NoDrive(ego, answer)
         road, everybody = answer
-        span = slice(stretch.first, stretch.last + 1)
-        if np.isnan(everybody.w[row, span]).any():
+        people, ground, columns = self._people, self._ground, (stretch.first, stretch.last)
+        if everybody is None:
+            span = slice(stretch.first, stretch.last + 1)
+            rows = people.there[:, span].any(axis=1).nonzero()[0]
+            row = int(np.searchsorted(rows, row))
+            people, columns = people.part(rows, span), (0, stretch.last - stretch.first)
+            ground = ground[0][rows, span], ground[1][rows, span]
+            everybody = placed(people, road)
+        if np.isnan(everybody.w[row, columns[0] : columns[1] + 1]).any():
             return NoDrive(ego, "it is far from its road for a while")
-        there = near(row, self._people, everybody, road, self._thresholds)
+        there = near(row, people, everybody, road, self._thresholds)
         seen = view(
             self.recording,
             self._thresholds,
             self._side,
             road,
-            self._people,
+            people,
             everybody,
             there,
-            self._ground,
+            ground,
             row,
-            (stretch.first, stretch.last),
+            columns,
         )
         return _told(seen, ego, name, self._telling)
 
-    def _road(self, way: tuple[str, ...]) -> tuple[Road, Placed] | str:
+    def _road(self, way: tuple[str, ...]) -> tuple[Road, Placed | None] | str:
+        """A road, and everybody's place along it unless that were too much to remember."""
         if way not in self._roads:
             try:
                 road = road_along(self.recording, way, self._junctions)
-                self._roads[way] = road, placed(self._people, road)
+                few = self._people.there.size <= MOST_PLACES
+                self._roads[way] = road, placed(self._people, road) if few else None
             except ValueError as reason:
                 self._roads[way] = f"its road makes no sense, {reason}"
         return self._roads[way]

@@ -22,7 +22,7 @@ def flow_words(view: View) -> Words:
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(view)
     there = view.road.lanes_at(view.own.s[0])
-    dense = np.all(np.logical_or(queues, ~there), axis=1)
+    dense = np.all(np.logical_or(queues, ~there), axis=1) & np.any(there, axis=1)
     return Words(
         {
             "congested": congested,

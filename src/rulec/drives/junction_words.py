@@ -28,7 +28,12 @@ def junction_words(view: View) -> Words:
         zone |= here
         enters |= _passes(front, start)
         turn[here] = _turn(view, start, end)
-    world: dict[str, Column] = {"junction_zone": zone, "enters_junction": enters, "turn": turn}
+    world: dict[str, Column] = {
+        "junction_zone": zone,
+        "enters_junction": enters,
+        "turn": turn,
+        "preparing_to_leave": _soon(turn != "straight_on", view),
+    }
     unknown: dict[str, Flags] = {}
     if any("STOP" in one.signs for one in view.recording.lanelets.values()):
         world["crosses_stop_line"] = _crosses_stop_line(view, front)
@@ -36,6 +41,15 @@ def junction_words(view: View) -> Words:
         world["light"], world["crosses_light_line"] = _lights(view, front)
         unknown["light"] = world["light"] == ""
     return Words(world, unknown=unknown)
+
+
+def _soon(happens: Flags, view: View) -> Flags:
+    """Is it so, or will it be soon? What ego is about to do is known from what it did."""
+    states = round(view.thresholds.preparing_s / view.recording.step_s)
+    ahead = np.append(np.cumsum(happens[::-1])[::-1], 0)
+    until = np.minimum(np.arange(view.states) + states + 1, view.states)
+    soon: Flags = ahead[:-1] > ahead[until]
+    return soon
 
 
 def _passes(front: Values, line: float) -> Flags:

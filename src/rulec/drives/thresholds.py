@@ -62,6 +62,8 @@ class Thresholds:
     """And it sets foot on it if it will be there so soon."""
     turned_deg: float = 45.0
     """Ego turns at a junction if its road does by more than this."""
+    preparing_s: float = 10.0
+    """Ego prepares to turn for so long."""
     light_reach_m: float = 50.0
     """A light farther ahead is not ego's yet."""
 

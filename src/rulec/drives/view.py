@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Literal
 
+import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -94,9 +95,9 @@ def view(
         side,
         road,
         everyone.first + columns[0],
-        _people(everyone, [ego], span),
+        everyone.part(np.array([ego]), span),
         _cut(all_placed, [ego], span),
-        _people(everyone, rows, span),
+        everyone.part(rows, span),
         others,
         near[rows, span],
         lanes_touched(others, road, thresholds),
@@ -107,13 +108,3 @@ def view(
 
 def _cut(all_placed: Placed, rows: NDArray[intp] | list[int], span: slice) -> Placed:
     return Placed(*(getattr(all_placed, one.name)[rows][:, span] for one in fields(all_placed)))
-
-
-def _people(people: Everyone, rows: NDArray[intp] | list[int], span: slice) -> Everyone:
-    names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
-    return replace(
-        people,
-        participants=tuple(people.participants[row] for row in rows),
-        first=people.first + span.start,
-        **{name: getattr(people, name)[rows][:, span] for name in names},
-    )

@@ -28,6 +28,8 @@ def as_json(
     """One line of JSON for a drive: as for any trace, and what became of the recording."""
     recording = judged.recording
     about = {"recording": recording.name, "mirrored": judged.mirrored}
+    if recording.remarks:
+        about["remarks"] = list(recording.remarks)
     if isinstance(one, NoDrive):
         return json.dumps({"trace": one.ego, **about, "why_not": one.why}, ensure_ascii=False)
     drive = one.drive
@@ -52,7 +54,7 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = judged.recording
     lines = [
-        f"recording   {recording.name}: {tally.judged} drives in steps of {recording.step_s:g} s",
+        f"recording   {recording.name}: {_drives(tally.judged)} in steps of {recording.step_s:g} s",
         *_not_judged(tally.not_judged),
     ]
     if judged.mirrored:
@@ -64,8 +66,13 @@ def as_text(judged: JudgedRecording, tally: Tally) -> str:
     defaults = _everything(judged, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {_some(defaults)}: the recording does not say")
+    lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
+
+
+def _drives(count: int) -> str:
+    return f"{count:,} {'drive' if count == 1 else 'drives'}"
 
 
 def _not_judged(found: Sequence[NoDrive]) -> Iterator[str]:

@@ -9,7 +9,7 @@ from roads import ROAD_XML
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
-from rulec.scenario.commonroad import reading
+from rulec.scenario.commonroad import form
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 BOUND = "<leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>"
@@ -77,7 +77,15 @@ def test_areas_and_intervals_are_taken_whole(written):
         ("2018b", "2017a", "its `commonRoadVersion` is `2017a`"),
         ("</lanelet>", "</lane>", "not well-formed XML: mismatched tag"),
         ("</commonRoad>", "", "not well-formed XML"),
-        (BOUND, "", "something in it is missing"),
+        (BOUND, "", "the element `lanelet` has no `leftBound`"),
+        (BOUND, "<leftBound/>", "the element `leftBound` has fewer than 2 points"),
+        ("<y>2</y>", "", "the element `point` has no `y`"),
+        ('<lanelet id="1">', "<lanelet>", "the element `lanelet` has no `id`"),
+        ('timeStepSize="0.1"', "", "the element `commonRoad` has no `timeStepSize`"),
+        ("<type>car</type>", "", "the element `obstacle` has no `type`"),
+        ("<length>4</length>", "", "the element `rectangle` has no `length`"),
+        ("<type>car</type>", "<type>carr</type>", "commonroad-io says ValueError: 'carr'"),
+        ("dynamic", "flying", "something in it is missing or has an unknown name"),
         ('"0.1"', '"0"', "a time step of 0 s"),
         ('"0.1"', '"soon"', "does not fit"),
         ("<x>9</x>", "<x>nan</x>", "is no number"),
@@ -106,8 +114,8 @@ def test_where_ego_is_not(written):
 
 
 def test_too_much_is_not_read(written, monkeypatch):
-    small = replace(reading.COMMONROAD, largest_bytes=1000)
-    monkeypatch.setattr(reading, "COMMONROAD", small)
+    small = replace(form.COMMONROAD, largest_bytes=1000)
+    monkeypatch.setattr(form, "COMMONROAD", small)
     assert "too large" in problem_with(written(ROAD_XML)).message
 
 

@@ -3,7 +3,7 @@
 import pytest
 from roads import lanelet, recording, straight
 
-from rulec.scenario.recorded.recording import State
+from rulec.scenario.recorded.recording import State, in_order
 from rulec.scenario.recorded.route import lanelet_of, lanelets_at, route
 
 FORK = [
@@ -69,3 +69,20 @@ def test_the_lanelet_that_ego_is_on(place, heading, expected):
     crossing = lanelet(7, [(25, -3), (25, 2)])
     made = recording([*FORK, crossing])
     assert lanelet_of(made, State(*place, heading, 0, 0)) == expected
+
+
+def test_a_road_does_not_turn_back_by_itself():
+    """It ends where one can only turn round; who is to go back does."""
+    round_the_end = [
+        straight(1, 0, 100, y=-2, successors=(2,)),
+        lanelet(2, [(100, -2), (103, 0), (100, 2)], predecessors=(1,), successors=(3,)),
+        straight(3, 100, 0, y=2, predecessors=(2,)),
+    ]
+    made = recording(round_the_end)
+    assert route(made, "1", frozenset()) == ("1",)
+    assert route(made, "3", frozenset()) == ("3",)
+    assert route(made, "1", frozenset({"3"})) == ("1", "2", "3")
+
+
+def test_ids_that_are_numbers_come_in_their_order():
+    assert sorted(["10", "9", "e2", "100"], key=in_order) == ["9", "10", "e2", "100"]

@@ -108,6 +108,13 @@ def test_who_vanishes_and_comes_back_is_another_one(tmp_path):
     }
 
 
+def test_who_is_in_no_place_is_not_there(tmp_path):
+    """SUMO writes -2^30 for both x and y then."""
+    nowhere = body(x="-1073741824.00", y="-1073741824.00")
+    recording = read(tmp_path, moment(0, body()), moment(1, nowhere), moment(2, body()))
+    assert [list(one.states) for one in recording.participants] == [[0], [2]]
+
+
 def test_passengers_are_a_part_of_their_vehicle(tmp_path):
     """Whether they are written inside it or name it; who gets out walks."""
     inside = body(name="p", element="person", x=99)

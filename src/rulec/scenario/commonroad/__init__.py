@@ -1,5 +1,5 @@
 """CommonRoad's files, read safely: from XML through commonroad-io to a recording.
 
-The file is looked at before the library gets it; ``reading`` and ``moving``, which know
+``form`` looks at the file before the library gets it -> ``reading`` and ``moving``, which know
 commonroad-io, make the recording.
 """

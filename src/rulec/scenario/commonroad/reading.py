@@ -15,26 +15,17 @@ from math import inf
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
-from xml.parsers.expat import XMLParserType
 
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.scenario.commonroad.countries import side_in
+from rulec.scenario.commonroad.form import COMMONROAD, check_form
 from rulec.scenario.commonroad.moving import participants_of, problem_of
 from rulec.scenario.recorded.recording import FARTHEST_M, Lanelet, Light, Mark, Points, Recording
-from rulec.scenario.safe_xml import XmlFormat, is_packed, scan, short
 
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
-
-
-COMMONROAD = XmlFormat(
-    "a CommonRoad scenario",
-    "commonRoad",
-    "CommonRoad's format is described at https://commonroad.in.tum.de",
-)
-VERSIONS = ("2018b", "2020a")
 
 
 _MARKS: Mapping[str, Mark] = MappingProxyType(
@@ -58,7 +49,7 @@ def read_commonroad(path: Path) -> Recording:
         RulecError: R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
             R0701 if the file cannot be opened.
     """
-    _check(path)
+    check_form(path)
     with _quiet():
         reader = _library(path)
         try:
@@ -68,21 +59,6 @@ def read_commonroad(path: Path) -> Recording:
             raise
         except Exception as reason:  # the library has no exception of its own
             raise _unreadable(path, reason) from None
-
-
-def _check(path: Path) -> None:
-    """Raise RulecError unless the file is well-formed XML of CommonRoad's, without definitions."""
-
-    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
-        version = attributes.get("commonRoadVersion", "")
-        if name == COMMONROAD.root and version not in VERSIONS:
-            why = f"its `commonRoadVersion` is `{short(version)}`"
-            expected = f"expected {' or '.join(VERSIONS)}"
-            raise COMMONROAD.refused(path, why, parser.CurrentLineNumber, expected=expected)
-
-    scan(path, COMMONROAD, begin)
-    if is_packed(path):
-        raise COMMONROAD.refused(path, "it is packed", help_text="unpack it with `gzip -d`")
 
 
 def _library(path: Path) -> Callable[[Path], Any]:
@@ -117,9 +93,11 @@ def _quiet() -> Iterator[None]:
 
 def _unreadable(path: Path, reason: Exception) -> RulecError:
     words = " ".join(str(reason).split())[:200]
-    said = f"{type(reason).__name__}: {words}" if words else type(reason).__name__
-    why = f"something in it is missing or does not fit (commonroad-io says {said})"
-    return COMMONROAD.refused(path, why)
+    # Where something is missing the library stumbles over Python's None, which helps nobody
+    if not words or "NoneType" in words:
+        return COMMONROAD.refused(path, "something in it is missing or has an unknown name")
+    said = f"something in it does not fit (commonroad-io says {type(reason).__name__}: {words})"
+    return COMMONROAD.refused(path, said)
 
 
 def _recording(name: str, scenario: Any, problems: Any) -> Recording:

@@ -31,6 +31,7 @@ GOES_ON_S = 600.0
 _FAR_M = 10.0
 _SPREAD, _MORE_M = 2.0, 3.0
 _SPEED_OVER_S = 0.5
+_AT_ONCE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,13 +89,7 @@ def obstacles(
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [one for one in view.recording.participants if one.id != ego]
-    since = [
-        [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0] for one in others
-    ]
-    outlines = [one.outlines[k] for one, steps in zip(others, since, strict=True) for k in steps]
-    boxes = iter(view.boxes(outlines))
-    for one, steps in zip(others, since, strict=True):
-        own = [next(boxes) for _ in steps]
+    for one, steps, own in _laid_out(view, others):
         motions = [
             (weight, motion)
             for kind, weight in predictions.items()
@@ -117,6 +112,23 @@ def obstacles(
             expected.weight,
             expected.alternatives,
         )
+
+
+def _laid_out(
+    view: View, others: Sequence[Participant]
+) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
+    """Everybody's steps from time 0 on, and the bounds in them: many at once, but not all."""
+    waiting: list[tuple[Participant, list[int]]] = []
+    count = 0
+    for number, one in enumerate(others, 1):
+        steps = [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0]
+        waiting.append((one, steps))
+        count += len(steps)
+        if count >= _AT_ONCE or number == len(others):
+            boxes = iter(view.boxes([x.outlines[k] for x, known in waiting for k in known]))
+            for each, known in waiting:
+                yield each, known, [next(boxes) for _ in known]
+            waiting, count = [], 0
 
 
 def _motion(

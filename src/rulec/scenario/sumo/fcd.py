@@ -27,6 +27,8 @@ FCD = XmlFormat(
 BODIES = frozenset({"vehicle", "person", "container"})
 LONGEST_ID = 200
 _MICROSECONDS = 1_000_000
+_NOWHERE = -(2.0**30)
+"""What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
 
 
 @dataclass(slots=True)
@@ -110,6 +112,8 @@ def _add(
         key = attributes["id"]
     except (KeyError, ValueError):
         raise _wrong(name, attributes, parser, path) from None
+    if row[0] == row[1] == _NOWHERE:
+        return
     # NaN is not below anything
     if not (max(map(abs, row)) < FARTHEST_M and sum(row) == sum(row)):
         raise _wrong(name, attributes, parser, path)

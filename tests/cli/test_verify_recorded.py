@@ -1,0 +1,129 @@
+"""`rulec verify` of recorded traffic, as the user meets it."""
+
+import json
+
+import pytest
+from recorded_cars import three_cars
+
+from rulec.cli.main import main
+
+pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
+
+BOOK = """\
+rulebook tiny
+use road
+traffic left
+
+hard rule slow {
+  cite "Art. 1"
+  says "Drive slowly out of town."
+  require always (speed <= 45 km/h or built_up)
+}
+
+soft rule distance (v: vehicle) {
+  says "Keep 5 m."
+  require always (behind(v) and same_lane(v) implies gap(v) >= 5 m)
+}
+"""
+
+MIRRORED = "mirrored    recorded where traffic keeps to the right, judged as if it kept to the left"
+
+
+@pytest.fixture
+def verify(tmp_path, capsys):
+    book = tmp_path / "tiny.rules"
+    book.write_text(BOOK)
+    file = three_cars(tmp_path)
+
+    def run(*arguments, files=(file,)):
+        status = main(["verify", *files, "-r", str(book), *arguments])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return run
+
+
+def test_a_table_of_rules_and_vehicles(verify):
+    # 4 drives 50.4 km/h, and is 4 m behind 3, which gets 2 m/s nearer
+    status, out, err = verify("--explain", "0")
+    assert (status, out.splitlines()) == (
+        1,
+        [
+            "recording   DEU_Road-1_1_T-1: 3 drives in steps of 0.1 s",
+            MIRRORED,
+            "by default  built_up: the recording does not say",
+            "",
+            "violated              drives     first  by",
+            "slow [Art. 1]  hard      1/3       0 s  4",
+            "  by default: built_up",
+            "distance       soft      1/3       0 s  4",
+            "3 drives: 2 satisfied, 1 violated",
+        ],
+    )
+    assert err == ""
+
+
+def test_the_first_violation_is_explained(verify):
+    _, out, _ = verify()
+    assert "4: violated" in out.splitlines()
+    assert "  hard rule slow [Art. 1]: beyond saving after state 0" in out.splitlines()
+    _, out, _ = verify("--as-recorded")
+    assert "mirrored" not in out
+
+
+def test_what_is_assumed_is_not_missing(verify):
+    status, out, _ = verify("--assume", "built_up=true")
+    assert status == 0
+    assert "by default" not in out
+    assert out.splitlines()[-1] == "3 drives: 3 satisfied, 0 violated"
+
+
+def test_a_line_of_json_for_each_drive(verify):
+    status, out, _ = verify("--json", "--ego", "4", "--ego", "5")
+    first, second = map(json.loads, out.splitlines())
+    assert status == 1
+    assert {name: first[name] for name in first if name != "violations"} == {
+        "trace": "4",
+        "satisfied": False,
+        "recording": "DEU_Road-1_1_T-1",
+        "mirrored": True,
+        "start_s": 0.0,
+        "step_s": 0.1,
+        "by_default": ["built_up"],
+    }
+    slow, distance = first["violations"]
+    assert (slow["rule"], slow["step"], slow["time_s"], slow["by_default"]) == (
+        "slow",
+        0,
+        0.0,
+        ["built_up"],
+    )
+    assert (distance["binding"], distance["by_default"]) == ({"v": "3"}, [])
+    assert (second["trace"], second["satisfied"], second["violations"]) == ("5", True, [])
+
+
+def test_a_threshold(verify):
+    # 50.4 km/h is standing, if one likes
+    for at, expected in (("50", ["slow", "distance"]), ("51", ["distance"])):
+        _, out, _ = verify("--json", "--ego", "4", "--threshold", f"standing_kmh={at}")
+        assert [one["rule"] for one in json.loads(out)["violations"]] == expected
+
+
+def test_recordings_and_traces_together(verify, tmp_path):
+    file = three_cars(tmp_path)
+    traces = tmp_path / "traces.jsonl"
+    traces.write_text('{"id": "t", "step_s": 0.1, "states": [{"speed": 20}]}\n')
+    status, out, _ = verify("--explain", "0", files=(str(traces), file))
+    assert status == 1
+    assert out.splitlines()[-2:] == [
+        "3 drives: 2 satisfied, 1 violated",
+        "1 trace: 1 satisfied, 0 violated",
+    ]
+
+
+def test_what_is_no_recording(verify, tmp_path):
+    bad = tmp_path / "bad.xml"
+    bad.write_text("<commonRoad")
+    status, out, err = verify("--json", files=(str(bad), three_cars(tmp_path)))
+    assert (status, len(out.splitlines())) == (2, 3)
+    assert "error[R0610]" in err

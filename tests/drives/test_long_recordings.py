@@ -1,0 +1,22 @@
+"""Of a long recording only a part is looked at at a time, which changes nothing."""
+
+from driven_roads import scenes
+from hypothesis import given
+
+from rulec.drives import extract
+from rulec.drives.extract import Drives
+
+
+def told(found):
+    drives = Drives(found, "right")
+    return [one for ego in drives.egos() for one in drives.of(ego)]
+
+
+@given(scenes())
+def test_a_part_at_a_time(found):
+    usual, most = told(found), extract.MOST_PLACES
+    extract.MOST_PLACES = 0
+    try:
+        assert told(found) == usual
+    finally:
+        extract.MOST_PLACES = most
