@@ -500,7 +500,7 @@ def test_without_predictions_nothing_is_said_of_them(capsys):
 
 
 def test_the_extent(tmp_path, capsys):
-    """With lanes taken whole there is no way past a cyclist in the one lane; with bodies there is."""
+    """Where lanes are taken whole there is no way past a cyclist in the only one."""
     file = tmp_path / "wide.toml"
     cyclist = 'id = "c"\ntype = "cyclist"\nlength = 2.0\nwidth = 0.6\ns = 20.0\nd = -2.6\n'
     road = "[road]\ns = [-20.0, 60.0]\nlanes = [-3.0, 3.0]\n"
