@@ -63,6 +63,15 @@ def test_who_walks():
     assert on == ["on_crossing"] * 7 + ["not_crossing"] * 2
 
 
+def test_who_walks_along_the_pavement_does_not_come_to_cross():
+    # At 1.2 m/s along the road, drifting towards it by 0.4 m/s: 0.65 m from the lane at first, it
+    # would be there in less than 2 s, which is not where it goes
+    places = {k: (99.0 + 0.6 * k, -2.9 + 0.2 * k) for k in range(3)}
+    people = [going(7, 40, 2.0, count=3), on_foot(8, places)]
+    found = recording([ROAD, zebra()], people)
+    assert {state["crossing_use"]["8"] for state in states(found, "7")} == {"not_crossing"}
+
+
 def test_driving_over_a_crossing_somebody_is_on():
     # 7 is 4 m long: its front reaches the crossing, at 98 m, when 42 + 10 t > 98, from 6.0 s on
     people = [going(7, 40, 10.0, count=20), on_foot(8, dict.fromkeys(range(20), CROSSING))]

@@ -1,5 +1,6 @@
 """The road that a vehicle really drove, and what becomes of those that drive on none."""
 
+from dataclasses import replace
 from math import cos, pi, sin
 
 import pytest
@@ -115,3 +116,10 @@ def test_in_a_bend_distances_are_those_along_the_road():
     assert (state["station"], state["lateral"]) == ({"8": "behind"}, {"8": "same_lane"})
     # A quarter of a right angle of way less half a car at either end
     assert state["gap"]["8"] == pytest.approx(50 * pi / 4 - 4, abs=0.1)
+
+
+def test_a_lane_without_any_length():
+    point = lanelet(1, [(10, 0), (11, 0)])
+    point = replace(point, centre=point.centre[[0, 0]])
+    (answer,) = Drives(recording([point], [along((10, 0), (10.2, 0))]), "right").of("7")
+    assert answer == NoDrive("7", "its road makes no sense, the middle of its lane is in one place")

@@ -48,7 +48,9 @@ def _crossing_use(view: View) -> NDArray[intp]:
     crossing = beside & view.on_crosswalk & view.in_the_road
     on = crossing & (view.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
-    soon = beside & walks & (towards > 0) & (to_road <= towards * limits.about_to_s)
+    # Who walks along the pavement and drifts a little towards the road does not come to cross
+    comes = walks & (towards > np.abs(others.along))
+    soon = beside & comes & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
     found: NDArray[intp] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
     return found

@@ -22,8 +22,8 @@ class OddTableError(Exception):
 class Coded:
     """A column in which few values are met again and again.
 
-    ``codes`` (signed integers) are for each row a place in ``values``, which are distinct, or -1
-    for an empty cell.
+    ``codes`` (signed integers) are for each row a place in ``values``, or -1 for an empty cell.
+    Those that tell things apart are distinct.
     """
 
     codes: NDArray[Any]

@@ -120,7 +120,8 @@ def _steps(column: Column) -> Rows:
     if isinstance(column, Numbers):
         raise OddTableError
     table = [whole(value) for value in column.values]
-    if None in table or (column.codes < 0).any():
+    most = len(column.codes)
+    if (column.codes < 0).any() or not all(one is not None and one < most for one in table):
         raise OddTableError
     return np.array(table, dtype=np.int64).take(column.codes)
 

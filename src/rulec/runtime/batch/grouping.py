@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise, repeat
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.runtime.batch.naming import Names, renamed_state
 from rulec.runtime.letters import present_in
@@ -43,25 +44,34 @@ def grouped(traces: Sequence[Trace]) -> Group:
     steps_of = layout.lengths.tolist()
     names = [tuple(trace.objects) for trace in ordered]
     are_alike = names.count(names[0]) == len(names)
-    keys: list[Any] = list(map(id, states))
-    if len(scenes) > 1 or not are_alike:
-        now = chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of])
-        whose = chain.from_iterable(map(repeat, names, steps_of))
-        keys = list(zip(keys, now, whose, strict=True))
-    known = dict(zip(keys, states, strict=True))
-    numbers = {key: number for number, key in enumerate(known)}
-    found = np.fromiter(map(numbers.__getitem__, keys), np.int64, layout.n_states)
+    now = list(chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of]))
+    whose = list(chain.from_iterable(map(repeat, names, steps_of)))
+    places: Sequence[int]
+    ids = list(map(id, states))
+    if len(set(ids)) == len(ids):
+        places, found = range(len(ids)), np.arange(len(ids))
+    elif len(scenes) == 1 and are_alike:
+        places, found = _distinct(ids)
+    else:
+        places, found = _distinct(list(zip(ids, now, whose, strict=True)))
     # From one trace after the other to one step after the other.
     before = np.cumsum(layout.lengths) - layout.lengths
     trace = np.repeat(np.arange(layout.n_traces), layout.lengths)
     step = np.arange(layout.n_states) - before[trace]
-    cells = np.empty(layout.n_states, dtype=smallest_unsigned(len(known)))
+    cells = np.empty(layout.n_states, dtype=smallest_unsigned(len(places)))
     cells[layout.starts[step] + trace] = found
-    there = () if len(scenes) == 1 else tuple([scenes[key[1]] for key in known])
-    walks = TraceCells(
-        layout, cells, tuple(known.values()), one.objects, one.present, there, one.step_s
-    )
-    return Group(walks, order.tolist(), () if are_alike else [key[2] for key in known])
+    there = () if len(scenes) == 1 else tuple([scenes[now[place]] for place in places])
+    distinct = tuple([states[place] for place in places])
+    walks = TraceCells(layout, cells, distinct, one.objects, one.present, there, one.step_s)
+    return Group(walks, order.tolist(), () if are_alike else [whose[place] for place in places])
+
+
+def _distinct(keys: Sequence[Hashable]) -> tuple[Sequence[int], NDArray[np.int64]]:
+    """A place for each distinct key, and for every key which of these it is."""
+    places = dict(zip(keys, range(len(keys)), strict=True))
+    numbers = {key: number for number, key in enumerate(places)}
+    found = np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
+    return list(places.values()), found
 
 
 def under_one_name(group: Group) -> TraceCells:

@@ -87,7 +87,7 @@ def judge_chunk(
 def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
     """Have traces so many states together that it does not matter how few they are?"""
     traces = [items[place] for place in places]
-    return sum(len(one.states) for one in traces if isinstance(one, Trace)) >= _LONG
+    return sum(len(one.states or ()) for one in traces if isinstance(one, Trace)) >= _LONG
 
 
 def _judge_group(

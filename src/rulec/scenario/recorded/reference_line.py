@@ -103,11 +103,17 @@ class ReferenceLine:
 
 
 def reference_line(corners: Points) -> ReferenceLine:
-    """The line through corners, of which those too close to the one before are left out."""
+    """The line through corners, of which those too close to the one before are left out.
+
+    Raises:
+        ValueError: all of them are in one place.
+    """
     kept = [corners[0]]
     for corner in corners[1:]:
         if np.hypot(*(corner - kept[-1])) > _CLOSEST_M:
             kept.append(corner)
+    if len(kept) == 1:
+        raise ValueError("the middle of its lane is in one place")
     points = dense(np.array(kept), _PIECE_M)
     start, end = points[1] - points[0], points[-1] - points[-2]
     extended = np.concatenate(

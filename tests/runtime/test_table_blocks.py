@@ -31,6 +31,7 @@ pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 from rulec.trace.arrow import columns, cutting  # noqa: E402 - it needs Arrow
 from rulec.trace.arrow import csv as plain_csv  # noqa: E402
+from rulec.trace.arrow import parquet as parquet_table  # noqa: E402
 
 
 def answers(data, form, rules):
@@ -45,6 +46,7 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
     with (
         mock.patch.object(csv_table, "LARGE_BYTES", 1),
         mock.patch.object(plain_csv, "_BLOCK_BYTES", block_bytes),
+        mock.patch.object(parquet_table, "_ROWS_AT_ONCE", 1 + block_bytes // 40),
         mock.patch.object(blocks, "_FEWEST_ROWS", 0),
     ):
         return answers(data, form, rules)
@@ -190,6 +192,23 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     assert by_columns(data, form, traffic(), block_bytes) == alone
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data.replace(b"\n", b"\r\n"),
+        lambda data: b"\xef\xbb\xbf" + data,
+        lambda data: data.removesuffix(b"\n"),
+    ],
+    ids=["line ends", "byte order mark", "no last line end"],
+)
+def test_csv_that_is_plain_too(change, monkeypatch):
+    data = change(written(drives()[:60], "csv"))
+    for module in (trace_blocks, cutting, csv_table):
+        monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
+    expected = [judge(trace, traffic()) for trace in drives()[:60]]
+    assert by_columns(data, "csv", traffic(), 3_000) == expected
+
+
 @pytest.mark.parametrize(("form", "first"), [("csv", 1), ("parquet", 0)])
 def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     rows = rows_of(drives()[:100])
@@ -202,6 +221,19 @@ def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     assert trace is None
     assert problem.message == "the step is `7`; here it is 0 or 1"
     assert problem.place.line == place + first
+
+
+@pytest.mark.parametrize(
+    ("steps", "kind"),
+    [([0, -1], "int8"), ([0, 2**63], "uint64"), ([2**64 - 1, 0], "uint64"), ([0, 1], "float64")],
+)
+def test_steps_that_are_none(steps, kind):
+    stream = io.BytesIO()
+    columns = {"trace": ["t", "t"], "step": pyarrow.array(steps, kind)}
+    parquet.write_table(pyarrow.table(columns), stream)
+    ((trace, (problem,)),) = by_columns(stream.getvalue(), "parquet", traffic())
+    assert trace is None
+    assert problem.message.startswith("the step is `")
 
 
 @pytest.mark.parametrize("odd", ['"', "\r", "\n\n", "\x00", "\ufeff", "x" * 140_000])
