@@ -375,3 +375,35 @@ def test_where_too_many_worlds_make_a_difference_it_is_not_known(monkeypatch):
     assert (room.rule.name, room.kept, room.bindings) == ("room", None, ())
     assert told.hard is None
     assert told.clear == 1
+
+
+def test_what_was_before_counts_whatever_comes_true():
+    """Ego was behind o1, which has turned off to the left, or, less likely, has not."""
+    rules = compile_rulebook(
+        parse_rulebook(
+            "rulebook r\nuse paper\n"
+            "hard rule behind_stays (v: vehicle) { require never (b(v) then r(v)) }"
+        )
+    )
+    aside, ahead = ConstantAcceleration(20.0, 4.5), ConstantAcceleration(20.0, 1.5)
+    o1 = Obstacle(
+        "o1",
+        "vehicle",
+        4.0,
+        1.8,
+        aside,
+        weight=Fraction(3, 5),
+        alternatives=(Alternative(Fraction(2, 5), ahead),),
+    )
+    road = Road((0.0, 40.0), (0.0, 3.0, 6.0))
+    graph = navigation_graph(Scenario("turned", road, Ego(5.0, 1.5), (o1,)))
+    past = Trace("past", 1.0, {"o1": "vehicle"}, ({"position": {"o1": "b"}, "surface": "R_cw"},))
+    stays = Maneuver((graph.start,) * len(graph.layers), 0.0, None)
+    assert chances(judged(graph, rules), stays).hard == 1
+    found = judged(graph, rules, past)
+    assert found.satisfying == 0
+    told = chances(found, stays)
+    assert (told.clear, told.hard) == (1, Fraction(2, 5))
+    (other,) = otherwise(found)
+    # Where o1 is still ahead, nothing is to its right
+    assert other.satisfying == other.traces > 0
