@@ -84,4 +84,4 @@ def test_what_a_file_is_tells_its_content(files, tmp_path, capfd):
     other = tmp_path / "recording.dat"
     other.write_text("\n" + DRIVE, encoding="utf-8")
     assert main(["verify", str(other), "-r", "gb", "--net", net]) == 0
-    assert "1 drives" in capfd.readouterr().out
+    assert "recording: 1 drive" in capfd.readouterr().out

@@ -59,10 +59,15 @@ EXPECTED = {
         "de": {"speed_limit": 41.2, "following_distance": 58.3},
         "gb": {"speed_limit": 41.2},
     },
-    # A corner of its front is on the crossing while p.5 is on the lane beside
+    # A corner of its front is on the crossing while p.5 is on the lane beside; it passes p.5 by
+    # 0.9 m when they are level
     "we.9": {
-        "de": {"speed_limit": 36.0, "give_way_to_pedestrians": 70.6},
-        "gb": {"speed_limit": 36.0, "give_way_to_pedestrians": 70.6},
+        book: {
+            "speed_limit": 36.0,
+            "give_way_to_pedestrians": 70.6,
+            "lateral_gap_to_pedestrians": 71.5,
+        }
+        for book in ("de", "gb")
     },
     # Passes we.8 on the right where at times there is no queue, and over the crossing beside p.6
     "we.12": {
@@ -86,6 +91,7 @@ COUNTED = {
         "crossing_overtaking",
         "give_way_to_pedestrians",
         "following_distance",
+        "lateral_gap_to_pedestrians",
         "speed_advantage",
     },
     "gb": {
@@ -93,6 +99,7 @@ COUNTED = {
         "near_side_passing",
         "crossing_overtaking",
         "give_way_to_pedestrians",
+        "lateral_gap_to_pedestrians",
     },
 }
 

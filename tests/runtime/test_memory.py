@@ -34,6 +34,7 @@ fact count c: car (turning(c) and wind > 6 m/s) <= 1
 hard rule lights { require always (red implies (fog or not ice)) }
 hard rule slow { require always (speed > 8 m/s implies eventually speed <= 4 m/s) }
 hard rule fog_ends_in_ice { require always (fog implies eventually ice) }
+hard rule not_too_fast { require always (speed > 1e17 m/s implies (fog or speed < 2e18 m/s)) }
 hard rule near_ones (c: car) { require always (near(c) implies once not turning(c)) }
 soft rule behind (c: car, d: car) { require always not (follows(c, d) and gap(c) - gap(d) > 1 m) }
 hard rule apart (c: car, d: car) { require always (near(c) implies eventually between(c, d) > 2 m) }

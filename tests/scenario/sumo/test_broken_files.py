@@ -28,6 +28,8 @@ def problem_with(file, net=None):
     ("before", "after", "says"),
     [
         ("<fcd-export>", "<!DOCTYPE a><fcd-export>", "it has a `DOCTYPE`"),
+        (GOOD, "<fcd-export/>", "nobody is in it"),
+        (GOOD, data(moment(0), moment(1)), "nobody is in it"),
         ("</fcd-export>", "", "it is not well-formed XML: no element found"),
         ('time="0.10"', "", "a `timestep` has no `time`"),
         ('time="0.10"', 'time="soon"', "`time` of a `timestep` is `soon`"),
@@ -58,7 +60,9 @@ def test_data(tmp_path, before, after, says):
 
 
 def test_uneven_times(tmp_path):
-    found = problem_with(written(tmp_path, data(moment(0), moment(0.1), moment(0.25), moment(0.4))))
+    found = problem_with(
+        written(tmp_path, data(*(moment(time, body()) for time in (0, 0.1, 0.25, 0.4))))
+    )
     assert "0.25 s is no multiple of 0.1 s" in found.message
 
 

@@ -89,6 +89,12 @@ def test_time_begins_with_the_simulation(tmp_path):
     assert list(only(recording).states) == [7200, 7201]
 
 
+@pytest.mark.parametrize(("time", "step_s", "step"), [(0, 1.0, 0), (5, 1.0, 5), (0.3, 0.1, 3)])
+def test_one_moment_only(tmp_path, time, step_s, step):
+    recording = read(tmp_path, moment(time, body()))
+    assert (recording.step_s, list(only(recording).states)) == (step_s, [step])
+
+
 def test_moments_without_anybody_may_be_left_out(tmp_path):
     other = body(name="other")
     recording = read(tmp_path, moment(0, body()), moment(0.1, body()), moment(5, other))

@@ -35,6 +35,9 @@ def start_of(recording: Recording, choice: Choice, file: str) -> Start:
     moving = {
         one.id: one.states for one in recording.participants if one.states and not one.standing
     }
+    if not problems and not moving:
+        message = "nobody moves in the file, and it has no planning problem"
+        raise unfit(message, "take a recording that has a vehicle", file)
     if choice.ego is None and not problems:
         message = "the file has no planning problem, which would say where ego is"
         raise unfit(message, f"choose one of its vehicles with --ego: {listed(moving)}", file)

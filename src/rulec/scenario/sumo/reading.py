@@ -37,6 +37,8 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     if data.head.geographic:
         why = "its places are geographic, degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
+    if not data.courses:
+        raise FCD.refused(path, "nobody is in it")
     net_path = net_of(path, data.head) if net_path is None else net_path
     net = read_net(net_path)
     _check_places(path, data, net_path, net)

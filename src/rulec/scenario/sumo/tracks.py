@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from math import gcd
 from pathlib import Path
 
 import numpy as np
@@ -28,13 +29,14 @@ _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
 def time_step(path: Path, moments: list[int]) -> float:
     """The time from one step to the next (s): the shortest between two moments of the file.
 
-    Moments may be missing, as when nobody was there; what lies between two steps may not be.
+    Moments may be missing, as when nobody was there; what lies between two steps may not be. With
+    one moment only it is a second, or the part of one that goes into its time.
 
     Raises:
         RulecError: R0610 for moments that are not all on one grid from time 0 on.
     """
     if len(moments) < 2:
-        return moments[0] / _MICROSECONDS if moments and moments[0] else 1.0
+        return gcd(_MICROSECONDS, *moments) / _MICROSECONDS
     step = min(after - before for before, after in pairwise(moments))
     off = next((moment for moment in moments if moment % step), None)
     if off is not None:
