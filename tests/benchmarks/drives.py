@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from rulec.diagnostics import RulecError
-from rulec.drives.extract import Drive
+from rulec.drives.telling import Drive
 from rulec.runtime.batch.verifying import judge_chunk
 from rulec.scenario.recordings import read_recording
 from rulec.workflow import judge_recording, machines

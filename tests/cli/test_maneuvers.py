@@ -497,3 +497,31 @@ def test_without_predictions_nothing_is_said_of_them(capsys):
     assert found["worlds"] == []
     assert "likeliest" not in found
     assert "chances" not in found["maneuvers"][0]
+
+
+def test_the_extent(tmp_path, capsys):
+    """Where lanes are taken whole there is no way past a cyclist in the only one."""
+    file = tmp_path / "wide.toml"
+    cyclist = 'id = "c"\ntype = "cyclist"\nlength = 2.0\nwidth = 0.6\ns = 20.0\nd = -2.6\n'
+    road = "[road]\ns = [-20.0, 60.0]\nlanes = [-3.0, 3.0]\n"
+    ego = "[ego]\ns = 0.0\nd = 0.0\nwidth = 1.8\n[goal]\ns = [40.0, 60.0]\n"
+    file.write_text(f"{road}{ego}[[obstacle]]\n{cyclist}", encoding="utf-8")
+    book = (str(file), "-r", "vienna", "--partition", "fine", "--json")
+    status, out, _ = answer(capsys, *book)
+    assert (status, json.loads(out)["extent"], json.loads(out)["traces"]) == (1, "lane", 0)
+    status, out, _ = answer(capsys, *book, "--extent", "body", "--list", "1")
+    found = json.loads(out)
+    assert (status, found["extent"]) == (0, "body")
+    # Ego's centre stays 0.9 m from the verge, and from the cyclist, who reaches to -2.3
+    beside = [
+        one
+        for one, cell in zip(
+            found["maneuvers"][0]["envelope"], found["maneuvers"][0]["cells"], strict=True
+        )
+        if cell["signature"]["c"] == ["beside", "left_of"]
+    ]
+    assert beside
+    assert beside[0]["d_right"][0][1] == pytest.approx(-1.4)
+    assert beside[0]["d_left"][0][1] == pytest.approx(2.1)
+    _, out, _ = answer(capsys, *book[:-1], "--extent", "body")
+    assert "partition fine, adjacency touch, extent body" in out

@@ -86,3 +86,13 @@ def test_what_is_assumed_is_judged():
     assert violated(found, GERMAN) == {"7": {}}
     assert violated(found, GERMAN, assumed={"built_up": True}) == {"7": {"speed_limit": 0.0}}
     assert violated(found, GERMAN, assumed={"limit": 50.0}) == {"7": {"speed_limit": 0.0}}
+
+
+def test_from_python():
+    import rulec
+
+    cars = [going(7, 50, 4.0, 20.0), going(8, 20, 0.0, 30.0)]
+    judged = rulec.judge_recording(recording(two_lanes(), cars), "esterle2019")
+    answers = list(judged.answers())
+    assert [(one.drive.ego, one.answer.satisfied) for one in answers] == [("7", True), ("8", True)]
+    assert judged.by_default(answers[0].drive.words) == {"R1": (), "R2": (), "R3": ()}

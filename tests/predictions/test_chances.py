@@ -6,7 +6,7 @@ maneuver's cell is read off coordinates.
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 
 import by_the_book as book
 from hypothesis import assume, given
@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from random_scenarios import with_predictions
 
 from rulec.diagnostics import RulecError
-from rulec.maneuvers import judged
+from rulec.maneuvers import judged, lost
 from rulec.maneuvers.chances import chances
 from rulec.maneuvers.otherwise import otherwise
 from rulec.partition import navigation_graph
@@ -22,6 +22,7 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.cheapest import Maneuver
 from rulec.runtime.product import count_paths
 from rulec.runtime.verify import verify
+from rulec.scenario import Alternative, ConstantAcceleration, Ego, Obstacle, Road, Scenario
 from rulec.trace import Trace
 from rulec.trace.paths import paths
 from rulec.workflow import compile_rulebook
@@ -108,6 +109,7 @@ def lived_through(graph, path, obstacles):
     names = ("position",) if graph.partition == "paper" else ("station", "lateral")
     for state in states:
         state.update({name: {} for name in names})
+        state.pop("oncoming", None)
     objects, present, hit = {}, {}, set()
     for obstacle in obstacles:
         before, number, name = None, 0, ""
@@ -120,6 +122,8 @@ def lived_through(graph, path, obstacles):
                     objects[name] = obstacle.type
                     present[name] = (p, p)
                 present[name] = (present[name][0], p)
+                if obstacle.signals:
+                    states[p].setdefault("oncoming", {})[name] = obstacle.signals["oncoming"]
                 if here == "hit":
                     hit.add(name)
                 else:
@@ -128,7 +132,7 @@ def lived_through(graph, path, obstacles):
                         states[p][key][name] = value
             before = here
     for state in states:
-        for name in names:
+        for name in {*names, "oncoming"} & state.keys():
             state[name] = {item: value for item, value in state[name].items() if item not in hit}
     return Trace("t", graph.step_s, objects, tuple(states), present), hit
 
@@ -178,7 +182,7 @@ def touched(rule, trace, hit, rules):
     types = [variable.type for variable in rule.variables]
     for name in hit:
         kind = trace.objects[name]
-        if rule.name == "room" and fits(kind, "vehicle"):
+        if rule.name in ("room", "no_company", "in_turn") and fits(kind, "vehicle"):
             return True
         if rule.name == "first" and any(fits(one, "pedestrian") for one in trace.objects.values()):
             if fits(kind, "vehicle") or fits(kind, "pedestrian"):
@@ -280,3 +284,126 @@ def test_without_other_predictions_all_is_certain(scenario, partition):
         assert (told.clear, told.hard) == (1, 1)
     assert otherwise(found) == []
     assert count_paths(graph.trace_graph()) == found.traces
+
+
+COUNTING = compile_rulebook(
+    parse_rulebook(
+        """
+        rulebook counting
+        use road
+        hard rule room { require never (count v: vehicle (beside(v)) >= 2) }
+        hard rule no_company (v: vehicle) {
+          require never (beside(v) and some w: vehicle (behind(w)))
+        }
+        soft rule in_turn (v: vehicle) {
+          require never (some w: vehicle (behind(w) and oncoming(v)) then in_front_of(v))
+        }
+        """
+    )
+)
+
+
+@st.composite
+def beside_a_queue(draw):
+    """Ego on the right of two lanes; others stand or drive in the left one, nobody knows where."""
+    moving = st.builds(
+        ConstantAcceleration,
+        st.sampled_from([6.0, 14.0, 20.0, 26.0, 34.0]),
+        st.just(4.5),
+        st.sampled_from([0.0, 0.0, 4.0, -8.0]),
+    )
+    others = []
+    for number in range(draw(st.integers(2, 4))):
+        first, *rest = draw(st.lists(moving, min_size=1, max_size=3, unique=True))
+        share = Fraction(1, len(rest) + 1)
+        others.append(
+            Obstacle(
+                f"o{number}",
+                "vehicle",
+                4.0,
+                1.8,
+                first,
+                signals={"oncoming": draw(st.booleans())},
+                weight=share,
+                alternatives=tuple(Alternative(share, one) for one in rest),
+            )
+        )
+    road = Road((0.0, 40.0), (0.0, 3.0, 6.0))
+    return Scenario("queue", road, Ego(20.0, 1.5), tuple(others), horizon_s=2.0)
+
+
+@given(beside_a_queue(), st.data())
+def test_of_rules_that_count_too(scenario, data):
+    graph = navigation_graph(scenario, partition="fine")
+    assume(count_paths(graph.trace_graph()))
+    path = data.draw(st.sampled_from(list(islice(paths(graph.trace_graph()), 100))))
+    told = chances(judged(graph, COUNTING), Maneuver(path, 0.0, None))
+    expected = dict.fromkeys((rule.name for rule in COUNTING.rules), Fraction(0))
+    hard = Fraction(0)
+    for weight, obstacles in worlds(scenario):
+        world = lived_through(graph, path, obstacles)
+        kept = kept_in(world, COUNTING)
+        for name, whether in kept.items():
+            expected[name] += weight * whether
+        hard += weight * (kept["room"] and kept["no_company"] and not world[1])
+    assert {one.rule.name: one.kept for one in told.rules} == expected
+    assert told.hard == hard
+
+
+def test_where_too_many_worlds_make_a_difference_it_is_not_known(monkeypatch):
+    monkeypatch.setattr(lost, "MOST_WORLDS", 3)
+    places = [ConstantAcceleration(s, 4.5) for s in (6.0, 20.0)]
+    half = Fraction(1, 2)
+    others = tuple(
+        Obstacle(
+            f"o{number}",
+            "vehicle",
+            4.0,
+            1.8,
+            places[0],
+            signals={"oncoming": False},
+            weight=half,
+            alternatives=(Alternative(half, places[1]),),
+        )
+        for number in range(2)
+    )
+    road = Road((0.0, 40.0), (0.0, 3.0, 6.0))
+    scenario = Scenario("queue", road, Ego(20.0, 1.5), others)
+    found = judged(navigation_graph(scenario, partition="fine"), COUNTING)
+    told = chances(found, Maneuver((found.graph.start,) * 5, 0.0, None))
+    room = told.rules[0]
+    assert (room.rule.name, room.kept, room.bindings) == ("room", None, ())
+    assert told.hard is None
+    assert told.clear == 1
+
+
+def test_what_was_before_counts_whatever_comes_true():
+    """Ego was behind o1, which has turned off to the left, or, less likely, has not."""
+    rules = compile_rulebook(
+        parse_rulebook(
+            "rulebook r\nuse paper\n"
+            "hard rule behind_stays (v: vehicle) { require never (b(v) then r(v)) }"
+        )
+    )
+    aside, ahead = ConstantAcceleration(20.0, 4.5), ConstantAcceleration(20.0, 1.5)
+    o1 = Obstacle(
+        "o1",
+        "vehicle",
+        4.0,
+        1.8,
+        aside,
+        weight=Fraction(3, 5),
+        alternatives=(Alternative(Fraction(2, 5), ahead),),
+    )
+    road = Road((0.0, 40.0), (0.0, 3.0, 6.0))
+    graph = navigation_graph(Scenario("turned", road, Ego(5.0, 1.5), (o1,)))
+    past = Trace("past", 1.0, {"o1": "vehicle"}, ({"position": {"o1": "b"}, "surface": "R_cw"},))
+    stays = Maneuver((graph.start,) * len(graph.layers), 0.0, None)
+    assert chances(judged(graph, rules), stays).hard == 1
+    found = judged(graph, rules, past)
+    assert found.satisfying == 0
+    told = chances(found, stays)
+    assert (told.clear, told.hard) == (1, Fraction(2, 5))
+    (other,) = otherwise(found)
+    # Where o1 is still ahead, nothing is to its right
+    assert other.satisfying == other.traces > 0

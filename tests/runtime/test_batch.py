@@ -19,7 +19,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.batch import verifying
+from rulec.runtime.batch import codes, verifying
 from rulec.runtime.batch.gathering import gathered
 from rulec.runtime.batch.grouping import grouped
 from rulec.runtime.batch.judging import judge_cells, judge_columns
@@ -164,10 +164,10 @@ def test_three_hundred_objects():
     objects = {f"o{n}": "car" for n in range(300)}
     rules = tuple(one for one in CROWDED.rules if len(one.variables) < 2 and one.name != "nested")
     compiled = compile_here(replace(CROWDED, rules=rules))
-    pool = [state_of(chance, objects) for _ in range(4)]
+    pool = [state_of(chance, objects) for _ in range(2)]
     traces = [
-        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 4))))
-        for n in range(6)
+        Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
+        for n in range(4)
     ]
     alone = [verify(trace, compiled) for trace in traces]
     assert sum(len(one.violations) for one in alone) > 300
@@ -207,6 +207,23 @@ def test_what_can_be_no_trace_is_not_judged():
         answers = judge_chunk([one] * 5, compiled)
         assert [told(answer) for answer in answers] == [told(judge(one, compiled))] * 5
         assert isinstance(answers[0], NotJudged)
+
+
+@pytest.mark.parametrize("most_cells", [1, 6])
+def test_more_is_read_than_one_number_can_tell_apart(monkeypatch, most_cells):
+    """Then rules are judged each by its own numbers, or by the classes of its letters."""
+    monkeypatch.setattr(codes, "MOST_CELLS", most_cells)
+    chance = Random(most_cells)
+    objects = {"a": "car", "b": "thing", "c": "car"}
+    traces = [
+        Trace(str(n), 1.0, objects, tuple(state_of(chance, objects) for _ in range(n % 3 + 1)))
+        for n in range(40)
+    ]
+    compiled = crowded("stutter")
+    alone = [verify(trace, compiled) for trace in traces]
+    group = grouped(traces)
+    judged = judge_columns(gathered(group.cells, TIMED_VOCABULARY), compiled)
+    assert listed(judged, traces) == violations(alone[place] for place in group.order)
 
 
 THRESHOLDS = (

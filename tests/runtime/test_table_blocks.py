@@ -192,6 +192,23 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     assert by_columns(data, form, traffic(), block_bytes) == alone
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data.replace(b"\n", b"\r\n"),
+        lambda data: b"\xef\xbb\xbf" + data,
+        lambda data: data.removesuffix(b"\n"),
+    ],
+    ids=["line ends", "byte order mark", "no last line end"],
+)
+def test_csv_that_is_plain_too(change, monkeypatch):
+    data = change(written(drives()[:60], "csv"))
+    for module in (trace_blocks, cutting, csv_table):
+        monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
+    expected = [judge(trace, traffic()) for trace in drives()[:60]]
+    assert by_columns(data, "csv", traffic(), 3_000) == expected
+
+
 @pytest.mark.parametrize(("form", "first"), [("csv", 1), ("parquet", 0)])
 def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     rows = rows_of(drives()[:100])

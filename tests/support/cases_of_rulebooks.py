@@ -65,6 +65,7 @@ CASES_OF_RULEBOOKS = {
         "hard rule order { require always rank <= 299 km }",
         ([{"speed": n, "rank": 300 - n} for n in range(300)], ("slow @ 251", "order @ 0")),
         ([{"speed": n, "rank": n} for n in range(251)], ()),
+        ([{"speed": 250.5 - n, "rank": n + 1} for n in range(299)], ("slow @ 0",)),
     ),
     "more at once than a byte can tell apart": case(
         f"rulebook many\nsignal {', '.join(MANY)} default false\n"

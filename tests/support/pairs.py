@@ -6,6 +6,7 @@ from itertools import permutations, product
 
 from books import compile_here
 from hypothesis import strategies as st
+from reading import Reading
 
 from rulec.analysis.distinct import Side
 from rulec.logic.formula import (
@@ -14,7 +15,6 @@ from rulec.logic.formula import (
     BinaryOperator,
     Bound,
     Comparison,
-    Constant,
     Count,
     Quantity,
     Unary,
@@ -107,66 +107,15 @@ def sides(formulas, variables=(), semantics=("stutter", "stutter"), facts=()):
 
 def allows(side, trace):
     """Is the rule kept for all ways to bind its variables to distinct objects?"""
-    variables = side.rule.variables
-    for chosen in permutations(trace.objects, len(variables)):
-        fits = all(
-            side.rulebook.vocabulary.is_subtype(trace.objects[name], variable.type)
-            for name, variable in zip(chosen, variables, strict=True)
+    formula, reading = side.rule.formula, Reading(side.rulebook, trace)
+    return all(
+        holds(
+            formula,
+            [reading.letter(formula, objects, n) for n in range(first, last + 1)],
+            side.rulebook.semantics,
         )
-        names = {variable.name: name for name, variable in zip(chosen, variables, strict=True)}
-        if fits and not _holds(side, trace, names):
-            return False
-    return True
-
-
-def _holds(side, trace, names):
-    atoms = set(_propositions(side.rule.formula))
-    word = [
-        frozenset(one for one in atoms if _true(one, state, trace.objects, names, side))
-        for state in trace.states
-    ]
-    return holds(side.rule.formula, word, side.rulebook.semantics)
-
-
-def _propositions(formula):
-    match formula:
-        case Unary(_, operand):
-            return _propositions(operand)
-        case Binary(_, left, right):
-            return _propositions(left) + _propositions(right)
-        case Constant():
-            return []
-    return [formula]
-
-
-def _true(one, state, objects, names, side):
-    if isinstance(one, Atom):
-        return _value(one.name, [names[v] for v in one.arguments], state) == (one.value or True)
-    total = Fraction(0)
-    for factor, term in one.terms:
-        if isinstance(term, Quantity):
-            value = _value(term.name, [names[v] for v in term.arguments], state)
-            total += factor * Fraction(str(value))
-        else:
-            total += factor * sum(
-                _true(term.body, state, objects, {**names, term.variable: name}, side)
-                for name, kind in objects.items()
-                if side.rulebook.vocabulary.is_subtype(kind, term.type)
-            )
-    relations = {
-        "<": total < one.limit,
-        "<=": total <= one.limit,
-        ">=": total >= one.limit,
-        ">": total > one.limit,
-    }
-    return relations[one.relation]
-
-
-def _value(name, objects, state):
-    found = state.get(name)
-    for item in objects:
-        found = None if found is None else found.get(item)
-    return VOCABULARY.declarations[name].default if found is None else found
+        for objects, first, last in reading.choices(side.rule)
+    )
 
 
 def states(objects, names):

@@ -49,7 +49,12 @@ LITTLE = Comparison(((Fraction(1), quantity("gap", "o")),), "<", Fraction(1), "g
 WORLD_ATOMS = [Atom("light", (), "red"), Atom("light", (), "green"), Atom("p"), Atom("q")]
 X_ATOMS = [at(NEAR, "x"), at(FAR, "x"), at("gone", "x"), Atom("loud", ("x",))]
 Y_ATOMS = [at(NEAR, "y"), Atom("follows", ("x", "y")), Atom("follows", ("y", "x"))]
+ANOTHER_NEAR = Binary(BinaryOperator.AND, Unary(NO, Same("r", "o")), at(NEAR, "r"))
+LONELY = Comparison(((Fraction(1), Count("r", "thing", ANOTHER_NEAR)),), "<", Fraction(1), "alone")
 WORLD_SUMS = [
+    number(
+        "count o: car (count r: thing (r != o and near(r)) < 1)", (1, Count("o", "car", LONELY))
+    ),
     number("speed", (1, quantity("speed"))),
     number("pace", (1, quantity("pace"))),
     number("count o: car (near(o))", (1, Count("o", "car", at(NEAR, "o")))),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -41,6 +42,8 @@ def _prepare() -> None:
         # A file's name may hold what the terminal's encoding does not.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    # Traces are many objects without cycles, which need not be looked through so often.
+    gc.set_threshold(50_000)
     if hasattr(sys, "set_int_max_str_digits"):
         # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
         sys.set_int_max_str_digits(100_000)

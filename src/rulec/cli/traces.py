@@ -128,7 +128,7 @@ def _write_drives(
     """Write what the vehicles of a recording did."""
     from rulec.automata.compiled import CompiledRulebook
     from rulec.diagnostics import Diagnostic, Place, RulecError
-    from rulec.drives.extract import Drive
+    from rulec.drives.telling import Drive
     from rulec.drives.wanted import wanted_drives
     from rulec.files import written_whole
     from rulec.report.console import print_diagnostics, print_result, progress

@@ -4,5 +4,6 @@ The way through: ``everyone``: positions and speeds as arrays -> ``whereabouts``
 lanelets that ego drove -> ``road``, ``placed``: everybody along and across it -> ``nearness``,
 ``company``: who is there for ego -> ``view``: one drive -> ``ego_words``, ``other_words``,
 ``map_words``, ``flow``: words, by ``thresholds`` -> ``fitting``: those that a vocabulary has ->
-``extract``: the trace -> ``judging``. ``mirror`` is for rulebooks of the other side.
+``telling``: the trace -> ``extract``: all drives -> ``judging``. ``mirror`` is for rulebooks of the
+other side.
 """

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRulebook
-from rulec.drives.extract import Drive, NoDrive
+from rulec.drives.extract import NoDrive
+from rulec.drives.telling import Drive
 from rulec.drives.wanted import Wanted, wanted_drives
 from rulec.runtime.batch.verifying import judge_chunk
 from rulec.runtime.numbers import exact

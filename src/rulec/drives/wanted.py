@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
-from rulec.drives.extract import Drive, Drives, NoDrive, Telling
+from rulec.drives.extract import Drives, NoDrive
 from rulec.drives.mirror import mirrored
+from rulec.drives.telling import Drive, Telling
 from rulec.drives.thresholds import USUAL, Thresholds
 from rulec.rulebook.model import Traffic
 from rulec.scenario.recorded.recording import Recording

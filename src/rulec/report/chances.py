@@ -7,11 +7,15 @@ from fractions import Fraction
 from math import prod
 from typing import Any
 
-from rulec.maneuvers.chances import MOST_WORLDS, Chances, RuleChance
+from rulec.maneuvers.chances import Chances, RuleChance
+from rulec.maneuvers.lost import MOST_WORLDS
 from rulec.maneuvers.otherwise import Otherwise
 from rulec.report.counts import shown_count
 from rulec.report.excerpt import visible
 from rulec.scenario import Scenario
+
+MOST_BINDINGS = 3
+"""For so many objects a rule's probability is said in text; JSON has them all."""
 
 
 def as_data(chances: Chances) -> dict[str, Any]:
@@ -86,8 +90,10 @@ def _of_rule(one: RuleChance) -> str:
     each = [
         f"{_shown(binding.kept)} for "
         + ", ".join(f"{name} = {visible(item)}" for name, item in binding.binding.items())
-        for binding in one.bindings
+        for binding in one.bindings[:MOST_BINDINGS]
     ]
+    if len(one.bindings) > MOST_BINDINGS:
+        each.append(f"and for {len(one.bindings) - MOST_BINDINGS:,} more")
     return "; ".join([_shown(one.kept), *each])
 
 

@@ -99,9 +99,9 @@ def judged(walk: Walk) -> Iterator[Judged]:
 
 
 def _unread(walk: Walk, letters: Sequence[int]) -> NDArray[np.intp]:
-    missing = np.array(letters) < 0
-    if not missing.any():
+    if min(letters, default=0) >= 0:
         return np.empty(0, dtype=np.intp)
+    missing = np.array(letters) < 0
     (first, last), layout = walk.tasks[0].stretch, walk.layout
     start = layout.starts[first]
     end = layout.starts[-1 if last is None else last + 1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from rulec.trace.columns import Layout
 
@@ -18,10 +19,11 @@ class Step:
 
 def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
     """The steps from one to another (inclusive), or to the end of each trace."""
-    found = []
-    for step in range(first, layout.n_steps if last is None else last + 1):
-        now = layout.active(step)
-        onward = layout.active(step + 1) if last is None else 0 if step == last else now
-        start = int(layout.starts[step])
-        found.append(Step(now, onward, slice(start, start + now)))
-    return found
+    starts = layout.starts.tolist()
+    steps = range(first, layout.n_steps if last is None else last + 1)
+    # No trace goes on after the last of these steps.
+    traces = [*(starts[step + 1] - starts[step] for step in steps), 0]
+    return [
+        Step(now, onward, slice(starts[step], starts[step] + now))
+        for step, (now, onward) in zip(steps, pairwise(traces), strict=True)
+    ]
