@@ -66,6 +66,12 @@ def test_uneven_times(tmp_path):
     assert "0.25 s is no multiple of 0.1 s" in found.message
 
 
+def test_a_time_that_is_a_slip(tmp_path):
+    """It would make room for a billion states that nobody is in."""
+    found = problem_with(written(tmp_path, data(*(moment(t, body()) for t in (0, 0.1, 9e7)))))
+    assert "its 3 time steps of 0.1 s are spread over 9e+07 s" in found.message
+
+
 @pytest.mark.parametrize(
     ("before", "after", "says"),
     [

@@ -16,6 +16,12 @@ from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.sumo.fcd import FCD, Course
 from rulec.scenario.sumo.vehicle_types import VehicleType
 
+MOST_STEPS = 1_000_000
+"""A recording has fewer, which is more than a day of tenths of a second."""
+
+SPARSEST = 1000
+"""One in so many time steps is in the file at least; else one of its times is a slip."""
+
 _MICROSECONDS = 1_000_000
 _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (1, frozenset({"right_indicator"})),
@@ -33,7 +39,7 @@ def time_step(path: Path, moments: list[int]) -> float:
     one moment only it is a second, or the part of one that goes into its time.
 
     Raises:
-        RulecError: R0610 for moments that are not all on one grid from time 0 on.
+        RulecError: R0610 for moments that are not all on one grid from time 0 on, or too far apart.
     """
     if len(moments) < 2:
         return gcd(_MICROSECONDS, *moments) / _MICROSECONDS
@@ -46,6 +52,13 @@ def time_step(path: Path, moments: list[int]) -> float:
         )
         way_out = "have SUMO write every step, or one in so many (--device.fcd.period)"
         raise FCD.refused(path, why, help_text=way_out)
+    spread = (moments[-1] - moments[0]) // step
+    if spread > min(MOST_STEPS, SPARSEST * len(moments)):
+        why = (
+            f"its {len(moments)} time steps of {step / _MICROSECONDS:g} s are spread over "
+            f"{(moments[-1] - moments[0]) / _MICROSECONDS:g} s"
+        )
+        raise FCD.refused(path, why, help_text="look for a time that is wrong, or take a part")
     return step / _MICROSECONDS
 
 
