@@ -1,70 +1,71 @@
-"""How long it takes to judge what recorded vehicles did: reading, traces, verdicts.
+"""How long recordings take from the command line: what vehicles did, and what they could do.
 
-    .venv/bin/python tests/benchmarks/drives.py RULEBOOK FILE...
-
-FILE... are recordings. For each, in seconds of processor time: `read`, `traces` (what all vehicles
-did, in the words that the rulebook reads), `verify` (judging that), and how many drives and states
-there are. Compiling the rulebook is not in it; a rulebook is compiled once for each time step.
+All of CommonRoad's recordings, if RULEC_RECORDINGS names the folder that they are in, and SUMO's in
+the folder `sumo` beside it. Whole processes, the rulebook's compilation in each of them.
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable
+import os
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TypeVar
 
-from rulec.diagnostics import RulecError
-from rulec.drives.telling import Drive
-from rulec.runtime.batch.verifying import judge_chunk
-from rulec.scenario.recordings import read_recording
-from rulec.workflow import judge_recording, machines
+from figure import Figure, Result
+from program import run
+from starting import RULEC
+from timing import children_ms
 
-Result = TypeVar("Result")
-
-COLUMNS = "drives", "states", "read", "traces", "verify"
+MOST_S = 120
 
 
-def timed(work: Callable[[], Result]) -> tuple[Result, float]:
-    """What it gives, and how long it takes (s)."""
-    begin = time.process_time()
-    return work(), time.process_time() - begin
-
-
-def main(rulebook: str, files: list[Path]) -> None:
-    """Print a line for each recording, and one for all of them."""
-    rules = machines(rulebook)
-    totals = [0.0] * len(COLUMNS)
-    print(f"{'':34}" + "".join(f"{name:>9}" for name in COLUMNS))
-    for file in files:
-        try:
-            recording, reading = timed(lambda file=file: read_recording(file))
-            judged = judge_recording(recording, rules)
-        except RulecError as error:
-            print(f"{file.stem:34} {error}")
-            continue
-        drives, telling = timed(
-            lambda judged=judged: [
-                one
-                for ego in judged.egos
-                for one in judged.drives.of(ego)
-                if isinstance(one, Drive)
-            ]
+def measure(_rounds: int) -> Iterator[Result]:
+    """Once: it takes so long that a busy moment does not matter."""
+    folder = os.environ.get("RULEC_RECORDINGS")
+    if not folder:
+        return
+    files = sorted(Path(folder).glob("*.xml"))
+    verify = seconds("verify", *files, "-r", "de", "--explain", "0")
+    maneuvers = sum(seconds("maneuvers", file, "-r", "de") for file in files)
+    yield Result(
+        "All recordings: de",
+        f"the {len(files)} recordings, every vehicle of each as ego (`rulec verify`, all in one "
+        "call), and every way on from where each begins (`rulec maneuvers`, a call each); measured "
+        "once",
+        [
+            figure("rulec verify", verify),
+            figure("rulec maneuvers", maneuvers),
+            figure("both", verify + maneuvers, MOST_S),
+        ],
+    )
+    data = Path(folder).parent / "sumo" / "fcd.xml.gz"
+    if data.exists():
+        yield Result(
+            "Floating-car data",
+            "150 s at 0.1 s of 61 vehicles and 14 pedestrians, every vehicle as ego (`rulec "
+            "verify`); measured once",
+            [
+                figure(f"under {book}", seconds("verify", data, "-r", book, "--explain", "0"))
+                for book in ("de", "gb")
+            ],
         )
-        traces = [one.trace for one in drives]
-        _, judging = timed(lambda traces=traces, judged=judged: judge_chunk(traces, judged.rules))
-        states = sum(len(one.states) for one in traces)
-        line = [len(drives), states, reading, telling, judging]
-        totals = [total + number for total, number in zip(totals, line, strict=True)]
-        print(shown(file.stem, line))
-    print(shown("all", totals))
 
 
-def shown(name: str, line: list[float]) -> str:
-    """A line of the table."""
-    return f"{name:34}{line[0]:9.0f}{line[1]:9.0f}" + "".join(f"{s:9.2f}" for s in line[2:])
+def seconds(*arguments: str | Path) -> float:
+    """Processor time of a call of rulec, with that of the processes that it starts."""
+    before = children_ms()
+    done = subprocess.run(
+        [*RULEC, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    if done.returncode not in (0, 1, 2) or "Traceback" in done.stderr:
+        raise RuntimeError(done.stderr)
+    return (children_ms() - before) / 1000
+
+
+def figure(what: str, taken_s: float, most: float | None = None) -> Figure:
+    """Measured once."""
+    return Figure(what, "s", taken_s, taken_s, most)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], [Path(name) for name in sys.argv[2:]])
+    run(measure, rounds=1)

@@ -14,7 +14,18 @@ from page import page
 
 HERE = Path(__file__).parent
 PAGE = HERE.parents[1] / "docs" / "benchmarks.md"
-NAMES = ("batch", "reading", "peers", "long", "online", "graph", "world", "compiling", "starting")
+NAMES = (
+    "batch",
+    "reading",
+    "peers",
+    "long",
+    "online",
+    "graph",
+    "world",
+    "drives",
+    "compiling",
+    "starting",
+)
 
 
 @click.command()
