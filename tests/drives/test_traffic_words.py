@@ -177,3 +177,9 @@ def test_braking_and_gaining_speed():
     assert told[9]["accelerating"] is True
     # Over states 2 to 4, a second around the third: from 20 - 3·1 to 20 - 3·3 m/s on average
     assert told[3]["speed"] == pytest.approx((20 - 9) * 3.6)
+
+
+@pytest.mark.parametrize(("mps", "seconds"), [(10, 2.6), (20, 1.3), (0, 1000)])
+def test_headway_is_the_gap_over_ego_s_speed(mps, seconds):
+    # Both are 4 m long and 30 m apart between their middles: a gap of 26 m.
+    assert first("time_headway", [going(7, 0, 1, mps), going(8, 30, 1, 10)])["8"] == seconds

@@ -16,6 +16,7 @@ UNITS = {
     "limit": "km/h",
     "speed_difference": "km/h",
     "gap": "m",
+    "time_headway": "s",
     "lateral_gap": "m",
     "distance_to_crossing": "m",
     "ego_length": "m",

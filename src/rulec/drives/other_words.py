@@ -10,6 +10,9 @@ from rulec.drives.view import KMH, View
 from rulec.drives.words import Words, named, rounded
 from rulec.partition.regions import LATERALS, STATIONS
 
+LONGEST_S = 1000.0
+"""No headway is longer."""
+
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
@@ -27,6 +30,7 @@ def other_words(view: View) -> Words:
             "station": named(station, STATIONS),
             "lateral": named(lateral, LATERALS),
             "gap": rounded(gap),
+            "time_headway": rounded(_headway(view, gap)),
             "lateral_gap": rounded(relations.lateral_gap(own, others)),
             "speed_difference": rounded(own.along * KMH - view.speeds()),
             "safe_gap": np.logical_or(~follows, gap >= safe_distance(view)),
@@ -41,6 +45,13 @@ def other_words(view: View) -> Words:
         },
         only={"in_the_road": view.people.of_kind("vulnerable_user")},
     )
+
+
+def _headway(view: View, gap: Values) -> Values:
+    """How long ego takes for the gap at its speed (s); as good as for ever if it stands."""
+    moves = view.own.along * KMH >= view.thresholds.standing_kmh
+    seconds = gap / np.where(moves, view.own.along, 1.0)
+    return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
 def safe_distance(view: View) -> Values:
