@@ -65,6 +65,19 @@ def test_a_trace_by_its_id(tmp_path, capfd):
     assert texts(file)[0] == "t2: no violation by esterle2019"
 
 
+def test_a_part_of_a_trace(tmp_path, capfd):
+    """t1 passes v1 on the right, which R1 forbids; there is nobody else."""
+    file = tmp_path / "t.svg"
+    draw_trace = ("trace", "docs/samples/traces.jsonl", *RULES, "-o", file)
+    assert draw(capfd, *draw_trace)[0] == 0
+    assert {"CONGESTED", "position(v1)"} <= set(texts(file))
+    assert draw(capfd, *draw_trace, "--rule", "R[12]", "--object", "v1")[0] == 0
+    assert texts(file)[0] == "t1: 1 violation by esterle2019"
+    assert draw(capfd, *draw_trace, "--rule", "R3")[0] == 0
+    assert texts(file)[0] == "t1: no violation by esterle2019"
+    assert "CONGESTED" not in texts(file)
+
+
 def test_to_standard_output(capfd):
     status, out, err = draw(capfd, "scene", "s1", "--layer", 0, "-o", "-")
     assert (status, err) == (0, "")
@@ -82,6 +95,14 @@ def test_to_standard_output(capfd):
         (
             ["trace", "docs/samples/traces.jsonl", *RULES, "--trace", "t9"],
             "`docs/samples/traces.jsonl` has no trace `t9`; it has `t1`, `t2`.",
+        ),
+        (
+            ["trace", "docs/samples/traces.jsonl", *RULES, "--object", "v7"],
+            "trace `t1` has no object `v7`; it has `v1`.",
+        ),
+        (
+            ["trace", "docs/samples/traces.jsonl", *RULES, "--rule", "S*"],
+            "esterle2019 has no rule like `S*`.",
         ),
         (["trace", "/dev/null", *RULES], "there is no trace in this file"),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -19,6 +20,7 @@ from rulec.cli.arguments import (
 )
 
 if TYPE_CHECKING:
+    from rulec.automata.compiled import CompiledRulebook
     from rulec.maneuvers import Maneuvers
     from rulec.partition import NavigationGraph
     from rulec.report.pictures.files import Drawing
@@ -146,15 +148,37 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
 @click.option(
     "--trace", "wanted", metavar="ID", help="Draw the trace with this id.  [default: the first]"
 )
+@click.option(
+    "--rule",
+    "patterns",
+    multiple=True,
+    metavar="PATTERN",
+    help="Only what rules like PATTERN read; `*` and `?` are wild. May be given several times.",
+)
+@click.option(
+    "--object",
+    "objects",
+    multiple=True,
+    metavar="ID",
+    help="Of the objects only this one. May be given several times.",
+)
 @at_option
 @_output_options
 def trace(
-    file: str, rulebook: str, wanted: str | None, at: str, output: Path, form: str | None
+    file: str,
+    rulebook: str,
+    wanted: str | None,
+    patterns: tuple[str, ...],
+    objects: tuple[str, ...],
+    at: str,
+    output: Path,
+    form: str | None,
 ) -> None:
     """Draw a trace of FILE (JSON Lines, CSV or Parquet): what a rulebook reads in it, over time.
 
     Violations are marked where they are decided, with the rule and its article.
     """
+    from rulec.diagnostics import named
     from rulec.report.console import print_diagnostics
     from rulec.report.pictures.files import Drawing
     from rulec.report.pictures.ribbon import ribbon
@@ -166,10 +190,32 @@ def trace(
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     chosen = _trace(file, wanted)
-    used = made_for(chosen, rules)
+    for item in objects:
+        if item not in chosen.objects:
+            raise click.UsageError(
+                f"trace `{chosen.id}` has no object `{item}`; it has {named(list(chosen.objects))}."
+            )
+    used = _only(made_for(chosen, rules), patterns)
     verdict = verify(chosen, used)
-    picture = ribbon_picture(ribbon(chosen, used, verdict), used)
-    _write(Drawing(trace_title(verdict, used), [picture]), output, form)
+    shown = ribbon(chosen, used, verdict, objects)
+    title = trace_title(replace(verdict, violations=shown.violations), used)
+    _write(Drawing(title, [ribbon_picture(shown, used)]), output, form)
+
+
+def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
+    """The rulebook with the rules alone that one of the patterns matches, if there are any."""
+    from fnmatch import fnmatchcase
+
+    kept = tuple(
+        rule
+        for rule in rules.rules
+        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
+    )
+    if not kept:
+        raise click.UsageError(
+            f"{rules.name} has no rule like {' or '.join(f'`{one}`' for one in patterns)}."
+        )
+    return replace(rules, rules=kept)
 
 
 def _judged(

@@ -36,6 +36,16 @@ def test_rows(rules):
     assert rows["position(w)"] == (Run(0, 0, None), Run(1, 2, "b"), Run(3, 3, None))
 
 
+def test_rows_of_some_objects(rules):
+    verdict = verify(OVERTAKEN, rules)
+    assert [one.binding for one in verdict.violations] == [{"v": "v"}]
+    found = ribbon(OVERTAKEN, rules, verdict, ["w"])
+    # What is not said of the road does not matter without the violation.
+    assert [row.title for row in found.rows] == ["surface", "position(w)"]
+    assert found.violations == ()
+    assert ribbon(OVERTAKEN, rules, verdict, ["v"]).violations == verdict.violations
+
+
 def test_what_is_only_a_default_matters_if_a_violated_rule_reads_it(rules):
     """R1 reads CONGESTED and positions; the surface is read by the other two."""
     here = trace([{"position": {"v": letter}} for letter in "brrf"], {"v": "vehicle"})

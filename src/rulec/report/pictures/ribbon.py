@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -62,26 +62,31 @@ class Ribbon:
         return len(self.trace.states) if violation.step is None else violation.step
 
 
-def ribbon(trace: Trace, rules: CompiledRulebook, verdict: Verdict) -> Ribbon:
+def ribbon(
+    trace: Trace, rules: CompiledRulebook, verdict: Verdict, only: Collection[str] = ()
+) -> Ribbon:
     """The rows that the rules read: first what is about nobody, then object by object, then pairs.
 
-    What the trace does not speak of has a row only if a rule that is violated reads it.
+    What the trace does not speak of has a row only if a rule that is violated reads it. ``only``:
+    the objects to tell of, if not of all.
     """
+    wanted = set(only) or set(trace.objects)
+    violations = tuple(one for one in verdict.violations if wanted.issuperset(one.binding.values()))
     read = dict.fromkeys(name for rule in rules.rules for name in names_in(rule.formula))
-    violated = {one.rule for one in verdict.violations}
+    violated = {one.rule for one in violations}
     matters = {
         name for rule in rules.rules if rule.name in violated for name in names_in(rule.formula)
     }
     rows = []
     left_out = 0
     for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, read)]:
-        for name in read:
+        for name in read if wanted.issuperset(objects) else ():
             row = _row(trace, rules, name, objects)
             if row is not None:
                 told = name in matters or any(_said(state, name, objects) for state in trace.states)
                 rows += [row] if told else []
                 left_out += not told
-    return Ribbon(trace, tuple(rows), left_out, verdict.violations)
+    return Ribbon(trace, tuple(rows), left_out, violations)
 
 
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
