@@ -72,9 +72,9 @@ def test_a_part_of_a_trace(tmp_path, capfd):
     assert draw(capfd, *draw_trace)[0] == 0
     assert {"CONGESTED", "position(v1)"} <= set(texts(file))
     assert draw(capfd, *draw_trace, "--rule", "R[12]", "--object", "v1")[0] == 0
-    assert texts(file)[0] == "t1: 1 violation by esterle2019"
+    assert texts(file)[0] == "t1: 1 violation by esterle2019, only R[12], v1"
     assert draw(capfd, *draw_trace, "--rule", "R3")[0] == 0
-    assert texts(file)[0] == "t1: no violation by esterle2019"
+    assert texts(file)[0] == "t1: no violation by esterle2019, only R3"
     assert "CONGESTED" not in texts(file)
 
 

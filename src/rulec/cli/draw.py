@@ -198,7 +198,7 @@ def trace(
     used = _only(made_for(chosen, rules), patterns)
     verdict = verify(chosen, used)
     shown = ribbon(chosen, used, verdict, objects)
-    title = trace_title(replace(verdict, violations=shown.violations), used)
+    title = trace_title(replace(verdict, violations=shown.violations), used, (*patterns, *objects))
     _write(Drawing(title, [ribbon_picture(shown, used)]), output, form)
 
 

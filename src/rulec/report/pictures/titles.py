@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rulec.report.counts import shown_count
@@ -37,8 +38,10 @@ def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int)
     return f"{counts}, {shown_count(found.traces)} maneuvers, {satisfying}"
 
 
-def trace_title(verdict: Verdict, rules: CompiledRulebook) -> str:
-    """The trace, and what came of it."""
+def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
+    """The trace, and what came of it; ``only`` of these rules and objects, if there are any."""
     number = len(verdict.violations)
     words = "no violation" if not number else "1 violation" if number == 1 else None
-    return f"{verdict.trace}: {words or f'{number:,} violations'} by {rules.name}"
+    return f"{verdict.trace}: {words or f'{number:,} violations'} by {rules.name}" + (
+        f", only {', '.join(only)}" if only else ""
+    )
