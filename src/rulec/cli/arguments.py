@@ -158,6 +158,19 @@ def only_sources(rulebooks: Iterable[str], done: str) -> None:
         raise click.UsageError(f"`{compiled}` is compiled and cannot {done}; give its source")
 
 
+def output_option(function: Decorated) -> Decorated:
+    """``--output FILE``, required."""
+    option = click.option(
+        "-o",
+        "--output",
+        required=True,
+        metavar="FILE",
+        type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+        help="The file to write; `-` is standard output.",
+    )
+    return option(function)
+
+
 def at_option(function: Decorated) -> Decorated:
     """``--at DATE``: the day whose law it is."""
     option = click.option(

@@ -16,6 +16,7 @@ from rulec.cli.arguments import (
     chosen,
     complete_rulebooks,
     graph_options,
+    output_option,
     rulebook_option,
 )
 
@@ -40,14 +41,7 @@ def _output_options(function: Decorated) -> Decorated:
             type=click.Choice(["svg", "png", "html"]),
             help="The format of the picture.  [default: what the file's name ends with, else svg]",
         ),
-        click.option(
-            "-o",
-            "--output",
-            required=True,
-            metavar="FILE",
-            type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
-            help="The file to write; `-` is standard output.",
-        ),
+        output_option,
     ):
         function = decorate(function)
     return function

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import at_option, chosen, graph_options, rulebook_option
+from rulec.cli.arguments import (
+    at_option,
+    chosen,
+    graph_options,
+    output_option,
+    rulebook_option,
+)
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -18,14 +24,7 @@ if TYPE_CHECKING:
 @click.command()
 @graph_options
 @rulebook_option
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
-    help="The file to write; `-` is standard output.",
-)
+@output_option
 @click.option(
     "--list",
     "number",

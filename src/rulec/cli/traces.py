@@ -1,4 +1,4 @@
-"""``rulec traces``: all maneuvers of a scenario as traces."""
+"""``rulec traces``: all maneuvers of a scenario, or what recorded vehicles did, as traces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import chosen, complete_rulebooks, graph_options, traces_format_option
+from rulec.cli.arguments import (
+    chosen,
+    complete_rulebooks,
+    graph_options,
+    output_option,
+    traces_format_option,
+)
 from rulec.cli.recorded_arguments import drives_options, given, wanted
 
 if TYPE_CHECKING:
@@ -29,14 +35,7 @@ MOST_TRACES = 10_000_000
     help="Write the traces in this rulebook's words, with the partition that it reads.",
     shell_complete=complete_rulebooks,
 )
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
-    help="The file to write; `-` is standard output.",
-)
+@output_option
 @click.option(
     "--limit",
     type=click.IntRange(min=1),
