@@ -14,6 +14,7 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.monitor import Monitor
 from rulec.runtime.online.floors import floors_of
 from rulec.runtime.online.outline import Outline
+from rulec.runtime.online.team import Learned
 
 RULES = compile_rulebook(
     parse_rulebook(
@@ -267,3 +268,61 @@ def test_alike_is_what_no_rule_tells_apart():
         {"follows": {"a": {"b": True}}},
     ]:
         assert KEY({**PAIRS, **other}) != KEY(PAIRS)
+
+
+AFTER_FOG = compile_rulebook(
+    parse_rulebook(
+        """
+rulebook after_fog
+type car
+signal fog, ice default false
+hard rule three_states_later { require never (previously[3 steps] fog and ice) }
+hard rule of_no_matter (c: car) { require always (fog implies fog or once ice) }
+"""
+    )
+)
+FOGS = [{"fog": bit == "1"} for n in range(32) for bit in f"{n:05b}"]
+"""What the last three states were leads everywhere: to 8 nodes, by 2 letters in 16 ways."""
+
+
+def stay(state):
+    return [(state, {})]
+
+
+def come_and_go(state):
+    return [(state, {}), (state, {"a": "car"})]
+
+
+def are_refused_now_and_then(state):
+    return [(state, {}), ({"frog": True}, {})]
+
+
+@pytest.mark.parametrize(
+    # Where somebody comes or goes no ways are learnt.
+    ("they", "most"),
+    [(stay, 20), (come_and_go, 5), (are_refused_now_and_then, 20)],
+)
+def test_what_has_been_learnt_does_not_grow_for_ever(they, most, monkeypatch):
+    made = []
+
+    def learned():
+        made.append(Learned())
+        return made[-1]
+
+    monkeypatch.setattr("rulec.runtime.online.team.Learned", learned)
+    monkeypatch.setattr("rulec.runtime.monitor.MOST_LEARNED", most)
+    monitor = Monitor(AFTER_FOG)
+    for state in FOGS:
+        for told, objects in they(state):
+            answer(monitor, told, objects)
+    # In one step not many can be added.
+    assert max(one.n for one in made) < most + 10
+    assert sum(one.n > most for one in made) > 2
+
+
+def test_objects_stay_in_the_order_in_which_they_came(monkeypatch):
+    monkeypatch.setattr("rulec.runtime.monitor.MOST_LEARNED", 0)
+    monitor = Monitor(AFTER_FOG)
+    for names in ("ab", "ba"):
+        monitor.step({}, dict.fromkeys(names, "car"))
+    assert [*monitor.objects] == ["a", "b"]

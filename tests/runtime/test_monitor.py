@@ -144,6 +144,9 @@ def test_an_interrupted_step_is_none(monkeypatch):
         ({"place": {}}, CAR, "R0504"),
         ({"place": {"a": "near"}}, {"a": "bus"}, "R0505"),
         ({"place": {"a": "near", "b": "near"}}, CAR, "R0505"),
+        # Names that are no text, as Python code may have them.
+        ({7: True}, CAR, "R0502"),
+        ({"place": {7: "near"}}, CAR, "R0505"),
     ],
 )
 def test_what_is_no_state_is_said_with_its_place_and_changes_nothing(state, objects, code):

@@ -128,8 +128,9 @@ def _shown(value: Any) -> str:
 
 
 def _suggest(name: str, known: Iterable[str]) -> str:
-    known = list(known)
-    return did_you_mean(name, known) or (f"known: {named(known)}" if known else "")
+    # A key that Python code has made may be no text: an object's number, say.
+    known = [str(one) for one in known]
+    return did_you_mean(str(name), known) or (f"known: {named(known)}" if known else "")
 
 
 def _unknown_name(name: str, vocabulary: Vocabulary) -> str:

@@ -46,9 +46,8 @@ class Monitor:
             if self._step_s is not None:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
-        self._teams = teams_of(rulebook)
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        self._now: _Now = beginning(Scene(rulebook, self._teams, NOBODY)), -1, ()
+        self._now: _Now = beginning(Scene(rulebook, teams_of(rulebook), NOBODY)), -1, ()
         self._violations: list[Violation] = []
 
     @property
@@ -120,14 +119,17 @@ class Monitor:
         here, number, _ = self._now
         number += 1
         scene = here.scene
-        if not same_objects:
+        if same_objects:
+            # They may be given in another order.
+            objects = scene.objects
+        else:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)
-            scene = Scene(self._rulebook, self._teams, objects)
-        elif self._teams.learned.n > MOST_LEARNED:
-            self._teams = self._teams.forgetful()
-            scene = Scene(self._rulebook, self._teams, objects)
+        is_full = scene.teams.learned.n > MOST_LEARNED
+        if is_full or not same_objects:
+            teams = scene.teams.forgetful() if is_full else scene.teams
+            scene = Scene(self._rulebook, teams, objects)
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
         letters, known = scene.read(state, number, place)
@@ -143,8 +145,8 @@ class Monitor:
 
     def past(self, objects: Mapping[str, str]) -> Past:
         """What has been, as far as it bears on a next state in which these objects are there."""
-        scene = Scene(self._rulebook, self._teams, objects)
         here, _, _ = self._now
+        scene = Scene(self._rulebook, here.scene.teams, objects)
         edges, ended = carried_over(here.scene, here.nodes, scene)
         states, settled = {}, set()
         for crowd in scene.crowds:
@@ -177,7 +179,8 @@ class Monitor:
             RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
         monitor = cls(rulebook, step_in(snapshot, rulebook, place))
-        number, standing, violations = from_data(snapshot, rulebook, monitor._teams, place)
+        teams = monitor._now[0].scene.teams
+        number, standing, violations = from_data(snapshot, rulebook, teams, place)
         monitor._now, monitor._violations = (standing, number, ()), violations
         return monitor
 

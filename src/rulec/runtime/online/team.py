@@ -16,8 +16,8 @@ from rulec.runtime.online.floors import Floors, floors_of
 from rulec.runtime.online.inputs import Input, Weigh, inputs_of
 from rulec.runtime.online.prefix import Edge, Links, Prefix, linked
 
-MOST_LEARNED = 1 << 16
-"""So many nodes and letters are remembered before they are forgotten again."""
+MOST_LEARNED = 1 << 18
+"""So many nodes, letters and ways between nodes are remembered before they are forgotten again."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +57,7 @@ class Node(dict[int, "Node"]):
         if node.verdicts != self.verdicts:
             raise OtherVerdictError
         self[letter] = node
+        self.team.learned.n += 1
         return node
 
     def behind(self, letter: int) -> Node:
@@ -67,7 +68,7 @@ class Node(dict[int, "Node"]):
 
 
 class Learned:
-    """How many nodes and letters there are."""
+    """How many nodes, letters and ways between nodes there are."""
 
     n = 0
 
@@ -76,11 +77,11 @@ class Team:
     """Rules whose variables are of the same types, in the same order.
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are those that
-    each letter has for each rule.
+    each letter has for each rule, ``learned`` counts for all teams together.
     """
 
     def __init__(self, rules: Sequence[Ready], learned: Learned) -> None:
-        self._learned = learned
+        self.learned = learned
         self.rules = tuple(rules)
         self.types = tuple([variable.type for variable in rules[0].rule.variables])
         inputs = dict.fromkeys(one for ready in rules for one, _ in ready.inputs)
@@ -95,7 +96,7 @@ class Team:
         """The node with these edges, one for each rule."""
         if edges not in self._nodes:
             self._nodes[edges] = Node(self, edges)
-            self._learned.n += 1
+            self.learned.n += 1
         return self._nodes[edges]
 
     def letter(self, classes: tuple[int, ...]) -> int:
@@ -103,7 +104,7 @@ class Team:
         if classes not in self._letters:
             self._letters[classes] = len(self.classes)
             self.classes.append(classes)
-            self._learned.n += 1
+            self.learned.n += 1
         return self._letters[classes]
 
     def letter_of(self, digits: dict[Input, Any]) -> int:
@@ -125,7 +126,8 @@ class Team:
 class Teams:
     """The rules of a rulebook, one by one and by the types of their variables.
 
-    They learn: which nodes and letters there are. ``floors`` are what they compare quantities with.
+    They learn: which nodes and letters there are, and what leads where. ``floors`` are what they
+    compare quantities with.
     """
 
     rules: tuple[Ready, ...]
