@@ -1,5 +1,7 @@
 """Formulas on bits: along one trace and across many, they say what direct evaluation says."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import example, given
@@ -38,11 +40,12 @@ def test_along_a_trace(formula, word, semantics):
     assert along(formula, len(word), columns_of(word, is_true), semantics) == expected
 
 
+def is_in(one, letter):
+    return one in letter
+
+
 @given(formulas, words, both_semantics)
 def test_along_a_trace_without_bounds(formula, word, semantics):
-    def is_in(one, letter):
-        return one in letter
-
     column = columns_of(letters(word), is_in)
     expected = holds(formula, letters(word), semantics)
     assert along(formula, len(word), column, semantics) == expected
@@ -73,6 +76,56 @@ def test_across_traces_of_any_lengths(formula, found, semantics):
     assert verdicts.tolist() == [
         holds(formula, letters_of(formula, word), semantics) for word in ordered
     ]
+
+
+SPANS = [None, (0, 0), (0, 1), (1, 2), (2, None), (4, 5)]
+"""The last is longer than any of the short words."""
+BOOLEAN = {"not", "and", "or", "implies", "iff", "xor"}
+DISTANCE = {"next", "weak next", "previously", "weak previously"}
+
+
+def bounds_of(operator):
+    if operator.value in BOOLEAN:
+        return [None]
+    spans = [None, (0, 0), (2, 2), (4, 4)] if operator.value in DISTANCE else SPANS
+    return [None if one is None else Bound(*one, "steps") for one in spans]
+
+
+OPERATIONS = [
+    *(Unary(operator, P, bound) for operator in UnaryOperator for bound in bounds_of(operator)),
+    *(
+        Binary(operator, P, Q, bound)
+        for operator in BinaryOperator
+        for bound in bounds_of(operator)
+    ),
+]
+CASES = [
+    *OPERATIONS,
+    *(Unary(UnaryOperator.NEXT, one) for one in OPERATIONS),
+    *(Unary(UnaryOperator.EVENTUALLY, one) for one in OPERATIONS),
+]
+LETTERS = [frozenset(), frozenset({P}), frozenset({Q}), frozenset({P, Q})]
+SHORT = [list(word) for n in (3, 2, 1) for word in product(LETTERS, repeat=n)]
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+def test_every_operator_on_all_short_words(semantics):
+    """Together, whatever their length, and with those of the same; and one by one."""
+    groups = [SHORT, *([one for one in SHORT if len(one) == n] for n in (1, 2))]
+    wrong = []
+    for formula in CASES:
+        expected = {id(word): holds(formula, word, semantics) for word in SHORT}
+        for group in groups:
+            ordered, layout, states = by_step(group)
+            column = columns_of(states, is_in)
+            found = across(formula, layout, column, semantics).tolist()
+            if found != [expected[id(word)] for word in ordered]:
+                wrong.append((str(formula), len(ordered)))
+        for word in SHORT:
+            column = columns_of(word, is_in)
+            if along(formula, len(word), column, semantics) != expected[id(word)]:
+                wrong.append((str(formula), word))
+    assert wrong == []
 
 
 LONG_AGO = Unary(UnaryOperator.EVENTUALLY, Unary(UnaryOperator.PREVIOUSLY, P, Bound(9, 9, "steps")))
