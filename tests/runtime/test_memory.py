@@ -253,6 +253,28 @@ def test_what_is_not_of_the_same_outline_has_no_key(odd):
         KEY({**PAIRS, **odd})
 
 
+ONE = {"a": "car"}
+A_NEAR, BOTH_NEAR = {"place": {"a": "near"}}, {"place": {"a": "near", "b": "near"}}
+
+
+@pytest.mark.parametrize(
+    ("objects", "state", "odd"),
+    [
+        (ONE, A_NEAR, {**A_NEAR, "fog": True}),
+        (ONE, A_NEAR, BOTH_NEAR),
+        (BOTH, BOTH_NEAR, {**BOTH_NEAR, "fog": True}),
+        (BOTH, BOTH_NEAR, {"place": {"a": "near", "b": "near", "x": "near"}}),
+        (BOTH, {"fog": True}, {"fog": True, "frog": True}),
+        (BOTH, {"turning": {"a": True}}, {"turning": {"a": True}, "fog": True}),
+    ],
+)
+def test_nor_has_more_than_a_single_name_says(objects, state, odd):
+    key = Outline([*state], objects, RULES.vocabulary, floors_of(RULES)).key
+    assert key(deepcopy(state)) == key(state)
+    with pytest.raises(LookupError):
+        key(odd)
+
+
 def test_alike_is_what_no_rule_tells_apart():
     same = [{}, {"speed": 4.0}, {"speed": -(10**9)}]
     # Others than `a` follow whom they follow by default.

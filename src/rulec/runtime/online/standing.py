@@ -109,10 +109,10 @@ def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
     lost = {rule for rule, verdict in here.rules.items() if verdict == "violated"}
     lost.update(one.rule for one in changes if one.verdict == "violated")
     violated = here.n_violations + sum(one.verdict == "violated" for one in changes)
-    # While nobody comes or goes, a rule says something else only if it does so of somebody.
-    known = here.rules if scene is here.scene else {}
-    unchanged = known.keys() - {one.rule for one in changes}
-    after = _standing(scene, nodes, lost, violated, {rule: known[rule] for rule in unchanged})
+    # A rule says something else only if it does so of somebody who stays, comes or leaves.
+    unchanged = here.rules.keys() - {one.rule for one in changes}
+    known = {rule: here.rules[rule] for rule in unchanged}
+    after = _standing(scene, nodes, lost, violated, known)
     return after, tuple(changes)
 
 
