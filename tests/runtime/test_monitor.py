@@ -1,6 +1,7 @@
 """A monitor's verdicts on rules and rulebooks, who comes and goes, and what is no snapshot."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -186,6 +187,16 @@ def test_a_state_that_cannot_be_is_refused(state):
     with pytest.raises(RulecError, match="state 1 cannot be") as refused:
         judge.step(state, CARS)
     assert refused.value.diagnostics[0].code == "R0508"
+    assert judge.so_far.state == 0
+
+
+def test_a_state_that_cannot_be_is_refused_where_no_fact_counts():
+    """Then letters are read off values that are remembered."""
+    rulebook = replace(FACTS, facts=FACTS.facts[:1])
+    judge = Monitor(compile_rulebook(rulebook))
+    judge.step({"standing": {"a": False}, "turning": {"a": True}}, CAR)
+    with pytest.raises(RulecError, match="state 1 cannot be"):
+        judge.step({"standing": {"a": True}, "turning": {"a": True}}, CAR)
     assert judge.so_far.state == 0
 
 
