@@ -39,7 +39,9 @@ def spot_automaton(formula, besides="1", alive=None):
     projection = spot.remove_ap()
     for name in fresh:
         projection.add_ap(name)
-    return projection.strip(spot.translate(language))
+    # With a past that is guessed, the reductions by simulation that Spot makes unless told
+    # otherwise can take for ever.
+    return projection.strip(spot.translate(language, "low"))
 
 
 def _named(formula, definitions, fresh, alive):
