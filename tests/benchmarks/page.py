@@ -11,9 +11,10 @@ HEAD = """\
 # How fast it is
 
 What `tests/benchmarks/run --write` has measured; it writes this page. `tests/benchmarks/run NAME`
-measures a part. Every figure is processor time, the median of several rounds in which everything
-in a table takes its turn, so that a busy moment of the machine meets all of it; the fastest round
-is nearest to a machine with nothing else to do. "Peer takes" says how many times as long another
+measures a part. Every figure is processor time, the median of several rounds in which everything in
+a table takes its turn, so that a busy moment of the machine meets all of it; the fastest round is
+nearest to a machine with nothing else to do. A turn lasts ten milliseconds or more: what is short
+is done again and again in it, and its mean counts. "Peer takes" says how many times as long another
 way of doing the same work takes, in the same rounds. Ratios carry over to other machines, times do
 not. "Wanted" is what rulec aims at on a machine of this kind. Where the load average below is above
 the number of cores, other programs had their share of cores, caches and memory, which lengthens

@@ -13,6 +13,9 @@ from figure import Figure
 Timed = Callable[[], float]
 """Does something once and returns how long that took, in the unit of its figure."""
 
+TURN_S = 0.01
+"""A turn lasts at least so long: what is short is done several times in it, as `timeit` does."""
+
 
 @dataclass(frozen=True)
 class Taken:
@@ -61,10 +64,18 @@ def in_turns(tasks: Mapping[str, Timed], rounds: int) -> dict[str, Taken]:
     times: dict[str, list[float]] = {name: [] for name in tasks}
     for turn in range(rounds + 1):
         for name, timed in tasks.items():
-            taken = timed()
+            taken = _mean_of_a_turn(timed)
             if turn:
                 times[name].append(taken)
     return {name: Taken(statistics.median(all_), min(all_)) for name, all_ in times.items()}
+
+
+def _mean_of_a_turn(timed: Timed) -> float:
+    end = time.perf_counter() + TURN_S
+    taken = [timed()]
+    while time.perf_counter() < end:
+        taken.append(timed())
+    return statistics.mean(taken)
 
 
 def once(timed: Timed) -> Taken:

@@ -18,6 +18,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.semantics import holds
 from rulec.runtime.bits import across, along
+from rulec.runtime.bits.program import program_of
 from rulec.trace.columns import layout_of
 
 both_semantics = st.sampled_from(["stutter", "finite"])
@@ -103,6 +104,29 @@ def test_longer_than_a_word_of_the_machine(semantics, bits):
     # p where the trace has p first and q then.
     formula = Binary(BinaryOperator.THEN, P, Q)
     assert across(formula, layout, twice.__getitem__, semantics).tolist() == p.tolist()
+
+
+@given(formulas)
+def test_a_program_does_nothing_twice_and_nothing_in_vain(formula):
+    operations = program_of(formula).operations
+    assert len(set(operations)) == len(operations)
+    taken = {place for operation in operations for place in operation.takes} - {0}
+    assert taken == set(range(1, len(operations)))
+
+
+def test_a_program_keeps_no_longer_than_needed():
+    formula = Binary(BinaryOperator.AND, P, Unary(UnaryOperator.EVENTUALLY, Q))
+    program = program_of(Unary(UnaryOperator.ALWAYS, formula))
+    names = [(one.name, over) for one, over in zip(program.operations, program.over, strict=True)]
+    assert names == [
+        ("given", ()),
+        ("given", ()),
+        ("until", (2,)),
+        ("both", (1, 3)),
+        ("no", (4,)),
+        ("ever", (5,)),
+        ("opposite", (6,)),
+    ]
 
 
 def test_one_object_or_another_is_no_question_to_a_word():

@@ -143,7 +143,7 @@ def through(form):
 
 
 def across(rulebook, compiled, traces):
-    """On bits, 64 traces in a word: those of one shape together."""
+    """On bits, eight traces in a byte: those of one shape together."""
     shapes = {}
     for trace in traces:
         full = replace(

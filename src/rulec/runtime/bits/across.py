@@ -1,38 +1,20 @@
-"""Many traces: a plane is a matrix of words, a row for each step, a bit for each trace."""
+"""Many traces: a plane is a matrix of bytes, a row for each step, a bit for each trace."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Formula,
-    Proposition,
-    Unary,
-    UnaryOperator,
-)
-from rulec.logic.semantics import Semantics, steps_to_settle
-from rulec.runtime.bits.algebra import Evaluation
+from rulec.logic.formula import Formula, Proposition
+from rulec.logic.semantics import Semantics
+from rulec.runtime.bits.program import program_of
 from rulec.trace.columns import Array, Layout
 
-Words = NDArray[np.uint64]
-
-_AT_ONCE: Mapping[BinaryOperator, Callable[[Words, Words], Words]] = {
-    BinaryOperator.AND: lambda one, other: one & other,
-    BinaryOperator.OR: lambda one, other: one | other,
-    BinaryOperator.IMPLIES: lambda one, other: ~one | other,
-    BinaryOperator.IFF: lambda one, other: ~(one ^ other),
-    BinaryOperator.XOR: lambda one, other: one ^ other,
-}
+Bits = NDArray[np.uint8]
 
 
 class Across:
@@ -53,144 +35,146 @@ class Across:
     ) -> None:
         self._layout = layout
         self._column = column
-        self._semantics = semantics
-        self._packed: dict[Proposition, Words] = {}
-        self._alive: Words | None = None
+        self._ends = semantics == "finite"
+        self._packed: dict[Proposition, Bits] = {}
+        self._alive: Bits | None = None
         if layout.n_states < layout.n_traces * layout.n_steps:
             self._alive = self._pack(np.ones(layout.n_states, dtype=bool), layout.n_steps)
 
     def holds(self, formula: Formula) -> NDArray[np.bool_]:
         """For each trace: does the formula, whose bounds are in steps, hold for it?"""
-        ends = self._semantics == "finite"
-        more = 0 if ends else steps_to_settle(formula)
-        algebra = _AcrossTraces(
-            self._layout.n_steps + more, self._n_words, ends, self._alive if ends else None
-        )
-        evaluation = Evaluation(lambda one: self._plane(one, more), algebra)
-        bits = np.unpackbits(self._first(formula, evaluation).view(np.uint8))
-        return bits[: self._layout.n_traces].view(np.bool_)
+        program = program_of(formula)
+        more = 0 if self._ends else program.settling
+        row = program.run(_AcrossTraces(self, self._alive, self._layout.n_steps + more, self._ends))
+        return np.unpackbits(row, count=self._layout.n_traces).view(np.bool_)
 
-    def _first(self, formula: Formula, evaluation: Evaluation[Words]) -> Words:
-        """The first row of a formula's plane, and no more of it than that takes."""
-        match formula:
-            case Atom() | Comparison() if formula not in self._packed:
-                packed: Words = self._pack(self._column(formula), 1)[0]
-                return packed
-            case Unary(UnaryOperator.NOT, operand):
-                return ~self._first(operand, evaluation)
-            case Unary(UnaryOperator.ALWAYS, operand, None):
-                return ~self._ever(evaluation.negation(operand))
-            case Unary(UnaryOperator.NEVER, operand, None):
-                return ~self._ever(evaluation.plane(operand))
-            case Unary(UnaryOperator.EVENTUALLY, operand, None):
-                return self._ever(evaluation.plane(operand))
-            case Binary(operator, left, right) if operator in _AT_ONCE:
-                one, other = self._first(left, evaluation), self._first(right, evaluation)
-                both: Words = _AT_ONCE[operator](one, other)
-                return both
-        row: Words = evaluation.plane(formula)[0]
+    def first_row(self, proposition: Proposition) -> Bits:
+        """An atom or a comparison at the first step."""
+        packed = self._packed.get(proposition)
+        row: Bits = (self._pack(self._column(proposition), 1) if packed is None else packed)[0]
         return row
 
-    def _ever(self, plane: Words) -> Words:
-        if self._alive is not None and self._semantics == "finite":
-            plane = plane & self._alive
-        found: Words = np.bitwise_or.reduce(plane, axis=0)
-        return found
-
-    @property
-    def _n_words(self) -> int:
-        return (self._layout.n_traces + 63) // 64
-
-    def _plane(self, proposition: Proposition, more: int) -> Words:
+    def plane(self, proposition: Proposition) -> Bits:
+        """An atom or a comparison at each step of the longest trace."""
         if proposition not in self._packed:
             packed = self._pack(self._column(proposition), self._layout.n_steps)
-            if self._alive is not None and self._semantics != "finite":
-                self._repeat_the_last(packed, self._alive)
+            if self._alive is not None and not self._ends:
+                _repeat_the_last(packed, self._alive)
             self._packed[proposition] = packed
-        plane = self._packed[proposition]
-        return np.concatenate([plane, np.repeat(plane[-1:], more, axis=0)]) if more else plane
+        return self._packed[proposition]
 
-    def _pack(self, column: Array, n_steps: int) -> Words:
+    @property
+    def n_bytes(self) -> int:
+        """How long a row is."""
+        return (self._layout.n_traces + 7) // 8
+
+    def _pack(self, column: Array, n_steps: int) -> Bits:
         """The bits of a column's first steps; those of traces that are over are 0."""
         n_traces, starts = self._layout.n_traces, self._layout.starts
-        bits = np.zeros((n_steps, 8 * self._n_words), dtype=np.uint8)
+        bits: Bits
         if starts[n_steps] == n_steps * n_traces:
-            rows = column[: n_steps * n_traces].reshape(n_steps, n_traces)
-            bits[:, : (n_traces + 7) // 8] = np.packbits(rows, axis=1)
-        else:
-            for step in range(n_steps):
-                packed = np.packbits(column[starts[step] : starts[step + 1]])
-                bits[step, : len(packed)] = packed
-        return bits.view(np.uint64)
+            bits = np.packbits(column[: n_steps * n_traces].reshape(n_steps, n_traces), axis=1)
+            return bits
+        bits = np.zeros((n_steps, self.n_bytes), dtype=np.uint8)
+        for step in range(n_steps):
+            packed = np.packbits(column[starts[step] : starts[step + 1]])
+            bits[step, : len(packed)] = packed
+        return bits
 
-    def _repeat_the_last(self, packed: Words, alive: Words) -> None:
-        for step in range(1, len(packed)):
-            packed[step] |= packed[step - 1] & ~alive[step]
+
+def _repeat_the_last(packed: Bits, alive: Bits) -> None:
+    for step in range(1, len(packed)):
+        packed[step] |= packed[step - 1] & ~alive[step]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _AcrossTraces:
-    """``alive`` has a 1 where a trace has a step; None if all have all, or go on for ever."""
+    """``alive`` has a 1 where a trace has a step; None if all have all.
 
+    Traces that do not end go on for ever in all ``n_steps``.
+    """
+
+    traces: Across
+    alive: Bits | None
     n_steps: int
-    n_words: int
     ends: bool
-    alive: Words | None
 
-    def constant(self, value: bool) -> Words:
-        return np.full((self.n_steps, self.n_words), -value, dtype=np.int64).view(np.uint64)
+    def given(self, proposition: Proposition) -> Bits:
+        plane = self.traces.plane(proposition)
+        more = self.n_steps - len(plane)
+        return np.concatenate([plane, np.repeat(plane[-1:], more, axis=0)]) if more else plane
 
-    def no(self, one: Words) -> Words:
+    def constant(self, value: bool) -> Bits:
+        return np.full((self.n_steps, self.traces.n_bytes), 255 if value else 0, dtype=np.uint8)
+
+    def no(self, one: Bits) -> Bits:
         return ~one
 
-    def both(self, one: Words, other: Words) -> Words:
+    def both(self, one: Bits, other: Bits) -> Bits:
         return one & other
 
-    def either(self, one: Words, other: Words) -> Words:
+    def either(self, one: Bits, other: Bits) -> Bits:
         return one | other
 
-    def differ(self, one: Words, other: Words) -> Words:
+    def differ(self, one: Bits, other: Bits) -> Bits:
         return one ^ other
 
-    def ahead(self, one: Words, steps: int) -> Words:
+    def ahead(self, one: Bits, steps: int) -> Bits:
         steps = min(steps, self.n_steps)
         moved = np.empty_like(one)
         moved[: self.n_steps - steps] = self._existing(one)[steps:]
         moved[self.n_steps - steps :] = 0 if self.ends else one[-1]
         return moved
 
-    def back(self, one: Words, steps: int) -> Words:
+    def back(self, one: Bits, steps: int) -> Bits:
         steps = min(steps, self.n_steps)
         moved = np.empty_like(one)
         moved[steps:] = one[: self.n_steps - steps]
         moved[:steps] = 0
         return moved
 
-    def until(self, left: Words | None, right: Words) -> Words:
-        found: Words = self._existing(right).copy()
-        _carried(found[::-1], None if left is None else left[::-1])
+    def until(self, left: Bits | None, right: Bits) -> Bits:
+        way = None if left is None else left[::-1]
+        return _carried(self._existing(right)[::-1], way)[::-1]
+
+    def since(self, left: Bits | None, right: Bits) -> Bits:
+        return _carried(right, left)
+
+    def given_first(self, proposition: Proposition) -> Bits:
+        return self.traces.first_row(proposition)
+
+    def first(self, one: Bits) -> Bits:
+        row: Bits = one[0]
+        return row
+
+    def ever(self, one: Bits) -> Bits:
+        found: Bits = np.bitwise_or.reduce(self._existing(one), axis=0)
         return found
 
-    def since(self, left: Words | None, right: Words) -> Words:
-        found: Words = right.copy()
-        _carried(found, left)
-        return found
+    def opposite(self, row: Bits) -> Bits:
+        return ~row
 
-    def _existing(self, one: Words) -> Words:
-        return one if self.alive is None else one & self.alive
+    def _existing(self, one: Bits) -> Bits:
+        return one & self.alive if self.ends and self.alive is not None else one
 
 
-def _carried(found: Words, way: Words | None) -> None:
-    """Carry what is found from each row to the next, where that has a way for it."""
-    rows = list(found)
+def _carried(entered: Bits, way: Bits | None) -> Bits:
+    """What has been entered, carried from each row to the next, where that has a way for it."""
+    # A third argument is where the result goes; said by its name it would cost as much as a row.
+    either, both = np.bitwise_or, np.bitwise_and
+    found = np.empty_like(entered)
+    before: Bits = entered[0]
+    found[0] = before
     if way is None:
-        for before, row in pairwise(rows):
-            np.bitwise_or(row, before, out=row)
-        return
-    passed = np.empty_like(rows[0])
-    for before, row, open_way in zip(rows, rows[1:], list(way)[1:], strict=False):
-        np.bitwise_and(open_way, before, out=passed)
-        np.bitwise_or(row, passed, out=row)
+        for row, entry in zip(found[1:], entered[1:], strict=True):
+            either(entry, before, row)
+            before = row
+        return found
+    for row, entry, open_way in zip(found[1:], entered[1:], way[1:], strict=True):
+        both(open_way, before, row)
+        either(entry, row, row)
+        before = row
+    return found
 
 
 def across(

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.logic.formula import Formula, Proposition
-from rulec.logic.semantics import Semantics, steps_to_settle
-from rulec.runtime.bits.algebra import Evaluation
+from rulec.logic.semantics import Semantics
+from rulec.runtime.bits.program import program_of
 
 _MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 
@@ -34,11 +34,13 @@ def along(
         column: gives for an atom or a comparison ``n_instants`` values, false where 0.
         semantics: how the trace ends.
     """
-    more = 0 if semantics == "finite" else steps_to_settle(formula)
+    program = program_of(formula)
+    more = 0 if semantics == "finite" else program.settling
     n_bits = n_instants + more
-    algebra = _AlongTime(n_bits, semantics == "finite", (1 << n_bits) - 1)
-    evaluation = Evaluation(lambda one: _packed(column(one), more), algebra)
-    return bool(evaluation.plane(formula) >> (n_bits - 1))
+    algebra = _AlongTime(
+        lambda one: _packed(column(one), more), n_bits, semantics == "finite", (1 << n_bits) - 1
+    )
+    return bool(program.run(algebra))
 
 
 def _packed(values: NDArray[Any], more: int) -> int:
@@ -50,6 +52,9 @@ def _packed(values: NDArray[Any], more: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _AlongTime:
+    """A row is 0 or 1."""
+
+    given: Callable[[Proposition], int]
     n_instants: int
     ends: bool
     true: int
@@ -89,6 +94,18 @@ class _AlongTime:
             # All up to the first one, which is the highest bit, is after it.
             return (1 << right.bit_length()) - 1
         return self._mirrored(_flooded(self._mirrored(left), self._mirrored(right)))
+
+    def given_first(self, proposition: Proposition) -> int:
+        return self.first(self.given(proposition))
+
+    def first(self, one: int) -> int:
+        return one >> (self.n_instants - 1)
+
+    def ever(self, one: int) -> int:
+        return 1 if one else 0
+
+    def opposite(self, row: int) -> int:
+        return 1 - row
 
     def _mirrored(self, one: int) -> int:
         """The bits in reverse order."""

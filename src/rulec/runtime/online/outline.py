@@ -104,6 +104,18 @@ def _key_of_one_part(part: _Part, n_names: int) -> Key:
 def _key_of_one_relation(name: str, items: Items) -> Key:
     """Of a single object the key is its value."""
     n_items = len(items)
+    (item, *others) = items
+
+    def key_of_one_item(state: Any) -> Hashable:
+        if type(state) is dict and len(state) == 1:
+            given = state[name]
+            if type(given) is dict and len(given) == 1:
+                value: Hashable = given[item]
+                return value
+        raise LookupError
+
+    if not others:
+        return key_of_one_item
     values: Key = itemgetter(*items)
 
     def key(state: Any) -> Hashable:

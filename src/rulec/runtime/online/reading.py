@@ -6,6 +6,7 @@ What the world's state and some values come to is worked out once and remembered
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.logic.one_state import Unknown, total
@@ -23,6 +24,9 @@ MOST = 1 << 12
 
 _Column: TypeAlias = Callable[[State, Sequence[Told]], Sequence[Any]]
 """Of a state and its parts what is told of an input, for each of several bindings."""
+
+_Read: TypeAlias = Callable[[State, Sequence[Told]], Iterable[int]]
+"""Of a state and its parts the letter of each of several bindings. Raises as ``letters``."""
 
 
 class Reading:
@@ -53,7 +57,7 @@ class Reading:
             if isinstance(declaration, Enumeration) and (name, items) not in read:
                 values = frozenset([*declaration.values, MISSING])
                 self._unread.append((part, slice(place, place + 1), values))
-        self._known: dict[tuple[Told, ...], list[_Letters]] = {}
+        self._known: dict[tuple[Told, ...], list[_Read]] = {}
 
     def letters(self, state: State, parts: tuple[Told, ...]) -> list[int]:
         """For each binding of each team, one after the other, the letter that it reads.
@@ -70,8 +74,8 @@ class Reading:
                 self._known.clear()
             known = self._known[world] = [one.in_world(world) for one in self._teams]
         found: list[int] = []
-        for one, letters in zip(self._teams, known, strict=True):
-            found += one.letters(letters, state, parts)
+        for read in known:
+            found += read(state, parts)
         return found
 
 
@@ -121,11 +125,14 @@ class _OfTeam:
         self._world: list[tuple[Input, int, int]] = []
         self._own: list[Input] = []
         self._columns: list[_Column] = []
+        # The parts that are columns as they are; None for what is to be made of a state first.
+        whole: list[int | None] = []
         for one in (*team.world, *team.own):
             about = [tuple([binding[place] for place in one.places]) for binding in bindings]
             if one.name is None:
                 self._own.append(one)
                 self._columns.append(_summed(one, about, objects, vocabulary))
+                whole.append(None)
                 continue
             if one.name not in outline.names:
                 default = default_told(vocabulary.declarations[one.name], floors)
@@ -134,34 +141,47 @@ class _OfTeam:
             self.read.update((one.name, items) for items in about)
             places = [outline.places[one.name, items] for items in about]
             if one.places:
+                part = _whole_part(places, outline)
                 self._own.append(one)
-                self._columns.append(_given(places, outline))
+                self._columns.append(_given(places) if part is None else _all_of(part))
+                whole.append(part)
             else:
                 self._world.append((one, *places[0]))
+        self._whole = None if None in whole else [part for part in whole if part is not None]
 
-    def in_world(self, world: Sequence[Told]) -> _Letters:
-        """The letters where the parts of a state about the world are these."""
+    def in_world(self, world: Sequence[Told]) -> _Read:
+        """What reads a letter for each binding where the parts about the world are these."""
         digits = {
             one: one.digit(world[part][place], self._floors) for one, part, place in self._world
         }
-        return _Letters(self._team, self._own, {**self._not_given, **digits}, self._floors)
+        others = {**self._not_given, **digits}
+        letter = _Letters(self._team, self._own, others, self._floors).__getitem__
+        if not self._columns:
+            return lambda *_: (letter(()),) * self._n_bindings
+        if len(self._columns) == 1:
+            (column,) = self._columns
+            return lambda state, parts: map(letter, column(state, parts))
+        if self._whole is not None:
+            pick = itemgetter(*self._whole)
+            return lambda _, parts: map(letter, zip(*pick(parts), strict=True))
+        return lambda state, parts: map(
+            letter, zip(*[column(state, parts) for column in self._columns], strict=True)
+        )
 
-    def letters(self, known: _Letters, state: State, parts: Sequence[Told]) -> Iterable[int]:
-        """A letter for each binding."""
-        columns = [column(state, parts) for column in self._columns]
-        if not columns:
-            return (known[()],) * self._n_bindings
-        if len(columns) == 1:
-            return map(known.__getitem__, columns[0])
-        return map(known.__getitem__, zip(*columns, strict=True))
 
-
-def _given(places: Sequence[tuple[int, int]], outline: Outline) -> _Column:
-    """What is told at these places, which are all in one part."""
+def _whole_part(places: Sequence[tuple[int, int]], outline: Outline) -> int | None:
+    """The part whose values stand at just these places, in this order."""
     part = places[0][0]
-    if [place for _, place in places] == list(range(outline.sizes[part])):
-        return lambda _, parts: parts[part]
-    pick = values_of([place for _, place in places])
+    return part if places == [(part, place) for place in range(outline.sizes[part])] else None
+
+
+def _all_of(part: int) -> _Column:
+    return lambda _, parts: parts[part]
+
+
+def _given(places: Sequence[tuple[int, int]]) -> _Column:
+    """What is told at these places, which are all in one part."""
+    part, pick = places[0][0], values_of([place for _, place in places])
     return lambda _, parts: pick(parts[part])
 
 

@@ -77,6 +77,7 @@ class Scene:
             if bindings:
                 self._bound.append((team, bindings))
         self.crowds = tuple([crowds[ready.rule.name] for ready in teams.rules])
+        self.hard = tuple([rule.name for rule in rulebook.rules if rule.strength == "hard"])
 
     def read(self, state: State, number: int, place: Place | None) -> tuple[Letters, Known | None]:
         """What the teams read of a state, and by what it is known, if that can be said.
@@ -98,13 +99,16 @@ class Scene:
 
     def _reading_of(self, names: tuple[str, ...]) -> Reading | None:
         """What reads states that give values to these names; None if they need a closer look."""
-        if names not in self._readings:
-            if len(self._readings) >= MOST_OUTLINES:
-                self._readings.clear()
-            about = (self.objects, self._rulebook.vocabulary, self.teams.floors)
-            self._readings[names] = None
-            with suppress(LookupError, TypeError):
-                self._readings[names] = Reading(Outline(names, *about), self._bound, *about)
+        try:
+            return self._readings[names]
+        except KeyError:
+            pass
+        if len(self._readings) >= MOST_OUTLINES:
+            self._readings.clear()
+        about = (self.objects, self._rulebook.vocabulary, self.teams.floors)
+        self._readings[names] = None
+        with suppress(LookupError, TypeError):
+            self._readings[names] = Reading(Outline(names, *about), self._bound, *about)
         return self._readings[names]
 
     def _careful_letters(self, state: State, number: int, place: Place | None) -> Letters:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
-from operator import attrgetter, getitem
+from operator import getitem
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
@@ -11,9 +11,7 @@ import msgspec
 
 from rulec.runtime.online.prefix import Edge, Prefix, together
 from rulec.runtime.online.scene import Letters, Scene
-from rulec.runtime.online.team import Node, Ready
-
-_VERDICTS = attrgetter("verdicts")
+from rulec.runtime.online.team import Node, OtherVerdictError, Ready, Team
 
 
 class Change(NamedTuple):
@@ -48,14 +46,12 @@ class Standing(msgspec.Struct, frozen=True, eq=False):
     """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
 
     ``nodes`` say where the machines of each team stand for each binding, in the order of the
-    scene's teams; ``verdicts`` are theirs. ``n_violations`` is how many bindings have violated
-    their rule for good.
+    scene's teams. ``n_violations`` is how many bindings have violated their rule for good.
     ``after`` is what is remembered of the standings behind this one, by the keys of states.
     """
 
     scene: Scene
     nodes: tuple[Node, ...]
-    verdicts: list[tuple[Prefix, ...]]
     verdict: Prefix
     rules: Mapping[str, Prefix]
     n_violations: int
@@ -79,7 +75,7 @@ def standing_at(
     scene: Scene, edges: Mapping[str, Sequence[Edge]], lost: Set[str], n_violations: int
 ) -> Standing:
     """Behind a state; ``lost`` are the rules that have been violated for good by then."""
-    return _standing(scene, nodes_at(scene, edges), lost, n_violations)
+    return _standing(scene, nodes_at(scene, edges), lost, n_violations, {})
 
 
 def nodes_at(scene: Scene, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, ...]:
@@ -96,23 +92,28 @@ def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
 
     Takes no longer for a long past than for a short one.
     """
+    changes: list[Change] = []
     if scene is here.scene:
         before = here.nodes
-        nodes = tuple(map(getitem, before, letters))
-        verdicts = [*map(_VERDICTS, nodes)]
-        if verdicts == here.verdicts:
-            same = (here.verdict, here.rules, here.n_violations)
-            return Standing(scene, nodes, verdicts, *same), ()
-        changes: list[Change] = []
+        try:
+            nodes = tuple(map(getitem, before, letters))
+        except OtherVerdictError:
+            pass
+        else:
+            return Standing(scene, nodes, here.verdict, here.rules, here.n_violations), ()
     else:
         edges, changes = carried_over(here.scene, here.nodes, scene)
         before = nodes_at(scene, edges)
-        nodes = tuple(map(getitem, before, letters))
+    nodes = tuple([node.behind(letter) for node, letter in zip(before, letters, strict=True)])
     changes += _changes(scene, before, nodes)
     lost = {rule for rule, verdict in here.rules.items() if verdict == "violated"}
     lost.update(one.rule for one in changes if one.verdict == "violated")
-    violated = sum(one.verdict == "violated" for one in changes)
-    return _standing(scene, nodes, lost, here.n_violations + violated), tuple(changes)
+    violated = here.n_violations + sum(one.verdict == "violated" for one in changes)
+    # While nobody comes or goes, a rule says something else only if it does so of somebody.
+    known = here.rules if scene is here.scene else {}
+    unchanged = known.keys() - {one.rule for one in changes}
+    after = _standing(scene, nodes, lost, violated, {rule: known[rule] for rule in unchanged})
+    return after, tuple(changes)
 
 
 def carried_over(
@@ -141,24 +142,38 @@ def carried_over(
 
 def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
     """The bindings with another verdict than before."""
+    places: dict[Team, list[int]] = {}
+    for place, (here, there) in enumerate(zip(before, after, strict=True)):
+        if here.verdicts != there.verdicts:
+            places.setdefault(there.team, []).append(place)
     for crowd in scene.crowds:
-        edges = zip(crowd.bindings, crowd.edges(before), crowd.edges(after), strict=True)
-        for items, old, new in edges:
+        for place in places.get(crowd.team, ()):
+            old, new = before[place].edges[crowd.number], after[place].edges[crowd.number]
             if old.verdict != new.verdict:
-                bound = MappingProxyType(crowd.ready.bound(items))
+                bound = MappingProxyType(
+                    crowd.ready.bound(crowd.bindings[place - crowd.place.start])
+                )
                 yield Change(crowd.ready.rule.name, bound, old.verdict, new.verdict)
 
 
-def _standing(scene: Scene, nodes: tuple[Node, ...], lost: Set[str], n_violations: int) -> Standing:
-    """``lost`` are the rules that have been violated for good, by objects now there or not."""
+def _standing(
+    scene: Scene,
+    nodes: tuple[Node, ...],
+    lost: Set[str],
+    n_violations: int,
+    known: Mapping[str, Prefix],
+) -> Standing:
+    """``lost`` are the rules that have been violated for good, by objects now there or not.
+
+    Of some rules the verdict is ``known``.
+    """
     rules = {
-        crowd.ready.rule.name: _verdict_on(crowd.ready, crowd.edges(nodes), lost)
+        crowd.ready.rule.name: known.get(crowd.ready.rule.name)
+        or _verdict_on(crowd.ready, crowd.edges(nodes), lost)
         for crowd in scene.crowds
     }
-    hard = (crowd.ready.rule for crowd in scene.crowds if crowd.ready.rule.strength == "hard")
-    verdict = together(rules[rule.name] for rule in hard)
-    verdicts = [*map(_VERDICTS, nodes)]
-    return Standing(scene, nodes, verdicts, verdict, MappingProxyType(rules), n_violations)
+    verdict = together(rules[rule] for rule in scene.hard)
+    return Standing(scene, nodes, verdict, MappingProxyType(rules), n_violations)
 
 
 def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:

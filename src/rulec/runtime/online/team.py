@@ -33,23 +33,37 @@ class Ready:
         return dict(zip([one.name for one in self.rule.variables], items, strict=True))
 
 
-class Node(dict[int, "Node"]):
-    """Where the machines of a team stand, and behind each letter where they will stand then."""
+class OtherVerdictError(Exception):
+    """Behind this letter a rule's verdict is another one."""
 
-    __slots__ = ("_team", "edges", "verdicts")
+
+class Node(dict[int, "Node"]):
+    """Where the machines of a team stand, and behind each letter where they will stand then.
+
+    Of letters that change a verdict an OtherVerdictError is raised; ``behind`` takes any.
+    """
+
+    __slots__ = ("edges", "team", "verdicts")
     __eq__ = object.__eq__
     __hash__ = object.__hash__  # type: ignore[assignment]
 
     def __init__(self, team: Team, edges: tuple[Edge, ...]) -> None:
-        self._team = team
+        self.team = team
         self.edges = edges
         self.verdicts: tuple[Prefix, ...] = tuple([edge.verdict for edge in edges])
 
     def __missing__(self, letter: int) -> Node:
-        classes = self._team.classes[letter]
-        edges = [edge.onward[one] for edge, one in zip(self.edges, classes, strict=True)]
-        self[letter] = node = self._team.node(tuple(edges))
+        node = self.behind(letter)
+        if node.verdicts != self.verdicts:
+            raise OtherVerdictError
+        self[letter] = node
         return node
+
+    def behind(self, letter: int) -> Node:
+        """Where the machines stand behind a letter."""
+        classes = self.team.classes[letter]
+        edges = [edge.onward[one] for edge, one in zip(self.edges, classes, strict=True)]
+        return self.team.node(tuple(edges))
 
 
 class Learned:
