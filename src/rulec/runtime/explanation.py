@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.logic.deciding import deciding_instants
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -13,7 +14,6 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Proposition,
-    Quantity,
     Term,
     Unary,
     atoms_of,
@@ -41,11 +41,13 @@ class Fact:
 
     ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
     ``changed``: does the rule tell the value in the decisive state from the one before?
+    ``decides``: does a part that decides read it?
     """
 
     text: str
     values: tuple[Value, ...]
     changed: bool
+    decides: bool
     unit: str = ""
     objects: tuple[tuple[str, ...], ...] | None = None
 
@@ -54,13 +56,16 @@ class Fact:
 class Part:
     """A part of the formula, ``depth`` operators inside it, and whether it holds in each state.
 
-    ``changed``: is its value in the decisive state another than in the one before?
+    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
+    it one of those that, at some instant, make the formula come out as it does?
     """
 
+    formula: Formula
     text: str
     depth: int
     values: tuple[bool, ...]
     changed: bool
+    decides: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,13 +105,15 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     ]
     formula = in_steps(rule.formula, exact(trace.step_s))
     values = values_of_parts(formula, word, rulebook.semantics)
+    instants = deciding_instants(formula, word, rulebook.semantics)
+    decides = {part for part, at in instants.items() if any(at)}
     return Explanation(
         rule,
         violation,
         states,
         decisive,
-        tuple(_facts(truths, seen)),
-        tuple(_parts(rule.formula, formula, values, seen, 0)),
+        tuple(_facts(truths, decides, seen)),
+        tuple(_parts(rule.formula, formula, values, decides, seen, 0)),
     )
 
 
@@ -157,58 +164,64 @@ class _Seen:
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
 
 
-def _facts(truths: Mapping[Proposition, list[bool]], seen: _Seen) -> Iterator[Fact]:
+def _facts(
+    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], seen: _Seen
+) -> Iterator[Fact]:
     """What is read, in the order in which the formula first speaks of it."""
-    changed: dict[Atom | Term, bool] = {}
-    for proposition, column in truths.items():
-        if isinstance(proposition, Comparison):
-            for _, term in proposition.terms:
-                # A number always changes a little; what counts is whether it passes a limit.
-                changed[term] = changed.get(term, False) or seen.changes(column)
+    readers: dict[Atom | Term, list[Proposition]] = {}
+    for proposition in truths:
+        for read in _read_by(proposition):
+            readers.setdefault(read, []).append(proposition)
+    for read, propositions in readers.items():
+        # A number always changes a little; what counts is whether it passes a limit.
+        passes = isinstance(read, Atom) or any(seen.changes(truths[one]) for one in propositions)
+        decides = not deciding.isdisjoint(propositions)
+        if isinstance(read, Count):
+            objects = seen.counted(read)
+            yield Fact(
+                term_in_words(read),
+                tuple(len(objects[n]) for n in seen.shown),
+                passes and seen.changes([len(one) for one in objects]),
+                decides,
+                objects=tuple(objects[n] for n in seen.shown),
+            )
         else:
-            changed[Atom(proposition.name, proposition.arguments)] = False
-    for read, passes in changed.items():
-        match read:
-            case Atom(name, arguments):
-                values = seen.values(name, arguments)
-                yield _fact(read, values, seen, changed=seen.changes(values))
-            case Quantity(name, arguments):
-                values = seen.values(name, arguments)
-                yield _fact(read, values, seen, changed=passes and seen.changes(values))
-            case Count():
-                objects = seen.counted(read)
-                yield Fact(
-                    term_in_words(read),
-                    tuple(len(objects[n]) for n in seen.shown),
-                    passes and seen.changes([len(one) for one in objects]),
-                    objects=tuple(objects[n] for n in seen.shown),
-                )
+            values = seen.values(read.name, read.arguments)
+            items = tuple(seen.bound[variable] for variable in read.arguments)
+            declaration = seen.moments[0].vocabulary.declarations[read.name]
+            yield Fact(
+                str(Atom(read.name, items)),
+                tuple(values[n] for n in seen.shown),
+                passes and seen.changes(values),
+                decides,
+                declaration.unit if isinstance(declaration, QuantityDeclaration) else "",
+            )
 
 
-def _fact(read: Atom | Quantity, values: Sequence[Value], seen: _Seen, *, changed: bool) -> Fact:
-    items = tuple(seen.bound[variable] for variable in read.arguments)
-    declaration = seen.moments[0].vocabulary.declarations[read.name]
-    unit = declaration.unit if isinstance(declaration, QuantityDeclaration) else ""
-    text = str(Atom(read.name, items))
-    return Fact(text, tuple(values[n] for n in seen.shown), changed, unit)
+def _read_by(proposition: Proposition) -> list[Atom | Term]:
+    if isinstance(proposition, Comparison):
+        return [term for _, term in proposition.terms]
+    return [Atom(proposition.name, proposition.arguments)]
 
 
 def _parts(
     written: Formula,
     stepped: Formula,
     truths: Mapping[Formula, list[bool]],
+    deciding: Set[Formula],
     seen: _Seen,
     depth: int,
 ) -> Iterator[Part]:
     """The parts as they are written, with the values of the same formula with bounds in steps."""
     values = truths[stepped]
     shown = tuple(values[n] for n in seen.shown)
-    yield Part(in_words(written), depth, shown, seen.changes(values))
+    text, decides = in_words(written), stepped in deciding
+    yield Part(written, text, depth, shown, seen.changes(values), decides)
     match written, stepped:
         case Unary(_, operand), Unary(_, same):
-            yield from _parts(operand, same, truths, seen, depth + 1)
+            yield from _parts(operand, same, truths, deciding, seen, depth + 1)
         case Binary(_, left, right), Binary(_, same_left, same_right):
-            yield from _parts(left, same_left, truths, seen, depth + 1)
-            yield from _parts(right, same_right, truths, seen, depth + 1)
+            yield from _parts(left, same_left, truths, deciding, seen, depth + 1)
+            yield from _parts(right, same_right, truths, deciding, seen, depth + 1)
         case _:
             return
