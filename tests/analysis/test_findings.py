@@ -200,3 +200,19 @@ def test_weaker_than_what_is_extended(tmp_path):
         ("R0806", "rule `s` is softer"),
     ]
     assert found[1].notes == ("`base` forbids: { wet and fog }",)
+
+
+def test_what_is_extended_is_for_the_same_side_of_traffic(tmp_path):
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\nuse road\ntraffic right\n"
+        "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n"
+        "hard rule s (v: vehicle) { require never (behind(v) and near_side_of(v)) }\n"
+    )
+    path = tmp_path / "example.rules"
+    path.write_text(
+        "rulebook example\nextends base\ntraffic left\n"
+        "override rule s (v: vehicle) { unless congested }\n"
+    )
+    (only,) = analyze_rulebook(path)
+    assert only.message.startswith("rule `s` is laxer")
+    assert only.notes == ("`base` forbids: { behind(v) and left_of(v) and congested }",)

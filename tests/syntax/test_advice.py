@@ -318,7 +318,11 @@ LINES = [
     ("gap = 3 m", "gap", "write `param gap = …` or `define gap = …`"),
     ("hard rule a { require p accept { v > 3 m } }", ">", ONE_VALUE),
     ("hard rule a { require p accept { v 3 m } }", "3", ONE_VALUE),
-    ("hard rule a { require p accept { v = w } }", "w", ONE_VALUE),
+    (
+        "hard rule a { require p accept { v = w } }",
+        "w",
+        "a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `w`",
+    ),
     (
         "hard rule a { require p accept { q and p = true } }",
         "true",

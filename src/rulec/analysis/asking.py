@@ -54,5 +54,6 @@ def analyze_rulebook(
     loaded = read_rulebook(reference, folders, at)
     book = loaded.rulebook
     above = [one.span.source.name for one in loaded.books[-2:-1]]
-    bases = [read_rulebook(Path(file), folders, book.at).rulebook for file in above]
+    # On the same side of the road: a treaty's near side is that of the party's traffic.
+    bases = [read_rulebook(Path(file), folders, book.at, book.traffic).rulebook for file in above]
     return findings(book, bases, tell)

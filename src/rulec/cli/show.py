@@ -21,6 +21,10 @@ FORMATS = ("text", "dot", "svg")
 
 SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
 
+OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
+"""Ends of names of pictures that are not drawn."""
+
+
 WIDTH = 100
 """The width of a page that goes to no terminal."""
 
@@ -60,11 +64,13 @@ def command(
     from rulec.report.console import put_result
 
     if output is not None and automaton_format is None and not json_output:
+        if Path(output).suffix.lower() in OTHERS:
+            raise click.UsageError(f"{output}: an automaton is drawn in a file .svg, .dot or .gv")
         automaton_format = SUFFIXES.get(Path(output).suffix)
     if json_output and automaton_format is not None:
         raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
     book, compiled = _read(rulebook, at)
-    chosen = _chosen(book, rule)
+    chosen = _chosen(book, rule, rulebook)
     width = _width(output)
     if chosen is None and automaton_format is not None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
@@ -116,17 +122,37 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
 
 
-def _chosen(book: Rulebook, name: str | None) -> Rule | None:
+def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
     from rulec.diagnostics import nearest_name
 
     if name is None:
         return book.rules[0] if len(book.rules) == 1 else None
     by_name = {rule.name: rule for rule in book.rules}
     if name not in by_name:
+        if why := _why_absent(book, name, reference):
+            raise click.UsageError(f"{book.name} has no rule `{name}`{why}")
         near = nearest_name(name, by_name)
         way_out = f"did you mean `{near}`?" if near else f"it has {_names(book)}"
         raise click.UsageError(f"{book.name} has no rule `{name}`; {way_out}")
     return by_name[name]
+
+
+def _why_absent(book: Rulebook, name: str, reference: str) -> str:
+    """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
+    from rulec.analysis.inheritance import read_with_inheritance
+    from rulec.settings import search_path
+    from rulec.syntax.printer import print_in_force
+
+    if Path(reference).suffix == ".json":
+        return ""
+    _, inherited = read_with_inheritance(reference, search_path(), book.at)
+    last = next((one.steps[-1] for one in inherited.rules if one.name == name), None)
+    if last is None:
+        return ""
+    if last.rule is not None and last.rule.in_force is not None:
+        return f" on {book.at}: it is {print_in_force(last.rule.in_force)}"
+    deed = {"dropped": "dropped it", "silent": "is silent on it"}[last.deed]
+    return f": {last.book} {deed}, because {last.because}"
 
 
 def _names(book: Rulebook) -> str:
