@@ -76,18 +76,19 @@ def nearest_kept(machine: Machine, word: Sequence[Letter]) -> tuple[Change, ...]
 def _nearest(machine: Machine, near: Sequence[_Near]) -> list[int] | None:
     """The nearest accepted letters: from the last state back it is known how far they are."""
     following = np.array(machine.following)
-    # So far from being accepted is the rest of the word, read from each state.
-    beyond = np.where(np.array(machine.accepting), near[-1][0], _FAR)
-    rests = [beyond]
-    for distances, _ in reversed(near[:-1]):
-        beyond = np.minimum(distances + beyond.min(axis=1)[following], _FAR)
-        rests.append(beyond)
-    state = 0
-    if rests[-1][state].min() >= _FAR:
+    # So far from being accepted is the rest of the word, by how much of it there is and the state.
+    last = np.where(np.array(machine.accepting), near[-1][0], _FAR)
+    costs = np.empty((len(near), len(following)), dtype=np.int64)
+    costs[-1] = last.min(axis=1)
+    for place in range(len(near) - 2, -1, -1):
+        (near[place][0] + costs[place + 1][following]).min(axis=1, out=costs[place])
+        np.minimum(costs[place], _FAR, out=costs[place])
+    if costs[0][0] >= _FAR:
         return None
-    letters = []
-    for (distances, nearest), rest in zip(near, reversed(rests), strict=True):
-        row = rest[state]
+    letters, state = [], 0
+    for place, (distances, nearest) in enumerate(near):
+        beyond = costs[place + 1][following[state]] if place + 1 < len(near) else None
+        row = last[state] if beyond is None else distances + beyond
         best = np.flatnonzero(row == row.min())
         # Like the given word for as long as possible.
         symbol = best[np.argmin(distances[best])]
