@@ -148,8 +148,7 @@ def test_nothing_helps_a_rule_that_cannot_be_kept():
 def test_a_count_is_changed_as_a_number():
     states = {"place": {"a": "near", "b": "near"}}
     text, _ = explained("many", {}, states, {}, states, states)
-    # Of whole numbers, those up to 1.
-    assert text == ["kept if states 1, 3-4 say: count c: car (near(c)) < 2"]
+    assert text == ["kept if states 1, 3-4 say: count c: car (near(c)) <= 1"]
 
 
 def test_states_with_other_ways_out_have_lines_of_their_own():

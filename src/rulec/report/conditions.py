@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead, Read
 from rulec.diagnostics.wording import any_of
 from rulec.logic.english import comparison_text, number_text, terms_text
-from rulec.logic.formula import Atom, Comparison, Quantity, Relation, atoms_of
+from rulec.logic.formula import Atom, Comparison, Count, Quantity, Relation, atoms_of
 from rulec.report.excerpt import visible
 from rulec.rulebook.model import ExampleState
 from rulec.runtime.edges import Cube
@@ -26,6 +26,14 @@ _DENIAL: dict[Relation, Relation] = {
     "!=": "=",
 }
 
+_OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
+    "<": ("<=", -1),
+    "<=": ("<", 1),
+    ">": (">=", 1),
+    ">=": (">", -1),
+}
+"""`< 2` is `<= 1`."""
+
 _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
@@ -39,8 +47,9 @@ class Wording:
         for one in atoms_of(rule.formula):
             if isinstance(one, Comparison):
                 text = comparison_text(one)
-                self._said[one.terms, one.relation, one.limit] = text
-                self._said.setdefault((one.terms, _DENIAL[one.relation], one.limit), _denied(text))
+                for relation, limit in _alike(one):
+                    self._said[one.terms, relation, limit] = text
+                    self._said.setdefault((one.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
         """What holds of exactly the letters of these cubes; ``true`` of all."""
@@ -132,6 +141,15 @@ class Wording:
             else:
                 facts.append(f"{'' if value else 'not '}{Atom(name, variables)}")
         return visible(" and ".join(facts)) or "true"
+
+
+def _alike(one: Comparison) -> Iterator[tuple[Relation, Fraction]]:
+    """The comparison, and the one that a machine may have made of it: counts are whole numbers."""
+    yield one.relation, one.limit
+    match one.terms:
+        case ((_, Count()),) if one.limit.denominator == 1 and one.relation in _OF_WHOLE_NUMBERS:
+            relation, step = _OF_WHOLE_NUMBERS[one.relation]
+            yield relation, one.limit + step
 
 
 def runs(numbers: Sequence[int]) -> list[range]:
