@@ -88,8 +88,8 @@ class Wording:
             lower, upper = read.thresholds[left_out[0] - 1], read.thresholds[left_out[0]]
             if lower.limit == upper.limit:
                 return self._compared(read, "!=", lower.limit), False
-        runs = [self._run(read, run) for run in _runs(sorted(allowed))]
-        return " or ".join(runs), len(runs) > 1 or " and " in runs[0]
+        texts = [self._run(read, run) for run in runs(sorted(allowed))]
+        return " or ".join(texts), len(texts) > 1 or " and " in texts[0]
 
     def _run(self, read: NumberRead, run: range) -> str:
         """The words for neighbouring digits."""
@@ -134,14 +134,15 @@ class Wording:
         return visible(" and ".join(facts)) or "true"
 
 
-def _runs(digits: Sequence[int]) -> list[range]:
-    runs: list[range] = []
-    for digit in digits:
-        if runs and runs[-1].stop == digit:
-            runs[-1] = range(runs[-1].start, digit + 1)
+def runs(numbers: Sequence[int]) -> list[range]:
+    """Ascending numbers as ranges of neighbours."""
+    found: list[range] = []
+    for number in numbers:
+        if found and found[-1].stop == number:
+            found[-1] = range(found[-1].start, number + 1)
         else:
-            runs.append(range(digit, digit + 1))
-    return runs
+            found.append(range(number, number + 1))
+    return found
 
 
 def _denied(text: str) -> str:
