@@ -16,8 +16,7 @@ from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
-from rulec.workflow.rulebooks import compile_rulebook, machines
-from rulec.workflow.scenarios import find_maneuvers
+from rulec.workflow import compile_rulebook, find_maneuvers, machines
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 

@@ -84,9 +84,9 @@ def command(
 
 def _audit(rulebook: str, run: bool, at: str) -> Audit:
     """The audit, after its warnings."""
+    from rulec.analysis.asking import audit_rulebook
     from rulec.report.console import print_diagnostics
     from rulec.settings import search_path
-    from rulec.workflow.rulebooks import audit_rulebook
 
     return audit_rulebook(rulebook, search_path(), at, print_diagnostics, run=run)
 

@@ -174,7 +174,7 @@ def _read_all(names: tuple[str, ...], at: str) -> tuple[list[Rulebook], bool]:
 
 def _read(name: str, folders: Sequence[Path], at: str) -> Rulebook | RulecError:
     from rulec.diagnostics import RulecError
-    from rulec.workflow.rulebooks import load_rulebook
+    from rulec.rulebook.loader import load_rulebook
 
     try:
         return load_rulebook(name, folders, at)

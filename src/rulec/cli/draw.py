@@ -125,8 +125,7 @@ def _judged(
     from rulec.runtime.cheapest import cheapest
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
-    from rulec.workflow.rulebooks import machines
-    from rulec.workflow.scenarios import find_maneuvers, navigation_graph
+    from rulec.workflow import find_maneuvers, machines, navigation_graph
 
     if rulebook is None:
         if number is not None:

@@ -60,7 +60,7 @@ def trace(
     from rulec.report.pictures.titles import trace_title
     from rulec.runtime.verify import made_for, verify
     from rulec.settings import search_path
-    from rulec.workflow.rulebooks import machines
+    from rulec.workflow import machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     chosen = _trace(file, wanted)
@@ -79,7 +79,7 @@ def trace(
 def _trace(file: str, wanted: str | None) -> Trace:
     """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
     from rulec.diagnostics import RulecError
-    from rulec.workflow.traces import read_traces
+    from rulec.trace.formats import read_traces
 
     names: list[str] = []
     for one in read_traces(file):

@@ -58,8 +58,7 @@ def command(
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
     from rulec.trace.formats import format_of
-    from rulec.workflow.rulebooks import machines
-    from rulec.workflow.scenarios import find_maneuvers
+    from rulec.workflow import find_maneuvers, machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     scene = load_scenario(scenario, chosen(options))

@@ -88,11 +88,10 @@ def command(
     from rulec.maneuvers.otherwise import otherwise
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
+    from rulec.runtime.before import read_past
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
-    from rulec.workflow.rulebooks import machines
-    from rulec.workflow.scenarios import find_maneuvers
-    from rulec.workflow.traces import read_past
+    from rulec.workflow import find_maneuvers, machines
 
     begin = time.perf_counter()
     rules = machines(rulebook, search_path(), print_diagnostics, at)

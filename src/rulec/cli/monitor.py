@@ -62,7 +62,7 @@ def command(
     from rulec.runtime.online.file import read_saved, saved_at_the_end, step_of
     from rulec.settings import search_path
     from rulec.trace.live import read_live
-    from rulec.workflow.rulebooks import compile_rulebook
+    from rulec.workflow import compile_rulebook
 
     saved = None if restore is None else read_saved(restore)
     step_s = step_s or step_of(saved)

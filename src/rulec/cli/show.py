@@ -164,7 +164,7 @@ def _names(book: Rulebook) -> str:
 
 def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
     """The rulebook with this rule alone, compiled."""
-    from rulec.workflow.rulebooks import compile_rulebook
+    from rulec.workflow import compile_rulebook
 
     if compiled is None:
         return compile_rulebook(replace(book, rules=(rule,)))

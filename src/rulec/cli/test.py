@@ -95,11 +95,11 @@ def command(
 
 def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
+    from rulec.analysis.asking import run_examples
     from rulec.diagnostics import RulecError
     from rulec.report.console import print_diagnostics
     from rulec.runtime.exercise import unexercised
     from rulec.settings import search_path
-    from rulec.workflow.rulebooks import run_examples
 
     try:
         run = run_examples(rulebook, search_path(), pattern, at)

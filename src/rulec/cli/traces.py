@@ -78,8 +78,7 @@ def command(
     from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces
     from rulec.trace.tables import kinds_in
-    from rulec.workflow.rulebooks import machines
-    from rulec.workflow.scenarios import find_maneuvers, navigation_graph
+    from rulec.workflow import find_maneuvers, machines, navigation_graph
 
     scene = load_scenario(scenario, chosen(options))
     if rulebook is None:
@@ -131,7 +130,7 @@ def _write_drives(
     from rulec.scenario.recordings import read_recording
     from rulec.settings import search_path
     from rulec.trace.formats import format_of, write_traces
-    from rulec.workflow.rulebooks import machines
+    from rulec.workflow import machines
 
     if (option := _given_of_maneuvers(options)) is not None:
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")

@@ -60,7 +60,7 @@ class Diagnosis:
 
 
 def load_rulebook(
-    reference: str | Path, search_path: Sequence[Path] = (), at: str = ""
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> Rulebook:
     """A rulebook as meant.
 
@@ -80,7 +80,7 @@ def load_rulebook(
 
 def read_rulebook(
     reference: str | Path,
-    search_path: Sequence[Path] = (),
+    search_path: Sequence[str | Path] = (),
     at: str = "",
     traffic: Traffic = "",
 ) -> Loaded:
@@ -88,9 +88,10 @@ def read_rulebook(
 
     ``traffic``: read it as one for this side, whatever it says itself.
     """
-    path = find_rulebook(reference, search_path)
+    folders = [Path(folder) for folder in search_path]
+    path = find_rulebook(reference, folders)
     data = read_bytes(path)
-    return _load(decode(str(path), data), data, path, search_path, at, traffic)
+    return _load(decode(str(path), data), data, path, folders, at, traffic)
 
 
 def parse_rulebook(
