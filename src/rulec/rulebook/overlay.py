@@ -126,7 +126,11 @@ class _Layer:
                 if name.text not in self.result.definitions:
                     self._nothing(name, "definition", "redefine", self.result.definitions)
                 elif self._changes(name, "definition", "redefine"):
-                    self.result.definitions[name.text] = item
+                    before = self.result.definitions[name.text]
+                    if len(item.parameters) != len(before.parameters):
+                        self.result.mistakes.append(say.other_parameters(item, before))
+                    else:
+                        self.result.definitions[name.text] = item
             case tree.DropItem(name, because):
                 if self._inherited(name, "drop"):
                     del self.result.rules[name.text]

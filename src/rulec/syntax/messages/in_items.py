@@ -66,6 +66,8 @@ def advise_on_item(scene: Scene) -> str:
         return "a signal is true or false: write `default true` or `default false`"
     if scene.accepted == {"ON", "OFF"} and text in ("true", "false", "yes", "no"):
         return f"write `{'on' if text in ('true', 'yes') else 'off'}`"
+    if first in ("option", "set") and text == "in" and scene.text_before in ("on", "off"):
+        return "an option has no dates; a parameter and a rule may have them"
     if first == "priority" and text == "<" and scene.text_behind:
         return (
             "the more important one stands first: "
