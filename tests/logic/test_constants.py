@@ -53,7 +53,6 @@ def _parts(formula: Formula):
     ],
 )
 def test_what_is_left(written, expected):
-    book = parse_rulebook(
-        f"rulebook a\nsignal p\noption yes = on\noption no = off\nhard rule r {{ require {written} }}"
-    )
+    options = "option yes = on\noption no = off\n"
+    book = parse_rulebook(f"rulebook a\nsignal p\n{options}hard rule r {{ require {written} }}")
     assert in_words(folded(book.rules[0].formula)) == expected
