@@ -248,6 +248,11 @@ LINES = [
     ('silent on rule x because "y"', "rule", FORMS["silent"]),
     # Options, parameters, definitions.
     ("option x = true", "true", "write `on`"),
+    (
+        "fact (v: car) near(v)",
+        ":",
+        "leave the variables' types out: a fact is about all objects that fit its words",
+    ),
     ("option x on", "on", FORMS["option"]),
     ("param x 3 m", "3", FORMS["param"]),
     ("param x := 3 m", ":=", "write `=` for `:=`"),

@@ -57,6 +57,8 @@ def advise_on_item(scene: Scene) -> str:
         return dates
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
+    if first == "fact" and text == ":" and scene.text_at(1) == "(":
+        return "leave the variables' types out: a fact is about all objects that fit its words"
     if "ONE" in scene.accepted:
         return "the values stand behind `is one of`, such as `is one of a, b`"
     listed = text in (";", "|", "or", "and") or scene.is_word()
