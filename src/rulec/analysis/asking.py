@@ -56,4 +56,5 @@ def analyze_rulebook(
     above = [one.span.source.name for one in loaded.books[-2:-1]]
     # On the same side of the road: a treaty's near side is that of the party's traffic.
     bases = [read_rulebook(Path(file), folders, book.at, book.traffic).rulebook for file in above]
-    return findings(book, bases, tell)
+    extends = loaded.books[-1].extends
+    return findings(book, bases, tell, extends.span if extends else None)
