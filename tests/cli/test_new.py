@@ -73,3 +73,17 @@ def test_a_base_that_is_not_there(tmp_path, capsys):
     assert main(["new", "atlantis", "--extends", "esterle209", "-o", str(tmp_path)]) == 2
     assert "did you mean `esterle2019`?" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_base_by_its_path(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "upon", "--extends", "./base.rules"]) == 2
+    assert "--extends takes a name, such as `base`" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_with_the_end_of_its_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "atlantis.rules"]) == 0
+    assert capsys.readouterr().out.startswith("wrote atlantis.rules;")
+    assert "rulebook atlantis\n" in (tmp_path / "atlantis.rules").read_text()

@@ -225,6 +225,7 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
     assert status == 2
     assert out.endswith("14 examples: 14 passed, 0 failed\n")
     assert "error[R0703]: there is no rulebook `nope`" in err
+    assert run(capsys, "nope")[:2] == (2, "")
 
 
 @pytest.mark.parametrize(
