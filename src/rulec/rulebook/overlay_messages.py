@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.rulebook.declaration_messages import twice
 from rulec.syntax import tree
 from rulec.syntax.printer import print_parameters
@@ -13,6 +13,7 @@ __all__ = [
     "changed_twice",
     "inherited_name",
     "inherited_rule",
+    "lost_variables",
     "never_in_force",
     "nothing_to",
     "option_is_on_or_off",
@@ -132,6 +133,20 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
         expected=f"expected `{name}{print_parameters(before.parameters)}`",
         help="redefine it with the same parameters, or define something new by another name",
         labels=(Label(before.name.span.place, f"`{name}` is defined here"),),
+    )
+
+
+def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagnostic:
+    """An override without variables that the clauses which it inherits speak of."""
+    names = " and ".join(f"`{one.name.text}`" for one in lost)
+    first, last = item.variables[0].span, item.variables[-1].span
+    return Diagnostic(
+        "R0203",
+        f"what `{item.name.text}` inherits speaks of {names}, and here is no such variable",
+        Span(first.source, first.start, last.end).place,
+        expected=f"expected {names}",
+        help="call variables as they are called there, or write every clause and example anew",
+        labels=tuple(Label(one.span.place, f"`{one.name.text}` comes from here") for one in lost),
     )
 
 
