@@ -218,7 +218,8 @@ class _Layer:
             lost = _lost_variables(base.item, item)
             if lost:
                 self.result.mistakes.append(say.lost_variables(item, lost))
-                after = replace(after, variables=(*after.variables, *lost), complete=False)
+                variables = (*after.variables, *lost)
+                after = replace(after, variables=variables, examples=item.examples, complete=False)
             self.result.rules[item.name.text] = RuleEntry(
                 after,
                 self.file,
