@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario import load_scenario as load_scenario
     from rulec.trace import Trace as Trace
-    from rulec.workflow import compile_rulebook as compile_rulebook
-    from rulec.workflow import find_maneuvers as find_maneuvers
-    from rulec.workflow import judge_recording as judge_recording
-    from rulec.workflow import load_rulebook as load_rulebook
-    from rulec.workflow import navigation_graph as navigation_graph
-    from rulec.workflow import read_traces as read_traces
+    from rulec.workflow.rulebooks import compile_rulebook as compile_rulebook
+    from rulec.workflow.rulebooks import load_rulebook as load_rulebook
+    from rulec.workflow.scenarios import find_maneuvers as find_maneuvers
+    from rulec.workflow.scenarios import navigation_graph as navigation_graph
+    from rulec.workflow.traces import judge_recording as judge_recording
+    from rulec.workflow.traces import read_traces as read_traces
 
 _HOME = {
     "CompiledRulebook": "rulec.automata.compiled",
@@ -50,13 +50,13 @@ _HOME = {
     "Scenario": "rulec.scenario",
     "Trace": "rulec.trace",
     "Verdict": "rulec.runtime.verdict",
-    "compile_rulebook": "rulec.workflow",
-    "find_maneuvers": "rulec.workflow",
-    "judge_recording": "rulec.workflow",
-    "load_rulebook": "rulec.workflow",
+    "compile_rulebook": "rulec.workflow.rulebooks",
+    "find_maneuvers": "rulec.workflow.scenarios",
+    "judge_recording": "rulec.workflow.traces",
+    "load_rulebook": "rulec.workflow.rulebooks",
     "load_scenario": "rulec.scenario",
-    "navigation_graph": "rulec.workflow",
-    "read_traces": "rulec.workflow",
+    "navigation_graph": "rulec.workflow.scenarios",
+    "read_traces": "rulec.workflow.traces",
     "verify": "rulec.runtime.verify",
     "verify_many": "rulec.runtime.batch.verifying",
 }

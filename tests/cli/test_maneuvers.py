@@ -6,7 +6,8 @@ import pytest
 
 from rulec.cli.main import main
 from rulec.runtime.monitor import Monitor
-from rulec.workflow import compile_rulebook, find_maneuvers
+from rulec.workflow.rulebooks import compile_rulebook
+from rulec.workflow.scenarios import find_maneuvers
 
 
 def answer(capsys, *arguments):

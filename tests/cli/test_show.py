@@ -9,7 +9,7 @@ import pytest
 from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.examples import run_all
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 TWO = """\
 rulebook two

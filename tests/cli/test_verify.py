@@ -92,9 +92,11 @@ def test_a_long_formula_is_folded_unless_all_of_it_is_wanted(tmp_path, capsys):
     out = capsys.readouterr().out
     rows = [row.split() for row in out.splitlines()]
     assert rows.count([names[5], "F", "T*"]) == rows.count([names[5], "F", "T"]) == 1
-    assert names[9] not in out
     # 14 facts and 1 + 13 + 14 parts, of which the fact and three parts are left.
-    assert out.splitlines()[-2] == "    … without 38 of 42 rows: --every-part shows them"
+    *table, without, repair, _ = out.splitlines()
+    assert names[9] not in "".join(table)
+    assert without == "    … without 38 of 42 rows: --every-part shows them"
+    assert repair == f"    kept if state 1 says: not {names[5]} and not {names[9]}"
     assert max(map(len, out.splitlines())) <= 100
     assert main(["verify", str(traces), "-r", str(book), "--every-part"]) == 1
     out = capsys.readouterr().out
@@ -119,6 +121,7 @@ def test_explanations_as_data(verify):
     assert facts == {"CONGESTED": [False] * 4, "position(v1)": ["b", "r", "r", "f"]}
     assert explanation["parts"][0]["depth"] == 0
     assert explanation["parts"][0]["values"][0] is False
+    assert explanation["repair"] == [{"state": 3, "says": "not f(v)"}]
 
 
 def test_a_bad_trace_never_hides_the_good_ones(verify):

@@ -16,12 +16,9 @@ from rulec.rulebook.loader import diagnose, parse_rulebook
 from rulec.runtime.exercise import unexercised
 from rulec.runtime.verify import judge
 from rulec.scenario.read import read_scenario
-from rulec.workflow import (
-    compile_rulebook,
-    find_maneuvers,
-    read_traces,
-    run_examples,
-)
+from rulec.workflow.rulebooks import compile_rulebook, run_examples
+from rulec.workflow.scenarios import find_maneuvers
+from rulec.workflow.traces import read_traces
 
 CODE = re.compile(r"\[(R\d{4})\]")
 

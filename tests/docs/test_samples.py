@@ -10,7 +10,7 @@ from rulec.automata.compiled_file import to_json
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.examples import run_all
 from rulec.runtime.verify import run
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

@@ -9,7 +9,7 @@ import pytest
 from rulec.partition import navigation_graph
 from rulec.scenario import available_scenarios, load_scenario, schema
 from rulec.scenario.model import SURFACES
-from rulec.workflow import find_maneuvers
+from rulec.workflow.scenarios import find_maneuvers
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")

@@ -13,7 +13,7 @@ from rulec.drives.wanted import Wanted
 from rulec.runtime.verdict import Verdict
 from rulec.runtime.verify import verify
 from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.workflow.rulebooks import machines
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))

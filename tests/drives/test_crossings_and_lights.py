@@ -9,7 +9,7 @@ from roads import lanelet, recording, straight, vehicle
 from rulec.drives.extract import Drives
 from rulec.drives.thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
-from rulec.workflow import machines
+from rulec.workflow.rulebooks import machines
 
 STEP_S = 0.5
 GERMAN = machines("de")

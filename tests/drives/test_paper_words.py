@@ -5,7 +5,7 @@ from judged import violated
 from roads import lanelet, recording, straight, vehicle
 
 from rulec.drives.extract import Drives
-from rulec.workflow import machines
+from rulec.workflow.rulebooks import machines
 
 STEP_S = 0.5
 PAPER = machines("esterle2019")

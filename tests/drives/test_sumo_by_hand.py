@@ -10,7 +10,7 @@ from sumo_files import SUMO
 
 from rulec.drives.judging import JudgedRecording, Wanted
 from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.workflow.rulebooks import machines
 
 FILE = SUMO / "fcd.xml.gz"
 if not FILE.exists():

@@ -7,7 +7,7 @@ from sumo_files import ROAD_NET, body, data, moment, written
 
 from rulec.drives.judging import JudgedRecording, Wanted
 from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.workflow.rulebooks import machines
 
 STEP_S = 0.5
 KERB, FAR = -4.8, -1.6

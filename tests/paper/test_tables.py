@@ -9,7 +9,7 @@ from rulec.rulebook.loader import load_rulebook
 from rulec.runtime.examples import example_trace
 from rulec.runtime.verify import verify
 from rulec.trace import Trace
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 RULES = compile_rulebook("esterle2019")
 SOURCE = load_rulebook("esterle2019")

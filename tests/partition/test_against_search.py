@@ -12,7 +12,8 @@ from rulec.runtime.instances import instances
 from rulec.runtime.product import count_paths, explore
 from rulec.runtime.verify import verify
 from rulec.trace.paths import all_traces
-from rulec.workflow import compile_rulebook, navigation_graph
+from rulec.workflow.rulebooks import compile_rulebook
+from rulec.workflow.scenarios import navigation_graph
 
 PAPER = compile_rulebook("esterle2019")
 FINE = compile_rulebook(

@@ -25,7 +25,7 @@ from rulec.runtime.verify import verify
 from rulec.scenario import Alternative, ConstantAcceleration, Ego, Obstacle, Road, Scenario
 from rulec.trace import Trace
 from rulec.trace.paths import paths
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 PAPER = compile_rulebook("esterle2019")
 FINE = compile_rulebook(

@@ -12,7 +12,7 @@ from random_scenarios import scenarios
 from rulec.diagnostics import RulecError
 from rulec.partition import envelope, navigation_graph
 from rulec.report.envelope_table import COLUMNS, stretches, write_envelopes
-from rulec.workflow import find_maneuvers
+from rulec.workflow.scenarios import find_maneuvers
 
 
 @given(scenarios())

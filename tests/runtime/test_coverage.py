@@ -10,7 +10,7 @@ from rulec.report.examples import missing_example
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.coverage import coverage, percent
 from rulec.runtime.examples import run_all
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 HEAD = """rulebook sample
 type t

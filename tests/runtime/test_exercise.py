@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from rulec.rulebook.loader import parse_rulebook
 from rulec.runtime.examples import run_all
 from rulec.runtime.exercise import unexercised, verdicts
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"
 

@@ -15,7 +15,8 @@ from rulec.maneuvers import judged, partition_for
 from rulec.runtime.penalties import Rank, ranks_of
 from rulec.runtime.verify import verify
 from rulec.trace.paths import paths, trace_of
-from rulec.workflow import compile_rulebook, navigation_graph
+from rulec.workflow.rulebooks import compile_rulebook
+from rulec.workflow.scenarios import navigation_graph
 
 
 def penalty(rulebook, graph, path):

@@ -13,7 +13,7 @@ from rulec.runtime.penalties import ranks_of
 from rulec.runtime.product import explore
 from rulec.runtime.ranking import front, ranked, with_penalty
 from rulec.runtime.room import room_for
-from rulec.workflow import navigation_graph
+from rulec.workflow.scenarios import navigation_graph
 
 GRAPHS = graphs(objects=("car1", "car2"))
 

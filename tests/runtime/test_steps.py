@@ -16,7 +16,8 @@ from rulec.runtime.verdict import NotJudged, Verdict
 from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
-from rulec.workflow import compile_rulebook, find_maneuvers, machines
+from rulec.workflow.rulebooks import compile_rulebook, machines
+from rulec.workflow.scenarios import find_maneuvers
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.analysis.audit_kinds import KINDS
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+from rulec.cli.arguments import at_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def _audit(rulebook: str, run: bool, at: str) -> Audit:
     """The audit, after its warnings."""
     from rulec.report.console import print_diagnostics
     from rulec.settings import search_path
-    from rulec.workflow import audit_rulebook
+    from rulec.workflow.rulebooks import audit_rulebook
 
     return audit_rulebook(rulebook, search_path(), at, print_diagnostics, run=run)
 

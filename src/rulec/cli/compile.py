@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, seconds
+from rulec.cli.arguments import at_option, seconds
+from rulec.cli.completing import complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
 
@@ -38,7 +39,7 @@ def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> Non
     """
     from rulec.automata.compiled_file import write_compiled
     from rulec.settings import search_path
-    from rulec.workflow import compile_rulebook
+    from rulec.workflow.rulebooks import compile_rulebook
 
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")

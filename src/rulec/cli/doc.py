@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+from rulec.cli.arguments import at_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 
 FORMATS = ("html", "markdown")
 

@@ -8,14 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    at_option,
-    chosen,
-    graph_options,
-    output_option,
-    rulebook_option,
-)
+from rulec.cli.arguments import at_option, output_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
     from rulec.trace.formats import Format
@@ -63,7 +58,8 @@ def command(
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
     from rulec.trace.formats import format_of
-    from rulec.workflow import find_maneuvers, machines
+    from rulec.workflow.rulebooks import machines
+    from rulec.workflow.scenarios import find_maneuvers
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     scene = load_scenario(scenario, chosen(options))

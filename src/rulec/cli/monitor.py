@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, json_option, seconds
+from rulec.cli.arguments import at_option, json_option, seconds
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 
@@ -61,7 +62,7 @@ def command(
     from rulec.runtime.online.file import read_saved, saved_at_the_end, step_of
     from rulec.settings import search_path
     from rulec.trace.live import read_live
-    from rulec.workflow import compile_rulebook
+    from rulec.workflow.rulebooks import compile_rulebook
 
     saved = None if restore is None else read_saved(restore)
     step_s = step_s or step_of(saved)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import complete_rulebooks
+from rulec.cli.completing import complete_rulebooks
 
 
 @click.command()

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, complete_rules, json_option
+from rulec.cli.arguments import at_option, json_option
+from rulec.cli.completing import complete_rulebooks, complete_rules
 
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook
@@ -157,7 +158,7 @@ def _names(book: Rulebook) -> str:
 
 def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
     """The rulebook with this rule alone, compiled."""
-    from rulec.workflow import compile_rulebook
+    from rulec.workflow.rulebooks import compile_rulebook
 
     if compiled is None:
         return compile_rulebook(replace(book, rules=(rule,)))

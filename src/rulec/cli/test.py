@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks
+from rulec.cli.arguments import at_option
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     from rulec.report.console import print_diagnostics
     from rulec.runtime.exercise import unexercised
     from rulec.settings import search_path
-    from rulec.workflow import run_examples
+    from rulec.workflow.rulebooks import run_examples
 
     try:
         run = run_examples(rulebook, search_path(), pattern, at)

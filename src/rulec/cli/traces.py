@@ -10,14 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    chosen,
-    complete_rulebooks,
-    graph_options,
-    output_option,
-    traces_format_option,
-)
+from rulec.cli.arguments import output_option, traces_format_option
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.recorded_arguments import drives_options, given, wanted
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -82,7 +78,8 @@ def command(
     from rulec.trace.formats import format_of, write_traces
     from rulec.trace.paths import all_traces
     from rulec.trace.tables import kinds_in
-    from rulec.workflow import find_maneuvers, machines, navigation_graph
+    from rulec.workflow.rulebooks import machines
+    from rulec.workflow.scenarios import find_maneuvers, navigation_graph
 
     scene = load_scenario(scenario, chosen(options))
     if rulebook is None:
@@ -134,7 +131,7 @@ def _write_drives(
     from rulec.scenario.recordings import read_recording
     from rulec.settings import search_path
     from rulec.trace.formats import format_of, write_traces
-    from rulec.workflow import machines
+    from rulec.workflow.rulebooks import machines
 
     if (option := _given_of_maneuvers(options)) is not None:
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")

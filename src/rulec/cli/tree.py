@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, json_option, only_sources
+from rulec.cli.arguments import at_option, json_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 
 if TYPE_CHECKING:
     from rulec.analysis.history import Inheritance, Member

@@ -84,7 +84,7 @@ def command(
     from rulec.report.console import Complaints, print_diagnostics
     from rulec.scenario.recordings import is_recording
     from rulec.settings import search_path
-    from rulec.workflow import machines
+    from rulec.workflow.rulebooks import machines
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     recordings = [file for file in files if is_recording(file)]
@@ -165,7 +165,7 @@ class _Run:
         from rulec.report.console import print_result, progress
         from rulec.runtime.explanation import explain
         from rulec.runtime.verdict import NotJudged, Verdict
-        from rulec.workflow import judge_recording
+        from rulec.workflow.traces import judge_recording
 
         try:
             judged = judge_recording(Path(file), self.rules, wanted, net)

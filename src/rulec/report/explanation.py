@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
+from itertools import groupby
+from operator import itemgetter
 from textwrap import wrap
 from typing import Any
 
 import click
 
 from rulec.logic.printing import number_in_words
+from rulec.report.conditions import Wording, runs
 from rulec.report.excerpt import visible
 from rulec.report.folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.runtime.explanation import Explanation, Fact
@@ -28,6 +31,12 @@ NARROW = 48
 
 WIDEST_NUMBER = 20
 """A longer number is rounded."""
+
+MOST_CHANGES = 6
+"""So many different changes are shown that would have kept the rule."""
+
+MOST_SPANS = 12
+"""So many stretches of states that would have to say the same are listed."""
 
 MOST_OF_NAMES = 16
 """So many characters of the names of counted objects are shown; JSON has them all."""
@@ -54,6 +63,8 @@ def as_data(explanation: Explanation) -> dict[str, Any]:
             }
             for part in explanation.parts
         ],
+        "repair": explanation.repair
+        and [{"state": number, "says": says} for number, says in _repaired(explanation)],
     }
 
 
@@ -89,7 +100,40 @@ def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
         if row in (0, table.n_facts):
             rule = "─" * (table.title_width + 1 + sum(widths) + 2 * len(widths))
             lines.append(f"{INDENT}{rule}")
-    return "\n".join([*lines, *_left_out(explanation, table)])
+    return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation)])
+
+
+def _repair(explanation: Explanation) -> Iterator[str]:
+    """The least that would have had to be otherwise."""
+    if explanation.repair is None:
+        yield f"{INDENT}no trace of as many states keeps it"
+    changes = [
+        (_states(list(run)), visible(says))
+        for says, run in groupby(_repaired(explanation), key=itemgetter(1))
+    ]
+    for number, (states, says) in enumerate(changes[:MOST_CHANGES]):
+        line = f"{'and' if number else 'kept'} if {states}: {says}"
+        yield from wrap(line, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    if len(changes) > MOST_CHANGES:
+        yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
+
+
+def _states(run: Sequence[tuple[int, str]]) -> str:
+    """Which states have to say the same."""
+    numbers = [number for number, _ in run]
+    if len(numbers) == 1:
+        return f"state {numbers[0]} says"
+    spans = [f"{one[0]}-{one[-1]}" if len(one) > 1 else str(one[0]) for one in runs(numbers)]
+    if len(spans) > MOST_SPANS:
+        spans[MOST_SPANS:] = [f"… ({len(spans) - MOST_SPANS:,} more)"]
+    return f"states {', '.join(spans)} say"
+
+
+def _repaired(explanation: Explanation) -> Iterator[tuple[int, str]]:
+    """States by their numbers, and what they would have had to say."""
+    wording = Wording(explanation.rule, explanation.vocabulary)
+    for change in explanation.repair or ():
+        yield change.place, wording.condition(change.cubes)
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.machine import Machine, NumberRead
 from rulec.logic.deciding import deciding_instants
 from rulec.logic.formula import (
     Atom,
@@ -18,13 +19,14 @@ from rulec.logic.formula import (
     Unary,
     atoms_of,
 )
-from rulec.logic.one_state import Unknown, counted, holds
+from rulec.logic.one_state import Unknown, counted, holds, total
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
 from rulec.logic.timing import in_steps
 from rulec.runtime.binding import Binding, bindings
 from rulec.runtime.moment import Moment
 from rulec.runtime.numbers import exact
+from rulec.runtime.repair import Change, nearest_kept
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import columns_of
 from rulec.trace import Trace, Value
@@ -75,6 +77,8 @@ class Explanation:
     ``states`` are the numbers of the states that are shown, ``decisive`` is the one after which
     nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
     each of ``states``; the first part is the formula itself, each stands before what it is made of.
+    ``repair`` is what states would have had to say for the rule to be kept, their places being
+    their numbers in the trace; None if nothing would have helped.
     """
 
     rule: CompiledRule
@@ -83,6 +87,8 @@ class Explanation:
     decisive: int
     facts: tuple[Fact, ...]
     parts: tuple[Part, ...]
+    repair: tuple[Change, ...] | None
+    vocabulary: Vocabulary
 
 
 def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
@@ -114,7 +120,14 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
         decisive,
         tuple(_facts(truths, decides, seen)),
         tuple(_parts(rule.formula, formula, values, decides, seen, 0)),
+        _repair(rule.machine, seen, binding.first),
+        rulebook.vocabulary,
     )
+
+
+def _repair(machine: Machine, seen: _Seen, first: int) -> tuple[Change, ...] | None:
+    found = nearest_kept(machine, [seen.letter(machine, moment) for moment in seen.moments])
+    return found and tuple([replace(one, place=first + one.place) for one in found])
 
 
 def _binding(
@@ -153,6 +166,21 @@ class _Seen:
         items = tuple(self.bound[variable] for variable in arguments)
         found = [moment.value(name, items) for moment in self.moments]
         return [value for value in found if not isinstance(value, Unknown)]
+
+    def letter(self, machine: Machine, moment: Moment) -> tuple[int, ...]:
+        """What a machine reads of a moment, digit by digit."""
+        digits = []
+        for read in machine.reads:
+            if isinstance(read, NumberRead):
+                number = total(read.terms, self.bound, moment)
+                assert not isinstance(number, Unknown), "verify has read it"
+                digits.append(read.digit(number))
+            else:
+                items = tuple([self.bound[variable] for variable in read.variables])
+                value = moment.value(read.name, items)
+                assert not isinstance(value, Unknown), "verify has read it"
+                digits.append(read.digit(value))
+        return tuple(digits)
 
     def counted(self, term: Count) -> list[tuple[str, ...]]:
         """The objects that count in each moment."""

@@ -8,7 +8,7 @@ from rulec.report.pictures.graph import graph_picture
 from rulec.report.pictures.marks import Area, Line, Words
 from rulec.runtime.passages import passages
 from rulec.trace.paths import paths
-from rulec.workflow import find_maneuvers
+from rulec.workflow.scenarios import find_maneuvers
 
 
 def drawn(scenario, maneuver=None, **options):

@@ -7,7 +7,7 @@ from rulec.report.pictures.ribbon import Run, ribbon
 from rulec.report.pictures.ribbon_picture import ribbon_picture
 from rulec.runtime.verify import verify
 from rulec.trace import Trace
-from rulec.workflow import compile_rulebook
+from rulec.workflow.rulebooks import compile_rulebook
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from rulec.report.pictures.marks import Area, Line, Words
 from rulec.report.pictures.scene import scene_legend, scene_pictures
 from rulec.report.pictures.signatures import in_letters
 from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
-from rulec.workflow import find_maneuvers
+from rulec.workflow.scenarios import find_maneuvers
 
 CELLS = ("cell", "crossing", "chosen")
 

@@ -11,7 +11,8 @@ from rulec.scenario import load_scenario
 from rulec.scenario.recorded.choice import Choice
 from rulec.scenario.recorded.convert import to_scenario
 from rulec.scenario.recordings import read_recording
-from rulec.workflow import compile_rulebook, find_maneuvers, navigation_graph
+from rulec.workflow.rulebooks import compile_rulebook
+from rulec.workflow.scenarios import find_maneuvers, navigation_graph
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))

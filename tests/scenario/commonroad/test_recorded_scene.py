@@ -8,7 +8,7 @@ from roads import RECORDINGS
 
 from rulec.scenario import Choice, load_scenario
 from rulec.scenario.motion import swept
-from rulec.workflow import find_maneuvers
+from rulec.workflow.scenarios import find_maneuvers
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILE = RECORDINGS / "USA_US101-1_1_T-1.xml"

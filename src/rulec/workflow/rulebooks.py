@@ -1,39 +1,24 @@
-"""The whole of rulec on one page.
-
-    source text -> syntax -> rulebook -> logic -> automata -> runtime -> verdicts
-    scenario -> partition -> graph of traces ----------------^
-
-The command line and ``import rulec`` are thin layers over these functions.
-"""
+"""From a rulebook's source to automata, to its examples' verdicts, and to what it rests on."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rulec.automata.compiled import CompiledRulebook
-from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.files import opened
+from rulec.diagnostics import Diagnostic
 from rulec.logic.timing import speaks_of_seconds
-from rulec.maneuvers import Maneuvers, judged, partition_for
 from rulec.runtime.numbers import exact
 from rulec.runtime.verify import check_step
-from rulec.trace import Trace
 
 if TYPE_CHECKING:
     from rulec.analysis.audit import Audit
     from rulec.automata.any_step import AnyStep
-    from rulec.drives.judging import JudgedRecording
-    from rulec.drives.wanted import Wanted
-    from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName
     from rulec.rulebook.model import Rulebook
-    from rulec.runtime.before import Before
     from rulec.runtime.examples import ExampleRun
-    from rulec.scenario import Scenario
-    from rulec.scenario.recorded.recording import Recording
 
 
 def load_rulebook(
@@ -151,121 +136,3 @@ def audit_rulebook(
     outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
     failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
     return audit(loaded.rulebook, inherited, failing)
-
-
-def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """The traces of a file one by one; in place of a bad one, what is wrong with it.
-
-    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
-    """
-    from rulec.trace.formats import format_of, read_chunks
-
-    with opened(Path(path)) as stream:
-        for chunk in read_chunks(stream, str(path), format_of(str(path))):
-            yield from chunk
-
-
-def judge_recording(
-    recording: str | Path | Recording,
-    rulebook: str | Path | Rulebook | CompiledRulebook | AnyStep,
-    wanted: Wanted | None = None,
-    net: str | Path | None = None,
-) -> JudgedRecording:
-    """What the vehicles of recorded traffic did, given by path or itself, judged by a rulebook.
-
-    ``net`` is for SUMO's data. Raises RulecError.
-    """
-    from rulec.drives.judging import JudgedRecording
-    from rulec.drives.wanted import Wanted
-    from rulec.scenario.recordings import read_recording
-
-    if isinstance(recording, str | Path):
-        file = str(recording)
-        recording = read_recording(Path(file), None if net is None else Path(net))
-    else:
-        file = recording.name
-    return JudgedRecording(recording, machines(rulebook), wanted or Wanted(), file)
-
-
-def read_past(path: Path) -> Before:
-    """The one trace of a file, or a saved monitor's snapshot (.json). Raises RulecError."""
-    from rulec.runtime.before import only_trace
-    from rulec.runtime.online.file import read_saved
-
-    if path.suffix == ".json":
-        saved: Mapping[str, Any] = read_saved(path)
-        return saved
-    return only_trace(read_traces(path), Place(str(path)))
-
-
-def navigation_graph(
-    scenario: str | Path | Scenario,
-    *,
-    partition: PartitionName = "paper",
-    adjacency: AdjacencyName = "touch",
-    extent: ExtentName = "lane",
-    step_s: float | None = None,
-    horizon_s: float | None = None,
-) -> NavigationGraph:
-    """Partition a scenario, given by name, by path or itself, into cells and their graph.
-
-    In a recorded scene the step, unless given, is the longest one that leaves ego a place to start.
-    """
-    from rulec.partition import navigation_graph as build
-    from rulec.scenario import Scenario, load_scenario
-
-    if not isinstance(scenario, Scenario):
-        scenario = load_scenario(scenario)
-    if step_s is None and scenario.account is not None:
-        step_s = _longest_step(scenario, partition, extent, horizon_s)
-    return build(
-        scenario,
-        partition=partition,
-        adjacency=adjacency,
-        extent=extent,
-        step_s=step_s,
-        horizon_s=horizon_s,
-    )
-
-
-def _longest_step(
-    scenario: Scenario, partition: PartitionName, extent: ExtentName, horizon_s: float | None
-) -> float | None:
-    """The scenario's own step, or the half of it, and so on; None if none will do."""
-    from rulec.partition.start import step_that_leaves_room
-    from rulec.scenario.timing import timing
-
-    times = timing(scenario.horizon_s if horizon_s is None else horizon_s, scenario.step_s)
-    found = step_that_leaves_room(scenario, times, partition, extent)
-    return None if found is None else float(found.step)
-
-
-def find_maneuvers(
-    scenario: str | Path | Scenario,
-    rulebook: str | Path | Rulebook | CompiledRulebook | AnyStep,
-    *,
-    partition: PartitionName | None = None,
-    adjacency: AdjacencyName = "touch",
-    extent: ExtentName = "lane",
-    step_s: float | None = None,
-    horizon_s: float | None = None,
-    after: Before | None = None,
-) -> Maneuvers:
-    """Algorithm 1 of the paper, counting instead of enumerating.
-
-    ``partition``: the one whose relations the rulebook reads, unless given. ``after``: what was
-    before, up to one step before the scenario begins: a trace, a ``Monitor`` that has taken one, or
-    its snapshot. Raises RulecError.
-    """
-    rules = machines(rulebook)
-    source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
-    graph = navigation_graph(
-        scenario,
-        partition=partition_for(source, partition),
-        adjacency=adjacency,
-        extent=extent,
-        step_s=step_s,
-        horizon_s=horizon_s,
-    )
-    compiled = rules if isinstance(rules, CompiledRulebook) else rules(graph.step)
-    return judged(graph, compiled, after)
