@@ -7,7 +7,7 @@ import pytest
 
 from rulec.cli.main import main
 from rulec.report.audits import render
-from rulec.workflow import audit_rulebook
+from rulec.workflow.rulebooks import audit_rulebook
 
 CLEAN = """\
 rulebook clean
