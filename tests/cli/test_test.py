@@ -191,7 +191,7 @@ def test_an_example_of_a_rule_that_an_option_switches_off(capsys, tmp_path, monk
     )
     status, out, _ = run(capsys, "a.rules")
     assert status == 1
-    assert "= help: the condition of the rule is false as options are set" in out
+    assert "= help: the rule's condition is false as options are set" in out
 
 
 def test_a_proposed_example_leaves_out_what_has_its_default(capsys, tmp_path, monkeypatch):

@@ -70,8 +70,8 @@ def failure(one: Outcome, rulebook: str) -> Diagnostic:
     problem = replace(surprise(one), severity="error")
     rule = one.rule
     if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
-        way_out = "the condition of the rule is false as options are set: set them, or leave it out"
-        return replace(problem, help=way_out)
+        why = "the rule's condition is false as options are set"
+        return replace(problem, help=f"{why}: set them, or leave the example out")
     stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
     if rule.book == rulebook and len(set(stands_in)) < 2:
         return problem
