@@ -249,3 +249,19 @@ def test_control_characters_are_not_passed_on(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     assert main(["show", "esterle2019", "R1"]) == 0
     assert not re.search(r"[\x00-\x09\x0b-\x1f]", capsys.readouterr().out)
+
+
+def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rules").write_text(
+        "rulebook a\nsignal p, q\noption yes = on\noption no = off\n"
+        "hard rule A { require never (yes and p) unless no and q unless yes and q }\n"
+        "hard rule B { require never p when no }\n"
+    )
+    assert main(["show", "./a.rules"]) == 0
+    out = capsys.readouterr().out
+    assert (
+        "  It never happens that “p” holds.\n"
+        "  It does not count if, throughout the stretch that the rule guards, “q” holds.\n"
+    ) in out
+    assert "  It never counts, for its condition is false as options are set.\n" in out

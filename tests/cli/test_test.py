@@ -183,6 +183,17 @@ def test_an_inherited_example_is_mended_by_an_override(capsys, tmp_path, monkeyp
     assert out.count("the example is inherited") == 2
 
 
+def test_an_example_of_a_rule_that_an_option_switches_off(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rules").write_text(
+        "rulebook a\nuse road\noption season = off\n"
+        "hard rule A { require never icy when season accept { wet } reject { icy } }\n"
+    )
+    status, out, _ = run(capsys, "a.rules")
+    assert status == 1
+    assert "= help: the rule's condition is false as options are set" in out
+
+
 def test_a_proposed_example_leaves_out_what_has_its_default(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.rules").write_text(
@@ -225,6 +236,7 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
     assert status == 2
     assert out.endswith("14 examples: 14 passed, 0 failed\n")
     assert "error[R0703]: there is no rulebook `nope`" in err
+    assert run(capsys, "nope")[:2] == (2, "")
 
 
 @pytest.mark.parametrize(

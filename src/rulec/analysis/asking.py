@@ -93,7 +93,6 @@ def analyze_rulebook(
     book = loaded.rulebook
     above = [one.span.source.name for one in loaded.books[-2:-1]]
     # On the same side of the road: a treaty's near side is that of the party's traffic.
-    bases = [
-        read_rulebook(Path(file), search_path, book.at, book.traffic).rulebook for file in above
-    ]
-    return findings(book, bases, tell)
+    bases = [read_rulebook(Path(one), search_path, book.at, book.traffic) for one in above]
+    extends = loaded.books[-1].extends
+    return findings(book, [one.rulebook for one in bases], tell, extends.span if extends else None)

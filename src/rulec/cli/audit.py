@@ -63,14 +63,14 @@ def command(
     """
     from rulec.analysis.audit import compared
     from rulec.report.audits import render
-    from rulec.report.console import print_result
+    from rulec.report.console import page_width, print_result
 
     only_sources(rulebooks, "be audited")
     older = None if compare is None else _older(compare, run, at)
     audits = [done for one in rulebooks if (done := _audit_or_say(one, run, at)) is not None]
     against = {} if older is None else compared(audits, older)
     if audits or output_format == "json":
-        print_result(render(audits, against, output_format))
+        print_result(render(audits, against, output_format, page_width()))
     if len(audits) < len(rulebooks):
         return ExitStatus.NOT_ANSWERED
     found = [

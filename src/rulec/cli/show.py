@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,10 +22,6 @@ SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
 
 OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
 """Ends of names of pictures that are not drawn."""
-
-
-WIDTH = 100
-"""The width of a page that goes to no terminal."""
 
 
 @click.command()
@@ -62,7 +56,7 @@ def command(
     rule is shown in brief, a rulebook's only one in full.
     """
     from rulec.report import rule_page
-    from rulec.report.console import put_result
+    from rulec.report.console import PAGE_WIDTH, page_width, put_result
 
     if output is not None and automaton_format is None and not json_output:
         if Path(output).suffix.lower() in OTHERS:
@@ -72,7 +66,7 @@ def command(
         raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
     book, compiled = _read(rulebook, at)
     chosen = _chosen(book, rule, rulebook)
-    width = _width(output)
+    width = page_width() if output is None else PAGE_WIDTH
     if chosen is None and automaton_format is not None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = None
@@ -186,9 +180,3 @@ def _automaton(automaton: Automaton, output_format: str, name: str, width: int) 
             "yourself from --automaton dot"
         )
     return automaton_svg.as_svg(automaton, name)
-
-
-def _width(output: str | None) -> int:
-    if output is not None or not sys.stdout.isatty():
-        return WIDTH
-    return max(40, shutil.get_terminal_size((WIDTH, 24)).columns)

@@ -83,7 +83,8 @@ def command(
     runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
-    print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
+    if runs or output_format != "full":
+        print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_aside(f"rulec: {sentence}")

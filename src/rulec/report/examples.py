@@ -8,7 +8,8 @@ from dataclasses import replace
 import click
 
 from rulec.diagnostics import Diagnostic
-from rulec.logic.formula import Atom
+from rulec.logic.constants import folded
+from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import in_words, number_in_words
 from rulec.report.diagnostics import render_diagnostics
 from rulec.report.excerpt import visible
@@ -68,6 +69,9 @@ def failure(one: Outcome, rulebook: str) -> Diagnostic:
     """The error about an example that fails in a rulebook, which may have inherited it."""
     problem = replace(surprise(one), severity="error")
     rule = one.rule
+    if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
+        why = "the rule's condition is false as options are set"
+        return replace(problem, help=f"{why}: set them, or leave the example out")
     stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
     if rule.book == rulebook and len(set(stands_in)) < 2:
         return problem

@@ -102,7 +102,7 @@ def _wanted(declaration: Declaration) -> str:
         case Signal():
             return "it is true or false"
         case Quantity():
-            return f"it is a number, in {declaration.unit}"
+            return f"it is a finite number, in {declaration.unit}"
 
 
 def _nearest_value(value: Any, declaration: Declaration) -> str:

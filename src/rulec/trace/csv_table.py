@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
-from typing import IO
+from typing import IO, cast
 
 from rulec.diagnostics import Place, RulecError
 from rulec.trace.chunks import in_chunks
@@ -48,10 +48,11 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
 
 def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
     """Why a file that begins like this is no table at all, if that is so."""
-    if not stream.seekable():
-        return None
-    beginning = stream.read(_LONGEST_HEAD_BYTES)
-    stream.seek(-len(beginning), io.SEEK_CUR)
+    if stream.seekable():
+        beginning = stream.read(_LONGEST_HEAD_BYTES)
+        stream.seek(-len(beginning), io.SEEK_CUR)
+    else:
+        beginning = cast("io.BufferedReader", stream).peek()
     found = foreign(beginning)
     if found is not None:
         return problem(f"this is no CSV, but {found.noun}", Place(file), found.help)
@@ -120,7 +121,7 @@ def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
                 yield number, cells
             number = before + lines.line_num + 1
     except UnicodeDecodeError as reason:
-        raise _not_utf8(stream, file, reason) from None
+        raise _not_utf8(stream, Place(file, number), reason) from None
     except csv.Error as reason:
         words = next((ours for theirs, ours in _WORDS.items() if theirs in str(reason)), reason)
         message = f"from here on the file cannot be read as CSV: {words}"
@@ -146,17 +147,19 @@ def _without_null(text: Iterable[str]) -> Iterator[str]:
         yield line
 
 
-def _not_utf8(stream: IO[bytes], file: str, reason: UnicodeDecodeError) -> RulecError:
-    """Which byte of which line, if the stream can be read again."""
-    byte, place = reason.object[reason.start], Place(file)
+def _not_utf8(stream: IO[bytes], place: Place, reason: UnicodeDecodeError) -> RulecError:
+    """Which byte of which line; of a pipe, which cannot be read again, behind which place."""
+    byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
         stream.seek(0)
         for number, line in enumerate(stream, 1):
             at = not_utf8(line)
             if at is not None:
-                byte, place = line[at], placed(Place(file, number), line.rstrip(b"\n"), at)
+                byte, where = line[at], ""
+                place = placed(Place(place.file, number), line.rstrip(b"\n"), at)
                 break
-    return problem(f"the byte 0x{byte:02x} is not UTF-8", place, "save the file in UTF-8")
+    message = f"{where}the byte 0x{byte:02x} is not UTF-8"
+    return problem(message, place, "save the file in UTF-8")
 
 
 def _value(cell: str) -> Value:
