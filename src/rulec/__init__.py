@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rulec.diagnostics import RulecError as RulecError
     from rulec.maneuvers import Maneuvers as Maneuvers
     from rulec.partition import NavigationGraph as NavigationGraph
+    from rulec.rulebook.loader import load_rulebook as load_rulebook
     from rulec.rulebook.model import Rulebook as Rulebook
     from rulec.runtime.batch.verifying import verify_many as verify_many
     from rulec.runtime.monitor import Monitor as Monitor
@@ -33,12 +34,11 @@ if TYPE_CHECKING:
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario import load_scenario as load_scenario
     from rulec.trace import Trace as Trace
+    from rulec.trace.formats import read_traces as read_traces
     from rulec.workflow import compile_rulebook as compile_rulebook
     from rulec.workflow import find_maneuvers as find_maneuvers
     from rulec.workflow import judge_recording as judge_recording
-    from rulec.workflow import load_rulebook as load_rulebook
     from rulec.workflow import navigation_graph as navigation_graph
-    from rulec.workflow import read_traces as read_traces
 
 _HOME = {
     "CompiledRulebook": "rulec.automata.compiled",
@@ -53,10 +53,10 @@ _HOME = {
     "compile_rulebook": "rulec.workflow",
     "find_maneuvers": "rulec.workflow",
     "judge_recording": "rulec.workflow",
-    "load_rulebook": "rulec.workflow",
+    "load_rulebook": "rulec.rulebook.loader",
     "load_scenario": "rulec.scenario",
     "navigation_graph": "rulec.workflow",
-    "read_traces": "rulec.workflow",
+    "read_traces": "rulec.trace.formats",
     "verify": "rulec.runtime.verify",
     "verify_many": "rulec.runtime.batch.verifying",
 }

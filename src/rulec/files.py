@@ -5,7 +5,6 @@ from __future__ import annotations
 import codecs
 import os
 import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from errno import EACCES, EISDIR
@@ -47,19 +46,24 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
 @contextmanager
 def _beside(path: Path) -> Iterator[IO[bytes]]:
     path = Path(os.path.realpath(path))  # the file behind a link, not the link, is replaced
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    name = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
+    # What is made here is made inside the `try`: whenever a signal comes, nothing stays behind.
     try:
-        with os.fdopen(handle, "wb") as stream:
+        with open(name, "xb", opener=_private) as stream:
             yield stream
-        Path(name).chmod(_mode(path))
-        Path(name).replace(path)
+        name.chmod(_mode(path))
+        name.replace(path)
     except BaseException:
-        Path(name).unlink(missing_ok=True)
+        name.unlink(missing_ok=True)
         raise
 
 
+def _private(name: str, flags: int) -> int:
+    return os.open(name, flags, 0o600)
+
+
 def _mode(path: Path) -> int:
-    """The permissions of a file, or of a new one as the umask says; mkstemp's are private."""
+    """The permissions of a file, or of a new one as the umask says."""
     if path.exists():
         return stat.S_IMODE(path.stat().st_mode)
     mask = os.umask(0)

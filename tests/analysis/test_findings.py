@@ -200,3 +200,25 @@ def test_weaker_than_what_is_extended(tmp_path):
         ("R0806", "rule `s` is softer"),
     ]
     assert found[1].notes == ("`base` forbids: { wet and fog }",)
+    # One is overridden in line 3, the other is softened and stands in the base.
+    assert [(one.place.file, one.place.line) for one in found[1:]] == [
+        (str(path), 3),
+        (str(path), 2),
+    ]
+    assert [one.place.file for one in found[2].labels] == [str(tmp_path / "base.rules")]
+
+
+def test_what_is_extended_is_for_the_same_side_of_traffic(tmp_path):
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\nuse road\ntraffic right\n"
+        "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n"
+        "hard rule s (v: vehicle) { require never (behind(v) and near_side_of(v)) }\n"
+    )
+    path = tmp_path / "example.rules"
+    path.write_text(
+        "rulebook example\nextends base\ntraffic left\n"
+        "override rule s (v: vehicle) { unless congested }\n"
+    )
+    (only,) = analyze_rulebook(path)
+    assert only.message.startswith("rule `s` is laxer")
+    assert only.notes == ("`base` forbids: { behind(v) and left_of(v) and congested }",)

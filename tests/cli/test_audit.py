@@ -5,7 +5,9 @@ import json
 import island
 import pytest
 
+from rulec.analysis.asking import audit_rulebook
 from rulec.cli.main import main
+from rulec.report.audits import render
 
 CLEAN = """\
 rulebook clean
@@ -166,3 +168,15 @@ def test_a_compiled_rulebook_is_not_enough(folder, capsys):
     status, out, err = run(capsys, "clean.json")
     assert (status, out) == (2, "")
     assert "`clean.json` is compiled and cannot be audited; give its source" in err
+
+
+def test_a_narrow_page():
+    text = render([audit_rulebook("at")], {}, "text", 80)
+    assert all(len(line) <= 80 for line in text.splitlines())
+    assert (
+        """
+  near_side_passing              legal information system RIS and pages that
+                                 quote it, of 2022; § 7(3a) from memory
+"""
+        in text
+    )

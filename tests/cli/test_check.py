@@ -159,3 +159,12 @@ def imported(arguments):
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, env=os.environ
     )
     return set(done.stderr.split())
+
+
+def test_a_name_that_is_a_file_of_the_working_folder(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.rules").write_text("rulebook mine\nsignal p\nhard rule r { require p }\n")
+    for verb in ("check", "show"):
+        assert main([verb, "mine"]) == 2
+        said = "".join(capsys.readouterr())
+        assert "  = help: write `./mine.rules` for the file in the working folder\n" in said

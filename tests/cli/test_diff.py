@@ -247,3 +247,18 @@ def test_all_goes_on_without_what_cannot_be_read(capsys):
     out, err = capsys.readouterr()
     assert "2 rulebooks" in out
     assert "none.rules" in err
+
+
+def test_two_sides_of_the_road(tmp_path, capsys):
+    for name, traffic in (("one", "right"), ("other", "left")):
+        (tmp_path / f"{name}.rules").write_text(
+            f"rulebook {name}\nuse road\ntraffic {traffic}\n"
+            "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n"
+        )
+    remark = "one drives on the right, other on the left: near and far change sides"
+    assert main(["diff", "./one.rules", "./other.rules"]) == 1
+    assert capsys.readouterr().out.splitlines()[1] == remark
+    main(["diff", "./one.rules", "./other.rules", "--output-format", "markdown"])
+    assert f"\n{remark}.\n" in capsys.readouterr().out
+    main(["diff", "./one.rules", "./one.rules"])
+    assert "near and far" not in capsys.readouterr().out

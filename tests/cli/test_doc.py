@@ -227,6 +227,7 @@ def test_hostile_texts_stay_texts(folder, capsys):
         (["bad.rules"], "R0201"),
         (["x.json"], "`x.json` is compiled and cannot be made a document of"),
         (["island.rules", "-o", "no/b.html"], "R0702"),
+        (["island.rules", "-o", "b.PDF"], "b.PDF would be HTML: write FILE.html"),
     ],
 )
 def test_what_cannot_be_done(folder, arguments, words, capsys):

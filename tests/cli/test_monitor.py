@@ -151,6 +151,15 @@ def test_what_is_no_saved_monitor(answer, folder, text):
     assert "m.json" in err
 
 
+def test_a_saved_monitor_that_has_been_cut_short(answer, folder):
+    assert answer([SIGN], "--save", "m.json")[0] == 0
+    whole = (folder / "m.json").read_bytes()
+    (folder / "m.json").write_bytes(whole[: len(whole) // 2])
+    status, _, err = answer([SIGN], "--restore", "m.json")
+    assert status == 2
+    assert "this is not a saved monitor: it has been cut short" in err
+
+
 def test_what_cannot_be_saved_is_said_before_anything_is_judged(answer):
     status, out, err = answer([SIGN], "--save", "nowhere/m.json")
     assert (status, out) == (2, [])

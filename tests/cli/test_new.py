@@ -73,3 +73,40 @@ def test_a_base_that_is_not_there(tmp_path, capsys):
     assert main(["new", "atlantis", "--extends", "esterle209", "-o", str(tmp_path)]) == 2
     assert "did you mean `esterle2019`?" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_base_by_its_path(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "upon", "--extends", "./base.rules"]) == 2
+    assert "--extends takes a name, such as `base`" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_with_the_end_of_its_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "atlantis.rules"]) == 0
+    assert capsys.readouterr().out.startswith("wrote atlantis.rules;")
+    assert "rulebook atlantis\n" in (tmp_path / "atlantis.rules").read_text()
+
+
+def test_what_can_be_set_of_a_base(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "above.rules").write_text(
+        "rulebook above\nuse road\noption strict = off  # Art. 3\n"
+        "param pace : speed = 7 km/h in force until 2000-01-01\n"
+        "# How fast one walks.\n"
+        "param pace : speed = 8 km/h in force from 2000-01-02\n"
+        "param room : length = 1 m if built_up else 2 m\n"
+        "hard rule A { require never (strict and speed > pace) }\n"
+    )
+    (tmp_path / "base.rules").write_text("rulebook base\nextends above\nset strict = on\n")
+    assert main(["new", "upon", "--extends", "base"]) == 0
+    text = (tmp_path / "upon.rules").read_text()
+    lines = [line for line in text.splitlines() if line.startswith("# set")]
+    assert lines == [
+        "# set strict = on  # Art. 3",
+        "# set pace = 8 km/h  # How fast one walks.",
+        "# set room = 1 m if built_up else 2 m",
+    ]
+    (tmp_path / "upon.rules").write_text(text.replace("# set", "set"))
+    assert main(["check", "./upon.rules"]) == 0

@@ -96,6 +96,30 @@ def test_an_unknown_rule(two, name, hint, capsys):
     assert f"two has no rule `{name}`; {hint}" in captured.err
 
 
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("A", "below has no rule `A`: below dropped it, because it is old"),
+        ("B", "below has no rule `B`: above is silent on it, because nobody asks"),
+        ("C", "below has no rule `C` on 2020-02-01: it is in force until 2020-01-31"),
+        ("D", "below has no rule `D`; it has `E`"),
+    ],
+)
+def test_a_rule_that_is_not_there_any_more(name, why, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "above.rules").write_text(
+        "rulebook above\nsignal p\nhard rule A { require p }\n"
+        'silent on B because "nobody asks"\n'
+        "hard rule C { require p in force until 2020-01-31 }\n"
+        "hard rule E { require p }\n"
+    )
+    (tmp_path / "below.rules").write_text(
+        'rulebook below\nextends above\ndrop rule A because "it is old"\n'
+    )
+    assert main(["show", "./below.rules", name, "--at", "2020-02-01"]) == 2
+    assert why in capsys.readouterr().err
+
+
 def test_an_unknown_rulebook(capsys):
     assert main(["show", "esterle2018"]) == 2
     assert "esterle2019" in capsys.readouterr().err
@@ -118,6 +142,13 @@ def test_json_and_automaton_are_two_answers(capsys):
 def test_the_automaton_alone(output_format, beginning, capsys):
     assert main(["show", "esterle2019", "R1", "--automaton", output_format]) == 0
     assert capsys.readouterr().out.startswith(beginning)
+
+
+def test_a_picture_that_is_not_drawn(tmp_path, capsys):
+    path = tmp_path / "r.png"
+    assert main(["show", "esterle2019", "R1", "-o", str(path)]) == 2
+    assert "an automaton is drawn in a file .svg, .dot or .gv" in capsys.readouterr().err
+    assert not path.exists()
 
 
 @pytest.mark.parametrize(
@@ -218,3 +249,19 @@ def test_control_characters_are_not_passed_on(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     assert main(["show", "esterle2019", "R1"]) == 0
     assert not re.search(r"[\x00-\x09\x0b-\x1f]", capsys.readouterr().out)
+
+
+def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rules").write_text(
+        "rulebook a\nsignal p, q\noption yes = on\noption no = off\n"
+        "hard rule A { require never (yes and p) unless no and q unless yes and q }\n"
+        "hard rule B { require never p when no }\n"
+    )
+    assert main(["show", "./a.rules"]) == 0
+    out = capsys.readouterr().out
+    assert (
+        "  It never happens that “p” holds.\n"
+        "  It does not count if, throughout the stretch that the rule guards, “q” holds.\n"
+    ) in out
+    assert "  It never counts, for its condition is false as options are set.\n" in out

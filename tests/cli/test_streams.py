@@ -172,3 +172,21 @@ def test_a_list_longer_than_any(option):
     # All 16 satisfy; each is a class of its own or is not the only one in it.
     number = done.stdout.count(b'"margin_s"')
     assert (0 < number <= 16) if option == "--classes" else number == 16
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("printf 'trace,step\\nt,0\\n' | gzip", "no CSV, but data compressed with gzip"),
+        ("printf '{\"states\": [{}]}'", "no CSV, but JSON"),
+        # A pipe cannot be read again to find the byte's line.
+        ("printf 'trace,step\\nt\\337,0\\n'", "here or further on the byte 0xdf is not UTF-8"),
+        ("printf 'trace,'; sleep 0.1; printf 'step\\nt,1\\n'", "the step is `1`; here it is 0"),
+    ],
+)
+def test_csv_in_a_pipe_that_cannot_be_read(command, words):
+    arguments = ["verify", "-", "-r", "esterle2019", "--format", "csv"]
+    done = shell(f'({command}) | "$@"', *arguments)
+    assert done.returncode == 2
+    assert words in done.stderr.decode()
+    assert "Traceback" not in done.stderr.decode()

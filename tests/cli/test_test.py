@@ -155,6 +155,58 @@ def test_junit_of_what_xml_cannot_hold(odd, capsys, tmp_path):
     assert cases[-1].get("name") == "a\\uffffb\\ufffec"
 
 
+def test_an_inherited_example_is_mended_by_an_override(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "above.rules").write_text(
+        "rulebook above\nuse road\noption strict = off\n"
+        "hard rule A (v: vehicle) {\n  require never (strict and behind(v))\n"
+        "  accept { behind(v) }\n}\n"
+        "hard rule B {\n  require never (strict and wet)\n  accept { wet }\n}\n"
+    )
+    (tmp_path / "below.rules").write_text(
+        'rulebook below\nextends above\nset strict = on\noverride rule B { cite "1" }\n'
+        "hard rule C { require never icy accept { icy } }\n"
+    )
+    status, out, _ = run(capsys, "below.rules")
+    helps = [line.partition("= help: ")[2] for line in out.splitlines() if "= help:" in line]
+    inherited = (
+        "the example is inherited: undo what makes the rule another one here, "
+        "or give it examples of this rulebook's own in `override rule {} {{ … }}`"
+    )
+    assert status == 1
+    assert helps == [
+        inherited.format("A (v: vehicle)"),
+        inherited.format("B"),
+        "either the formula or the example does not say what is meant",
+    ]
+    _, out, _ = run(capsys, "below.rules", "--output-format", "junit")
+    assert out.count("the example is inherited") == 2
+
+
+def test_an_example_of_a_rule_that_an_option_switches_off(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rules").write_text(
+        "rulebook a\nuse road\noption season = off\n"
+        "hard rule A { require never icy when season accept { wet } reject { icy } }\n"
+    )
+    status, out, _ = run(capsys, "a.rules")
+    assert status == 1
+    assert "= help: the rule's condition is false as options are set" in out
+
+
+def test_a_proposed_example_leaves_out_what_has_its_default(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rules").write_text(
+        "rulebook a\nuse road\n"
+        "hard rule A { require never (icy and crossing and speed > 30 km/h) }\n"
+    )
+    _, out, _ = run(capsys, "a.rules", "--coverage")
+    assert [line for line in out.splitlines() if "missing" in line] == [
+        "  missing: accept { crossing and speed = 30 km/h }",
+        "  missing: reject { icy and crossing and speed = 31 km/h }",
+    ]
+
+
 def test_coverage(odd, capsys):
     _, out, _ = run(capsys, odd, "--coverage", "--run", "B")
     # B: from the first state, in which f(v) has not been yet, two classes of letters lead on.
@@ -184,6 +236,7 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
     assert status == 2
     assert out.endswith("14 examples: 14 passed, 0 failed\n")
     assert "error[R0703]: there is no rulebook `nope`" in err
+    assert run(capsys, "nope")[:2] == (2, "")
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,37 @@ def test_the_first_violations_are_explained(verify):
     assert ["r(v)", "until", "f(v)", "F", "T", "T", "T"] in rows
 
 
+def test_a_long_formula_is_folded_unless_all_of_it_is_wanted(tmp_path, capsys):
+    """Two of fourteen signals are true and lose the rule; the first of them decides."""
+    names = [f"a_signal_with_a_long_name_{n}" for n in range(14)]
+    book, traces = tmp_path / "long.rules", tmp_path / "t.jsonl"
+    book.write_text(
+        f"rulebook long\nsignal {', '.join(names)} default false\n"
+        f"hard rule r {{ require never ({' or '.join(names)}) }}\n"
+    )
+    traces.write_text(json.dumps({"states": [{}, {names[5]: True, names[9]: True}]}))
+    assert main(["verify", str(traces), "-r", str(book)]) == 1
+    out = capsys.readouterr().out
+    rows = [row.split() for row in out.splitlines()]
+    assert rows.count([names[5], "F", "T*"]) == rows.count([names[5], "F", "T"]) == 1
+    # 14 facts and 1 + 13 + 14 parts, of which the fact and three parts are left.
+    *table, without, repair, _ = out.splitlines()
+    assert names[9] not in "".join(table)
+    assert without == "    … without 38 of 42 rows: --every-part shows them"
+    assert repair == f"    kept if state 1 says: not {names[5]} and not {names[9]}"
+    assert max(map(len, out.splitlines())) <= 100
+    assert main(["verify", str(traces), "-r", str(book), "--every-part"]) == 1
+    out = capsys.readouterr().out
+    assert "without" not in out
+    assert all(sum(name in row.split() for row in out.splitlines()) >= 2 for name in names)
+    assert main(["verify", str(traces), "-r", str(book), "--json", "--explain", "1"]) == 1
+    (violation,) = json.loads(capsys.readouterr().out)["violations"]
+    parts = violation["explanation"]["parts"]
+    assert len(parts) == 28
+    # The formula, the chain down to its sixth signal (9 links), and that signal.
+    assert sum(part["decides"] for part in parts) == 1 + 9 + 1
+
+
 def test_explanations_as_data(verify):
     _, out, _ = verify([line("t1", "brrf")], options=["--json", "--explain", "1"])
     (violation,) = json.loads(out)["violations"]
@@ -90,6 +121,7 @@ def test_explanations_as_data(verify):
     assert facts == {"CONGESTED": [False] * 4, "position(v1)": ["b", "r", "r", "f"]}
     assert explanation["parts"][0]["depth"] == 0
     assert explanation["parts"][0]["values"][0] is False
+    assert explanation["repair"] == [{"state": 3, "says": "not f(v)"}]
 
 
 def test_a_bad_trace_never_hides_the_good_ones(verify):

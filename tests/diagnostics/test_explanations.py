@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from rulec.analysis.asking import analyze_rulebook
+from rulec.analysis.asking import analyze_rulebook, run_examples
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.codes import EXPLANATIONS, STAGES
 from rulec.partition import navigation_graph
@@ -16,12 +16,8 @@ from rulec.rulebook.loader import diagnose, parse_rulebook
 from rulec.runtime.exercise import unexercised
 from rulec.runtime.verify import judge
 from rulec.scenario.read import read_scenario
-from rulec.workflow import (
-    compile_rulebook,
-    find_maneuvers,
-    read_traces,
-    run_examples,
-)
+from rulec.trace.formats import read_traces
+from rulec.workflow import compile_rulebook, find_maneuvers
 
 CODE = re.compile(r"\[(R\d{4})\]")
 

@@ -10,7 +10,8 @@ from rulec.syntax import decode, parse
     ("text", "expected"),
     [
         ("# What a light is.\nsignal p", "What a light is."),
-        ("  # It rains,\n  #   or snows.\n  signal p  # behind", "It rains, or snows."),
+        ("  # It rains,\n  #   or snows.\n  signal p", "It rains, or snows."),
+        ("# The weather.\nsignal p  # It rains.", "It rains."),
         ("signal p  # It rains.", "It rains."),
         ("signal p\n# About what follows.", ""),
         ("# About the whole file.\n\nsignal p", ""),

@@ -285,3 +285,30 @@ def test_states_that_cannot_be(more, n_states, chance):
     ]
     alone = [told(judge(trace, queue(more))) for trace in traces]
     assert [told(one) for one in judge_chunk(traces, queue(more))] == alone
+
+
+PATIENT = """rulebook patient
+signal asked
+signal told
+quantity speed in m/s
+fact not (asked and told)
+hard rule answer { require always (asked implies eventually[<= 100 steps] told) }
+"""
+
+
+def test_a_large_machine_and_states_that_cannot_be_and_are_not_met():
+    """As many states as steps that are left; those of the traces are all different."""
+    compiled = compile_here(parse_rulebook(PATIENT, "patient.rules"))
+    assert len(compiled.rules[0].machine.following) > 100
+    said, traces = [(True, False), (False, True), (False, False)], []
+    for n in range(20):
+        words = [said[(n + step) % 3] for step in range(1 + n % 4)]
+        states = [
+            {"asked": asks, "told": tells, "speed": n + step / 8}
+            for step, (asks, tells) in enumerate(words)
+        ]
+        traces.append(Trace(str(n), 1.0, {}, tuple(states)))
+    # Who is asked at last is never told: the last state is repeated for ever.
+    unanswered = [one.id for one in traces if one.states[-1]["asked"]]
+    found = judge_chunk(traces, compiled)
+    assert [one.trace for one in found if one.violations] == unanswered

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from measured import MEASURED, SPEED, closer, gap, number, others_near
 from words import formulas, letters, words
 
-from rulec.logic.formula import Binary, Bound, Unary, UnaryOperator, atoms_of
+from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
 from rulec.report import explanation as report
 from rulec.rulebook.model import Rulebook
@@ -129,9 +129,20 @@ def test_a_number_stands_out_when_it_passes_a_limit_not_whenever_it_changes():
         "reads": "gap(a)",
         "values": (3, 2.5, 1.4),
         "changed": True,
+        "decides": True,
         "unit": "m",
     }
     assert data["parts"][-2]["changed"] is True
+    assert data["parts"][-2]["decides"] is True
+
+
+def test_what_makes_no_difference_does_not_decide():
+    """Who is closer than 1.5 m has lost, however fast."""
+    fast = number("speed > 30 km/h", ">", 30, (1, SPEED))
+    either = Binary(BinaryOperator.OR, closer("v", "1.5"), fast)
+    found = measured(always(no(either)), [{"gap": {"a": 1}, "speed": 40}], "v: car")
+    assert {fact.text: fact.decides for fact in found.facts} == {"gap(a)": True, "speed": False}
+    assert [part.text for part in found.parts if not part.decides] == ["speed > 30 km/h"]
 
 
 def test_a_sum_shows_its_numbers():

@@ -223,7 +223,7 @@ def test_what_is_no_number_is_refused(value):
         measured(always(closer("v", 5)), {"gap": {"car1": value}})
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "R0503"
-    assert "it is a number, in m" in diagnostic.message
+    assert "it is a finite number, in m" in diagnostic.message
 
 
 @pytest.mark.parametrize("value", [10**400, -(10**400), 1.7976931348623157e308, 0, -0.0])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.cli.arguments import complete_rulebooks
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.settings import search_path

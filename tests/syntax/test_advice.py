@@ -15,6 +15,7 @@ TWO_ENDS = "write `..` between the two ends, such as `[3 s .. 4 s]`"
 BY_SIGNS = "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
 CONDITIONAL = "a conditional is written `(1.5 m if built_up else 2 m)`"
 DIGITS = "a number's digits stand together, such as `1000`"
+NO_DATES = "an option has no dates; a parameter and a rule may have them"
 ONE_VARIABLE = "it has one variable; put one inside the other: "
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
@@ -247,6 +248,11 @@ LINES = [
     ('silent on rule x because "y"', "rule", FORMS["silent"]),
     # Options, parameters, definitions.
     ("option x = true", "true", "write `on`"),
+    (
+        "fact (v: car) near(v)",
+        ":",
+        "leave the variables' types out: a fact is about all objects that fit its words",
+    ),
     ("option x on", "on", FORMS["option"]),
     ("param x 3 m", "3", FORMS["param"]),
     ("param x := 3 m", ":=", "write `=` for `:=`"),
@@ -258,6 +264,8 @@ LINES = [
         "a date is written year-month-day, such as `2006-03-28`",
     ),
     ("set x to on", "to", "write `=` for `to`"),
+    ("set x = on in force from 2027-01-01", "in", NO_DATES),
+    ("option x = off in force", "in", NO_DATES),
     (
         "define f(x) { p }",
         "{",
@@ -318,7 +326,11 @@ LINES = [
     ("gap = 3 m", "gap", "write `param gap = …` or `define gap = …`"),
     ("hard rule a { require p accept { v > 3 m } }", ">", ONE_VALUE),
     ("hard rule a { require p accept { v 3 m } }", "3", ONE_VALUE),
-    ("hard rule a { require p accept { v = w } }", "w", ONE_VALUE),
+    (
+        "hard rule a { require p accept { v = w } }",
+        "w",
+        "a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `w`",
+    ),
     (
         "hard rule a { require p accept { q and p = true } }",
         "true",

@@ -1,5 +1,6 @@
 """Traces as JSON Lines: what is read, what is refused, and in which words."""
 
+import gzip
 import io
 import json
 
@@ -62,7 +63,8 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
         (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
         (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),
         (b'{"zebra": 1, "states": [{}]}', "a trace is a line such as"),
-        (b"{", "a trace is a line such as"),
+        (b"{", "write or copy the file again"),
+        (b"[1]", "a trace is a line such as"),
     ],
 )
 def test_the_way_out(data, way_out):
@@ -78,11 +80,9 @@ def test_a_bad_line_does_not_hide_the_good_ones():
 @pytest.mark.parametrize(
     ("data", "code", "words"),
     [
-        (b"", "R0501", "there is no trace in this file"),
-        (b"\n\n", "R0501", "there is no trace in this file"),
-        (b"{", "R0501", "truncated"),
-        (b"\xff\xfe{}", "R0501", "not a trace"),
-        (b"\x00", "R0501", "not a trace"),
+        (b"", "R0501", "there is no trace in this file: it is empty"),
+        (b"\n\n", "R0501", "there is no trace in this file: it is empty"),
+        (line(id="\xe4").replace(b"\\u00e4", b"\xe4"), "R0501", "the byte 0xe4 is not UTF-8"),
         (b"[1]", "R0501", "expected an object, got a list"),
         (b"[" * 100_000, "R0501", "not a trace"),
         (b"{}", "R0501", "missing required field `states`"),
@@ -101,6 +101,90 @@ def test_what_is_refused(data, code, words):
     diagnostic = problem(data)
     assert diagnostic.code == code
     assert words in diagnostic.message
+
+
+@pytest.mark.parametrize(
+    ("data", "noun"),
+    [
+        (gzip.compress(line(), mtime=0), "data compressed with gzip"),
+        (b"PK\x03\x04" + line(), "a ZIP archive"),
+        (b"PAR1" + line(), "Parquet"),
+        (line().decode().encode("utf-16"), "text in UTF-16"),
+        (line().decode().encode("utf-16-le"), "text in UTF-16"),
+        (line().decode().encode("utf-16-be"), "text in UTF-16"),
+        (b"\0\0\0\0" + line(), "something that is no text"),
+        (b"\x00", "something that is no text"),
+        (b"\x7fELF\x02\x01\n", "something that is no text"),
+    ],
+)
+def test_a_file_that_is_something_else_is_one_mistake(data, noun):
+    found = problem(data + b"\n" + data)
+    assert found.message == f"these are no traces, but {noun}"
+    assert found.help
+    assert found.place.line is None
+
+
+def test_csv_and_a_list_are_one_mistake():
+    assert "--format csv" in problem(b"trace,step,p\nt,0,true\nt,1,true\n").help
+    pretty = json.dumps([GOOD, GOOD], indent=1).encode()
+    in_lines = b"[\n" + line().rstrip() + b",\n" + line() + b"]\n"
+    for data in (pretty, in_lines):
+        assert problem(data).message == "these are no traces, a line each, but a list in JSON"
+
+
+@pytest.mark.parametrize(
+    ("before", "where"),
+    [
+        ('{"id": "t7", "states": [{"p": true}, {"q": fal', "state 1 of trace `t7`"),
+        ('{"id": 7, "states": [{"p": {"v": "b, ]}"}}, {"p": {"v', "state 1 of trace `7`"),
+        ('{"id": "t", "states": [', "state 0 of trace `t`"),
+        ('{"states": [{"p": true}], "id": "t", "objects": {"v', "trace `t`"),
+        ('{"id": "t', "a trace"),
+        ("{", "a trace"),
+    ],
+)
+def test_a_file_that_is_cut_short_says_where(before, where):
+    good, error = read(line() + before.encode())
+    (found,) = error.diagnostics
+    assert good.id == "t1"
+    assert found.message == f"the file ends in the middle of {where}: it has been cut short"
+    assert (found.place.line, found.place.column) == (2, len(before))
+
+
+@given(st.integers(1, len(line()) - 2))
+def test_wherever_it_is_cut(size):
+    found = problem(line()[:size])
+    assert found.message.startswith("the file ends in the middle of ")
+
+
+def test_a_line_that_is_cut_short_between_others():
+    a, error, b = read(line(id="a") + line()[:50] + b"\n" + line(id="b"))
+    assert (a.id, b.id) == ("a", "b")
+    assert error.diagnostics[0].place.line == 2
+    assert "the line ends in the middle of trace `t1`: it has been" in error.diagnostics[0].message
+
+
+def test_a_trace_over_several_lines_is_one_mistake():
+    pretty = json.dumps(GOOD, indent=2).encode() + b"\n"
+    first, second, good = read(pretty + pretty + line())
+    for error, number in ((first, 1), (second, 1 + pretty.count(b"\n"))):
+        (found,) = error.diagnostics
+        assert found.place.line == number
+        assert found.message.endswith("goes on below: a trace is one line")
+        assert "jq -c" in found.help
+    assert good.id == "t1"
+
+
+def test_the_place_of_what_is_malformed():
+    found = problem('{"id": "ü", "states": [{"v": NaN}]}'.encode())
+    assert found.message == "this is not a trace: JSON is malformed: invalid character"
+    # The thirtieth character, which is the thirty-first byte.
+    assert (found.place.line, found.place.column) == (1, 30)
+    assert found.place.excerpt[29:32] == "NaN"
+
+
+def test_a_field_is_called_as_it_is_written():
+    assert "unknown field `object`" in problem(line(object={})).message
 
 
 def test_a_line_without_end_is_refused_without_keeping_it(monkeypatch):

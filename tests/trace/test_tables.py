@@ -1,6 +1,7 @@
 """Traces as CSV and as Parquet: what is read, what is refused, and that it comes back."""
 
 import builtins
+import gzip
 import io
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.trace import Trace
+from rulec.trace import Trace, csv_table
 from rulec.trace.formats import format_of, read_chunks, write_traces
 from rulec.trace.tables import columns_for, kinds_in
 
@@ -91,7 +92,8 @@ HEAD = "trace,step,object,type,other,p\n"
         ('"trace', 1, "cannot be read as CSV", ""),
         ("trace,stop,p\nt,0,true\n", 1, "there is no column `step`", "did you mean `stop`?"),
         ("step,p\n0,true\n", 1, "there is no column `trace`", "the first columns are"),
-        ("trace;step\n", 1, "there is no column `trace`", ""),
+        ("trace;step\n", 1, "names are separated by semicolons", "separate the cells by commas"),
+        ("step\ttrace\n", 1, "names are separated by tabs", "separate the cells by commas"),
         ("trace,step,\n", 1, "a column has no name", ""),
         ("trace,step,p,p\n", 1, "there are two columns `p`", ""),
         (HEAD + "t,0,,,true\n", 2, "this row has 5 cells; there are 6 columns", ""),
@@ -110,7 +112,13 @@ HEAD = "trace,step,object,type,other,p\n"
         (HEAD + "t,0,v,car,,true\nt,0,v,car,v,true\n", 3, "gives `p` twice for `v, v`", ""),
         ("trace,step,step_s\nt,0,x\n", 2, "`step_s` is `x`", ""),
         ("trace,step,step_s\nt,0,1\nt,1,2\n", 3, "`step_s` is `2`; in the rows before it is 1", ""),
-        (HEAD + 't,0,,,,"true', 2, "cannot be read as CSV", ""),
+        (HEAD + 't,0,,,,"true', 2, "it ends within quotes", "is one missing"),
+        (HEAD + 't,0,,,,"true"x\n', 2, "behind closing quotes", "is one missing"),
+        (HEAD + f"t,0,,,,{'x' * 200_000}\n", 2, "more than 131,072 characters", ""),
+        (HEAD + "t,0,,,,true\n" * 100 + "t\0,0,,,,true\n", 102, "a null character", ""),
+        (HEAD + "t,0,,", 2, "this row has 4 cells", "has the file been cut short?"),
+        (HEAD + "t,0,,,,a, b\n", 2, "this row has 7 cells", "stands in quotes"),
+        ('{"states": [{}]}\n', None, "no CSV, but JSON", "add `--format jsonl`"),
     ],
 )
 def test_what_is_refused(text, line, words, way_out):
@@ -127,8 +135,19 @@ def test_a_trace_that_is_cut_off_is_not_taken_for_whole():
 
 
 def test_bytes_that_are_no_text():
-    found = problem(b"trace,step,p\n\xff,0,true\n")
-    assert "UTF-8" in found.message
+    """However many rows are before it, which have been decoded along with it."""
+    found = problem(b"trace,step,p\nt,0,\n\nt,1,\n\xc3\xbc\xff,0,true\n")
+    assert found.message == "the byte 0xff is not UTF-8"
+    assert (found.place.line, found.place.column) == (5, 2)
+    assert found.place.excerpt.startswith("\u00fc\ufffd,0")
+
+
+def test_a_stream_may_be_closed_before_all_has_been_read():
+    stream = io.BytesIO(b"trace,step\nt,0\nu,0\n")
+    rows = csv_table._rows(stream, 1, "t")
+    next(rows)
+    stream.close()
+    rows.close()  # does not raise
 
 
 def test_a_bad_trace_does_not_hide_the_good_ones():
@@ -221,8 +240,12 @@ def test_parquet_knows_types_of_its_own():
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"", "cannot be read as Parquet"),
-        (b"PAR1 and no more", "cannot be read as Parquet"),
+        (b"", "cannot be read as Parquet: it is empty"),
+        (b"PAR1", "it has been cut short"),
+        (b"PAR1 and no more", "it has been cut short"),
+        (b"PAR1 and no contentsPAR1", "it is damaged"),
+        (b"trace,step\n", "it does not begin with `PAR1`"),
+        (gzip.compress(b"", mtime=0), "no Parquet, but data compressed with gzip"),
         (table(trace=["t"], step=pyarrow.array([0.5])), "the step is `0.5`; here it is 0"),
         (table(trace=["t"], p=[True]), "there is no column `step`"),
         (table(trace=["t"], step=[0], p=[[True]]), "the column `p` is of type list"),
@@ -244,7 +267,8 @@ def test_parquet_that_is_refused(data, words):
 
 def test_a_parquet_file_that_is_cut_off():
     whole = table(trace=["t"] * 3, step=[0, 1, 2])
-    assert "cannot be read" in problem(whole[:-20], "parquet").message
+    for size in range(4, len(whole)):
+        assert "it has been cut short" in problem(whole[:size], "parquet").message
 
 
 def test_parquet_takes_a_package(monkeypatch):

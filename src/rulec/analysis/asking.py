@@ -7,11 +7,50 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+from rulec.analysis.audit import Audit, audit
 from rulec.analysis.difference import Difference, difference, setting_pairs
 from rulec.analysis.findings import findings
 from rulec.analysis.inheritance import read_with_inheritance
+from rulec.automata.any_step import AnyStep
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.loader import read_rulebook
+from rulec.runtime.examples import ExampleRun, run_all
+
+
+def run_examples(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    pattern: str | None = None,
+    at: str = "",
+) -> ExampleRun:
+    """Compile a rulebook, given by name or by its source's path, and run its examples.
+
+    ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
+    wild. ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    loaded = read_rulebook(reference, search_path, at)
+    compiled = AnyStep(loaded.rulebook).at_own_steps()
+    return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def audit_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    *,
+    run: bool = False,
+) -> Audit:
+    """What a rulebook, given by name or by its source's path, rests on.
+
+    ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
+    ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    loaded, inherited = read_with_inheritance(reference, search_path, at)
+    warn(loaded.warnings)
+    outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
+    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    return audit(loaded.rulebook, inherited, failing)
 
 
 def compare_rulebooks(
@@ -50,9 +89,10 @@ def analyze_rulebook(
     ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
     RulecError.
     """
-    folders = [Path(folder) for folder in search_path]
-    loaded = read_rulebook(reference, folders, at)
+    loaded = read_rulebook(reference, search_path, at)
     book = loaded.rulebook
     above = [one.span.source.name for one in loaded.books[-2:-1]]
-    bases = [read_rulebook(Path(file), folders, book.at).rulebook for file in above]
-    return findings(book, bases, tell)
+    # On the same side of the road: a treaty's near side is that of the party's traffic.
+    bases = [read_rulebook(Path(one), search_path, book.at, book.traffic) for one in above]
+    extends = loaded.books[-1].extends
+    return findings(book, [one.rulebook for one in bases], tell, extends.span if extends else None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from rulec.analysis.comparison import compare
 from rulec.analysis.conflict_findings import conflicts
@@ -11,7 +12,7 @@ from rulec.analysis.errors import UndecidedError
 from rulec.analysis.finding_words import shown, undecided
 from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.analysis.triggers import Trigger, has_constant, occurrence, triggers
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
 from rulec.rulebook.model import Rule, Rulebook
@@ -21,12 +22,14 @@ def findings(
     book: Rulebook,
     bases: Sequence[Rulebook],
     tell: Callable[[float], object] = lambda _: None,
+    extends: Span | None = None,
 ) -> tuple[Diagnostic, ...]:
     """All findings about a rulebook, those of each rule together, then those of several.
 
     Args:
         book: the rulebook.
         bases: the rulebooks that it extends.
+        extends: where it says so.
         tell: is told how many rules have been looked at.
 
     Raises:
@@ -58,7 +61,8 @@ def findings(
     diagnostics += conflicts(hard, own, by_name)
     for base, sides in zip(bases, found[1:], strict=True):
         for name, side in sides.items():
-            diagnostics += _weaker(by_name[name], own[name], side, base)
+            for one in _weaker(by_name[name], own[name], side, base):
+                diagnostics.append(one if by_name[name].book == book.name else _ours(one, extends))
     return tuple(diagnostics)
 
 
@@ -150,6 +154,14 @@ def _implied(
             ),
             severity="warning",
         )
+
+
+def _ours(found: Diagnostic, extends: Span | None) -> Diagnostic:
+    """What is found of an inherited rule, at the line by which a rulebook inherits it."""
+    if extends is None or found.place is None:
+        return found
+    rule = Label(found.place, "the rule is inherited from here")
+    return replace(found, place=extends.place, labels=(rule, *found.labels))
 
 
 def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[Diagnostic]:

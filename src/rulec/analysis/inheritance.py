@@ -54,7 +54,7 @@ def read_with_inheritance(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> tuple[Loaded, Inheritance]:
     """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
-    loaded = read_rulebook(reference, [Path(folder) for folder in search_path], at)
+    loaded = read_rulebook(reference, search_path, at)
     return loaded, inheritance(loaded.books, loaded.rulebook.at)
 
 

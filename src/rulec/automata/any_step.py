@@ -52,9 +52,11 @@ class AnyStep:
         """Rules, or all of them, each for the step of its examples. Raises RulecError."""
         return self._compiled(self.rulebook.rules if rules is None else rules, None)
 
-    def depends(self) -> bool:
-        """Does the step make a difference?"""
-        return any(speaks_of_seconds(one.formula) for one in self.rulebook.rules)
+    def simplest(self) -> CompiledRulebook | AnyStep:
+        """The rulebook compiled if the step makes no difference, else this. Raises RulecError."""
+        if any(speaks_of_seconds(one.formula) for one in self.rulebook.rules):
+            return self
+        return self.at_own_steps()
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         keys = [_key(rule, step_s) for rule in rules]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, findings_options, only_sources
+from rulec.cli.arguments import at_option, findings_options, only_sources
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.analysis.audit_kinds import KINDS
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+from rulec.cli.arguments import at_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -62,14 +63,14 @@ def command(
     """
     from rulec.analysis.audit import compared
     from rulec.report.audits import render
-    from rulec.report.console import print_result
+    from rulec.report.console import page_width, print_result
 
     only_sources(rulebooks, "be audited")
     older = None if compare is None else _older(compare, run, at)
     audits = [done for one in rulebooks if (done := _audit_or_say(one, run, at)) is not None]
     against = {} if older is None else compared(audits, older)
     if audits or output_format == "json":
-        print_result(render(audits, against, output_format))
+        print_result(render(audits, against, output_format, page_width()))
     if len(audits) < len(rulebooks):
         return ExitStatus.NOT_ANSWERED
     found = [
@@ -83,9 +84,9 @@ def command(
 
 def _audit(rulebook: str, run: bool, at: str) -> Audit:
     """The audit, after its warnings."""
+    from rulec.analysis.asking import audit_rulebook
     from rulec.report.console import print_diagnostics
     from rulec.settings import search_path
-    from rulec.workflow import audit_rulebook
 
     return audit_rulebook(rulebook, search_path(), at, print_diagnostics, run=run)
 

@@ -6,7 +6,8 @@ import sys
 
 import click
 
-from rulec.cli.arguments import at_option, complete_sources, findings_options
+from rulec.cli.arguments import at_option, findings_options
+from rulec.cli.completing import complete_sources
 from rulec.cli.exit_status import ExitStatus
 
 

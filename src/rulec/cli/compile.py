@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, seconds
+from rulec.cli.arguments import at_option, seconds
+from rulec.cli.completing import complete_rulebooks
 from rulec.report.console import print_diagnostics, print_result
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources, seconds
+from rulec.cli.arguments import at_option, only_sources, seconds
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 from rulec.report.differences import FORMATS
 
@@ -173,7 +174,7 @@ def _read_all(names: tuple[str, ...], at: str) -> tuple[list[Rulebook], bool]:
 
 def _read(name: str, folders: Sequence[Path], at: str) -> Rulebook | RulecError:
     from rulec.diagnostics import RulecError
-    from rulec.workflow import load_rulebook
+    from rulec.rulebook.loader import load_rulebook
 
     try:
         return load_rulebook(name, folders, at)

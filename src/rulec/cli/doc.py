@@ -6,11 +6,15 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, only_sources
+from rulec.cli.arguments import at_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 
 FORMATS = ("html", "markdown")
 
 SUFFIXES = {".md": "markdown", ".markdown": "markdown"}
+
+OTHERS = (".pdf", ".doc", ".docx", ".odt", ".rtf")
+"""Ends of names that promise what is not written."""
 
 
 @click.command()
@@ -40,6 +44,10 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
 
     only_sources([rulebook], "be made a document of")
     if output_format is None:
+        if Path(output or "").suffix.lower() in OTHERS:
+            raise click.UsageError(
+                f"{output} would be HTML: write FILE.html, which a browser prints and saves as PDF"
+            )
         output_format = SUFFIXES.get(Path(output or "").suffix, "html")
     loaded, inherited = read_with_inheritance(rulebook, search_path(), at)
     print_diagnostics(loaded.warnings)

@@ -3,48 +3,23 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    RULEBOOK_HELP,
-    at_option,
-    chosen,
-    complete_rulebooks,
-    graph_options,
-    output_option,
-    rulebook_option,
-)
+from rulec.cli.arguments import RULEBOOK_HELP, Decorated, at_option
+from rulec.cli.completing import complete_rulebooks
+from rulec.cli.draw_trace import trace
+from rulec.cli.drawing import picture_options, write
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
-    from rulec.automata.compiled import CompiledRulebook
     from rulec.maneuvers import Maneuvers
     from rulec.partition import NavigationGraph
-    from rulec.report.pictures.files import Drawing
     from rulec.runtime.cheapest import Maneuver
-    from rulec.trace import Trace
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
-
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
-
-
-def _output_options(function: Decorated) -> Decorated:
-    for decorate in (
-        click.option(
-            "--format",
-            "form",
-            type=click.Choice(["svg", "png", "html"]),
-            help="The format of the picture.  [default: what the file's name ends with, else svg]",
-        ),
-        output_option,
-    ):
-        function = decorate(function)
-    return function
 
 
 def _judging_options(function: Decorated) -> Decorated:
@@ -78,6 +53,9 @@ def command() -> None:
     """
 
 
+command.add_command(trace)
+
+
 @command.command()
 @graph_options
 @_judging_options
@@ -89,7 +67,7 @@ def command() -> None:
     metavar="P",
     help="Draw layer P alone, counted from 0; may be repeated.  [default: all]",
 )
-@_output_options
+@picture_options
 def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: Any) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
@@ -107,13 +85,13 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     chosen = sorted(set(layers)) or range(last + 1)
     title = scene_title(graph, found, maneuver, options["number"] or 1)
     pictures = scene_pictures(graph, chosen, maneuver)
-    _write(Drawing(title, pictures, scene_legend(graph, maneuver)), output, form)
+    write(Drawing(title, pictures, scene_legend(graph, maneuver)), output, form)
 
 
 @command.command()
 @graph_options
 @_judging_options
-@_output_options
+@picture_options
 def graph(output: Path, form: str | None, **options: Any) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
@@ -133,83 +111,7 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     ways = passages(hard, product)
     picture = graph_picture(cells, ways, maneuver, judged=found is not None)
     title = graph_title(cells, found, product.accepted)
-    _write(Drawing(title, [picture]), output, form)
-
-
-@command.command()
-@click.argument("file")
-@rulebook_option
-@click.option(
-    "--trace", "wanted", metavar="ID", help="Draw the trace with this id.  [default: the first]"
-)
-@click.option(
-    "--rule",
-    "patterns",
-    multiple=True,
-    metavar="PATTERN",
-    help="Only what rules like PATTERN read; `*` and `?` are wild. May be given several times.",
-)
-@click.option(
-    "--object",
-    "objects",
-    multiple=True,
-    metavar="ID",
-    help="Of the objects only this one. May be given several times.",
-)
-@at_option
-@_output_options
-def trace(
-    file: str,
-    rulebook: str,
-    wanted: str | None,
-    patterns: tuple[str, ...],
-    objects: tuple[str, ...],
-    at: str,
-    output: Path,
-    form: str | None,
-) -> None:
-    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what a rulebook reads in it, over time.
-
-    Violations are marked where they are decided, with the rule and its article.
-    """
-    from rulec.diagnostics import named
-    from rulec.report.console import print_diagnostics
-    from rulec.report.pictures.files import Drawing
-    from rulec.report.pictures.ribbon import ribbon
-    from rulec.report.pictures.ribbon_picture import ribbon_picture
-    from rulec.report.pictures.titles import trace_title
-    from rulec.runtime.verify import made_for, verify
-    from rulec.settings import search_path
-    from rulec.workflow import machines
-
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
-    chosen = _trace(file, wanted)
-    for item in objects:
-        if item not in chosen.objects:
-            raise click.UsageError(
-                f"trace `{chosen.id}` has no object `{item}`; it has {named(list(chosen.objects))}."
-            )
-    used = _only(made_for(chosen, rules), patterns)
-    verdict = verify(chosen, used)
-    shown = ribbon(chosen, used, verdict, objects)
-    title = trace_title(replace(verdict, violations=shown.violations), used, (*patterns, *objects))
-    _write(Drawing(title, [ribbon_picture(shown, used)]), output, form)
-
-
-def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
-    """The rulebook with the rules alone that one of the patterns matches, if there are any."""
-    from fnmatch import fnmatchcase
-
-    kept = tuple(
-        rule
-        for rule in rules.rules
-        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
-    )
-    if not kept:
-        raise click.UsageError(
-            f"{rules.name} has no rule like {' or '.join(f'`{one}`' for one in patterns)}."
-        )
-    return replace(rules, rules=kept)
+    write(Drawing(title, [picture]), output, form)
 
 
 def _judged(
@@ -243,33 +145,3 @@ def _judged(
             f"There is no maneuver {number}: {shown_count(found.satisfying)} satisfy the rulebook."
         )
     return found.graph, found, maneuver
-
-
-def _trace(file: str, wanted: str | None) -> Trace:
-    """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
-    from rulec.diagnostics import RulecError
-    from rulec.workflow import read_traces
-
-    names: list[str] = []
-    for one in read_traces(file):
-        if isinstance(one, RulecError):
-            raise one
-        if wanted in (None, one.id):
-            return one
-        names.append(one.id)
-    some = ", ".join(f"`{name}`" for name in names[:5]) + (", …" if len(names) > 5 else "")
-    raise click.UsageError(f"`{file}` has no trace `{wanted}`; it has {some}.")
-
-
-def _write(drawing: Drawing, output: Path, form: str | None) -> None:
-    from rulec.files import written_whole
-    from rulec.report.console import print_result
-    from rulec.report.pictures.files import as_bytes, format_of
-
-    data = as_bytes(drawing, form or format_of(str(output)), str(output))
-    if str(output) == "-":
-        sys.stdout.buffer.write(data)
-        return
-    with written_whole(output) as stream:
-        stream.write(data)
-    print_result(f"wrote {output}")

@@ -8,14 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    at_option,
-    chosen,
-    graph_options,
-    output_option,
-    rulebook_option,
-)
+from rulec.cli.arguments import at_option, output_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
     from rulec.trace.formats import Format

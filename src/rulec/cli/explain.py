@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from rulec.cli.arguments import complete_codes
+from rulec.cli.completing import complete_codes
 
 
 @click.command()

@@ -9,14 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    at_option,
-    chosen,
-    graph_options,
-    json_option,
-    rulebook_option,
-)
+from rulec.cli.arguments import at_option, json_option, rulebook_option
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
     from rulec.maneuvers import Maneuvers, Ranked
@@ -93,9 +88,10 @@ def command(
     from rulec.maneuvers.otherwise import otherwise
     from rulec.report import maneuvers as report
     from rulec.report.console import print_diagnostics, print_result
+    from rulec.runtime.before import read_past
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
-    from rulec.workflow import find_maneuvers, machines, read_past
+    from rulec.workflow import find_maneuvers, machines
 
     begin = time.perf_counter()
     rules = machines(rulebook, search_path(), print_diagnostics, at)

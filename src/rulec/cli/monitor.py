@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, json_option, seconds
+from rulec.cli.arguments import at_option, json_option, seconds
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 

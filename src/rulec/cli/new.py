@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rulec.cli.arguments import complete_rulebooks
+from rulec.cli.completing import complete_rulebooks
 
 
 @click.command()
@@ -38,6 +38,12 @@ def command(name: str, output: str, base: str | None) -> None:
     from rulec.rulebook.template import new_rulebook, new_rulebook_upon
     from rulec.settings import search_path
 
+    name = name.removesuffix(".rules")
+    if base is not None and ("/" in base or base.endswith(".rules")):
+        raise click.UsageError(
+            f"--extends takes a name, such as `{Path(base).stem}`: a rulebook finds another one "
+            "beside itself, on the search path, or among what ships"
+        )
     today = datetime.now().astimezone().date()
     if base is None:
         text = new_rulebook(name, today)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, complete_rules, json_option
+from rulec.cli.arguments import at_option, json_option
+from rulec.cli.completing import complete_rulebooks, complete_rules
 
 if TYPE_CHECKING:
     from rulec.automata.compiled import CompiledRulebook
@@ -21,8 +20,8 @@ FORMATS = ("text", "dot", "svg")
 
 SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
 
-WIDTH = 100
-"""The width of a page that goes to no terminal."""
+OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
+"""Ends of names of pictures that are not drawn."""
 
 
 @click.command()
@@ -57,15 +56,17 @@ def command(
     rule is shown in brief, a rulebook's only one in full.
     """
     from rulec.report import rule_page
-    from rulec.report.console import put_result
+    from rulec.report.console import PAGE_WIDTH, page_width, put_result
 
     if output is not None and automaton_format is None and not json_output:
+        if Path(output).suffix.lower() in OTHERS:
+            raise click.UsageError(f"{output}: an automaton is drawn in a file .svg, .dot or .gv")
         automaton_format = SUFFIXES.get(Path(output).suffix)
     if json_output and automaton_format is not None:
         raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
     book, compiled = _read(rulebook, at)
-    chosen = _chosen(book, rule)
-    width = _width(output)
+    chosen = _chosen(book, rule, rulebook)
+    width = page_width() if output is None else PAGE_WIDTH
     if chosen is None and automaton_format is not None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = None
@@ -116,17 +117,37 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
 
 
-def _chosen(book: Rulebook, name: str | None) -> Rule | None:
+def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
     from rulec.diagnostics import nearest_name
 
     if name is None:
         return book.rules[0] if len(book.rules) == 1 else None
     by_name = {rule.name: rule for rule in book.rules}
     if name not in by_name:
+        if why := _why_absent(book, name, reference):
+            raise click.UsageError(f"{book.name} has no rule `{name}`{why}")
         near = nearest_name(name, by_name)
         way_out = f"did you mean `{near}`?" if near else f"it has {_names(book)}"
         raise click.UsageError(f"{book.name} has no rule `{name}`; {way_out}")
     return by_name[name]
+
+
+def _why_absent(book: Rulebook, name: str, reference: str) -> str:
+    """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
+    from rulec.analysis.inheritance import read_with_inheritance
+    from rulec.settings import search_path
+    from rulec.syntax.printer import print_in_force
+
+    if Path(reference).suffix == ".json":
+        return ""
+    _, inherited = read_with_inheritance(reference, search_path(), book.at)
+    last = next((one.steps[-1] for one in inherited.rules if one.name == name), None)
+    if last is None:
+        return ""
+    if last.rule is not None and last.rule.in_force is not None:
+        return f" on {book.at}: it is {print_in_force(last.rule.in_force)}"
+    deed = {"dropped": "dropped it", "silent": "is silent on it"}[last.deed]
+    return f": {last.book} {deed}, because {last.because}"
 
 
 def _names(book: Rulebook) -> str:
@@ -159,9 +180,3 @@ def _automaton(automaton: Automaton, output_format: str, name: str, width: int) 
             "yourself from --automaton dot"
         )
     return automaton_svg.as_svg(automaton, name)
-
-
-def _width(output: str | None) -> int:
-    if output is not None or not sys.stdout.isatty():
-        return WIDTH
-    return max(40, shutil.get_terminal_size((WIDTH, 24)).columns)

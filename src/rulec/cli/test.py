@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks
+from rulec.cli.arguments import at_option
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
@@ -82,7 +83,8 @@ def command(
     runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
-    print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
+    if runs or output_format != "full":
+        print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_aside(f"rulec: {sentence}")
@@ -94,11 +96,11 @@ def command(
 
 def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
+    from rulec.analysis.asking import run_examples
     from rulec.diagnostics import RulecError
     from rulec.report.console import print_diagnostics
     from rulec.runtime.exercise import unexercised
     from rulec.settings import search_path
-    from rulec.workflow import run_examples
 
     try:
         run = run_examples(rulebook, search_path(), pattern, at)

@@ -10,14 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.arguments import (
-    chosen,
-    complete_rulebooks,
-    graph_options,
-    output_option,
-    traces_format_option,
-)
+from rulec.cli.arguments import output_option, traces_format_option
+from rulec.cli.completing import complete_rulebooks
 from rulec.cli.recorded_arguments import drives_options, given, wanted
+from rulec.cli.scenario_arguments import chosen, graph_options
 
 if TYPE_CHECKING:
     from rulec.trace import Trace

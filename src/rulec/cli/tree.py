@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.arguments import at_option, complete_rulebooks, json_option, only_sources
+from rulec.cli.arguments import at_option, json_option, only_sources
+from rulec.cli.completing import complete_rulebooks
 
 if TYPE_CHECKING:
     from rulec.analysis.history import Inheritance, Member
-
-WIDTH = 100
-"""The width of a tree that goes to no terminal."""
 
 
 @click.command()
@@ -35,10 +32,10 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     """
     from rulec.analysis.family import forest
     from rulec.report import family_tree
-    from rulec.report.console import print_result, wants_color
+    from rulec.report.console import page_width, print_result, wants_color
 
     only_sources(rulebooks, "be taken apart")
-    width, color = _width(), wants_color(sys.stdout)
+    width, color = page_width(), wants_color(sys.stdout)
     if len(rulebooks) == 1:
         inherited = family_tree.chosen(_inheritance(rulebooks[0], at), pattern)
         if pattern is not None and not inherited.rules:
@@ -72,9 +69,3 @@ def _members(rulebooks: tuple[str, ...], at: str) -> list[Member]:
     if not rulebooks:
         return [member_of(one) for one in rulebook_trees(search_path())]
     return [book for one in rulebooks for book in _inheritance(one, at).books]
-
-
-def _width() -> int:
-    if not sys.stdout.isatty():
-        return WIDTH
-    return max(40, shutil.get_terminal_size((WIDTH, 24)).columns)

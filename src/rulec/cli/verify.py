@@ -47,6 +47,11 @@ if TYPE_CHECKING:
     metavar="N",
     help="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
+@click.option(
+    "--every-part",
+    is_flag=True,
+    help="Explain by every part of a formula and every state, however large the table becomes.",
+)
 @traces_format_option
 @egos_option
 @drives_options
@@ -57,6 +62,7 @@ def command(
     files: tuple[str, ...],
     rulebook: str,
     n_explained: int | None,
+    every_part: bool,
     form: Format | None,
     json_output: bool,
     at: str,
@@ -85,7 +91,7 @@ def command(
     if not recordings and (option := "--net" if net else "--ego" if egos else given(options)):
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    run = _Run(rules, json_output, Complaints(), to_explain)
+    run = _Run(rules, json_output, Complaints(), to_explain, every_part)
     if recordings:
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
         about = wanted(egos, options, book.vocabulary)
@@ -107,6 +113,7 @@ class _Run:
     json_output: bool
     complaints: Complaints
     to_explain: int
+    every_part: bool
     violated: bool = False
     not_answered: bool = False
 
@@ -134,8 +141,11 @@ class _Run:
                     trace = traces[place]
                     assert isinstance(trace, Trace), "what has a verdict is a trace"
                     explained = [explain(violation, trace, used) for violation in chosen]
-                as_printed = verdicts.as_json if self.json_output else verdicts.as_text
-                print_result(as_printed(answer, used, explained))
+                print_result(
+                    verdicts.as_json(answer, used, explained)
+                    if self.json_output
+                    else verdicts.as_text(answer, used, explained, every_part=self.every_part)
+                )
             else:
                 not_judged += 1
                 self.complaints.add(answer.error)
@@ -175,7 +185,9 @@ class _Run:
                     self.to_explain -= len(chosen)
                     explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
                     if explained:
-                        blocks.append(report.in_detail(one, judged, explained))
+                        blocks.append(
+                            report.in_detail(one, judged, explained, every_part=self.every_part)
+                        )
                 elif isinstance(one, Judged) and isinstance(one.answer, NotJudged):
                     self.complaints.add(one.answer.error)
                     self.not_answered = True

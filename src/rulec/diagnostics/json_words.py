@@ -8,8 +8,9 @@ def json_words(problem: Exception) -> str:
     text, _, path = str(problem).partition(" - at `$")
     path = path.rstrip("`").lstrip(".")
     text = text[:1].lower() + text[1:]
-    for theirs, ours in _JSON_WORDS.items():
-        text = text.replace(theirs, ours)
+    if "field `" not in text:  # whose name may be that of a type
+        for theirs, ours in _JSON_WORDS.items():
+            text = text.replace(theirs, ours)
     return f"{text} (in `{path}`)" if path else text
 
 

@@ -6,10 +6,11 @@ to itself may be); nothing else is, as in Kleene's strong three-valued logic.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol
+from functools import lru_cache
+from typing import Protocol, TypeAlias
 
 from rulec.logic.comparing import stands
 from rulec.logic.formula import (
@@ -21,6 +22,7 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Quantity,
+    Relation,
     Same,
     Term,
     Unary,
@@ -31,6 +33,10 @@ from rulec.vocabulary import Vocabulary
 _NOT = UnaryOperator.NOT
 _AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
 _IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
+_AT_ONCE = frozenset({_AND, _OR, _IMPLIES, _IFF, _XOR})
+
+_MOST = 1 << 12
+"""So many formulas are kept ready to be asked."""
 
 Bound = Mapping[str, str]
 """Variable -> the object that it stands for."""
@@ -62,6 +68,9 @@ class Situation(Protocol):
         """The value of a quantity."""
 
 
+_Judge: TypeAlias = Callable[[Bound, Situation], bool | Unknown]
+
+
 def total(
     terms: Sequence[tuple[Fraction, Term]], bound: Bound, moment: Situation
 ) -> Fraction | Unknown:
@@ -91,7 +100,7 @@ def counted(count: Count, bound: Bound, moment: Situation) -> tuple[str, ...] | 
     fitting: dict[str, bool] = {}
     inner = dict(bound)
     there = moment.objects
-    same = _same_as(count.variable, count.body)
+    same, judge = _same_as(count.variable, count.body), _judge_of(count.body)
     candidates = there if same is None else [one for one in (bound[same],) if one in there]
     for name in candidates:
         kind = there[name]
@@ -99,7 +108,7 @@ def counted(count: Count, bound: Bound, moment: Situation) -> tuple[str, ...] | 
             fitting[kind] = moment.vocabulary.is_subtype(kind, count.type)
         if fitting[kind]:
             inner[count.variable] = name
-            truth = holds(count.body, inner, moment)
+            truth = judge(inner, moment)
             if isinstance(truth, Unknown):
                 return truth
             if truth:
@@ -118,52 +127,93 @@ def _same_as(variable: str, formula: Formula) -> str | None:
 
 
 def holds(formula: Formula, bound: Bound, moment: Situation) -> bool | Unknown:
-    """Does a formula without temporal operators hold?"""
+    """Does a formula without temporal operators hold? TypeError if it has one."""
+    return _judge_of(formula)(bound, moment)
+
+
+@lru_cache(maxsize=_MOST)
+def _judge_of(formula: Formula) -> _Judge:
+    """What says whether a formula holds: it is asked of every object in every state."""
     match formula:
         case Atom(name, arguments, wanted):
-            value = moment.value(name, tuple([bound[one] for one in arguments]))
-            return value if isinstance(value, Unknown) else value == (wanted or True)
+            return _atom(name, arguments, wanted or True)
         case Comparison(terms, relation, limit):
-            number = total(terms, bound, moment)
-            return number if isinstance(number, Unknown) else stands(number, relation, limit)
+            return _comparison(terms, relation, limit)
         case Same(one, other):
-            return bound[one] == bound[other]
+            return lambda bound, _: bound[one] == bound[other]
         case Constant(truth):
-            return truth
+            return lambda _, __: truth
         case Unary(operator, operand) if operator is _NOT:
-            return _not(holds(operand, bound, moment))
-        case Binary(operator, left, right):
-            first = holds(left, bound, moment)
+            return _negation(_judge_of(operand))
+        case Binary(operator, left, right) if operator in _AT_ONCE:
+            first, second = _judge_of(left), _judge_of(right)
             if operator is _AND:
-                return _joined(first, right, bound, moment, settled_by=False)
+                return _joined(first, second, settled_by=False)
             if operator is _OR:
-                return _joined(first, right, bound, moment, settled_by=True)
+                return _joined(first, second, settled_by=True)
             if operator is _IMPLIES:
-                return _joined(_not(first), right, bound, moment, settled_by=True)
-            if operator is _IFF:
-                return _alike(first, holds(right, bound, moment))
-            if operator is _XOR:
-                return _not(_alike(first, holds(right, bound, moment)))
+                return _joined(_negation(first), second, settled_by=True)
+            alike = _alike(first, second)
+            return alike if operator is _IFF else _negation(alike)
     raise TypeError("this formula does not speak of one state alone")
 
 
-def _joined(
-    first: bool | Unknown, right: Formula, bound: Bound, moment: Situation, *, settled_by: bool
-) -> bool | Unknown:
+def _atom(name: str, arguments: tuple[str, ...], wanted: bool | str) -> _Judge:
+    if len(arguments) == 1:
+        return _atom_of_one(name, arguments[0], wanted)
+
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        value = moment.value(name, tuple([bound[one] for one in arguments]))
+        return value if isinstance(value, Unknown) else value == wanted
+
+    return judge
+
+
+def _atom_of_one(name: str, argument: str, wanted: bool | str) -> _Judge:
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        value = moment.value(name, (bound[argument],))
+        return value if isinstance(value, Unknown) else value == wanted
+
+    return judge
+
+
+def _comparison(
+    terms: Sequence[tuple[Fraction, Term]], relation: Relation, limit: Fraction
+) -> _Judge:
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        number = total(terms, bound, moment)
+        return number if isinstance(number, Unknown) else stands(number, relation, limit)
+
+    return judge
+
+
+def _negation(operand: _Judge) -> _Judge:
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        truth = operand(bound, moment)
+        return truth if isinstance(truth, Unknown) else not truth
+
+    return judge
+
+
+def _joined(left: _Judge, right: _Judge, *, settled_by: bool) -> _Judge:
     """``and``, which one operand that is false settles; or ``or``, which a true one does."""
-    if first is settled_by:
-        return settled_by
-    second = holds(right, bound, moment)
-    if second is settled_by:
-        return settled_by
-    return first if isinstance(first, Unknown) else second
+
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        first = left(bound, moment)
+        if first is settled_by:
+            return settled_by
+        second = right(bound, moment)
+        return second if second is settled_by or first is not_settled else first
+
+    not_settled = not settled_by
+    return judge
 
 
-def _alike(first: bool | Unknown, second: bool | Unknown) -> bool | Unknown:
-    if isinstance(first, Unknown):
-        return first
-    return second if isinstance(second, Unknown) else first is second
+def _alike(left: _Judge, right: _Judge) -> _Judge:
+    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+        first, second = left(bound, moment), right(bound, moment)
+        if isinstance(first, Unknown):
+            return first
+        return second if isinstance(second, Unknown) else first is second
 
-
-def _not(truth: bool | Unknown) -> bool | Unknown:
-    return truth if isinstance(truth, Unknown) else not truth
+    return judge

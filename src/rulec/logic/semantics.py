@@ -47,7 +47,7 @@ def truth_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
     """The formula's truth value at each of the word's instants. ValueError as for ``holds``."""
-    known = _values(formula, word, semantics)
+    known = extended_values(formula, word, semantics)
     return known[formula][: len(word)]
 
 
@@ -55,14 +55,17 @@ def values_of_parts(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
     """The same for the formula and every part of it. ValueError as for ``holds``."""
-    known = _values(formula, word, semantics)
+    known = extended_values(formula, word, semantics)
     return {part: values[: len(word)] for part, values in known.items()}
 
 
-def _values(
+def extended_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[Formula, list[bool]]:
-    """As ``values_of_parts``, and on beyond the word's end until nothing changes any more."""
+    """As ``values_of_parts``, and on beyond the word's end until nothing changes any more.
+
+    Operands come before what they are operands of.
+    """
     if not word:
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"

@@ -5,7 +5,7 @@ scenario -> occupancy -> regions -> cells -> adjacency, continuation -> edges an
 
 from rulec.partition.adjacency import AdjacencyName
 from rulec.partition.envelope import Envelope, envelope
-from rulec.partition.graph import NavigationGraph, navigation_graph
+from rulec.partition.graph import GraphOptions, NavigationGraph, navigation_graph
 from rulec.partition.model import Cell, Layer
 from rulec.partition.regions import ExtentName, PartitionName
 
@@ -14,6 +14,7 @@ __all__ = [
     "Cell",
     "Envelope",
     "ExtentName",
+    "GraphOptions",
     "Layer",
     "NavigationGraph",
     "PartitionName",

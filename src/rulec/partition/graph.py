@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, TypedDict, get_args
 
 from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
 from rulec.partition.adjacency import AdjacencyName, neighbours
@@ -22,9 +22,9 @@ from rulec.partition.occupancy import scene
 from rulec.partition.predictions import Predicted
 from rulec.partition.regions import ExtentName, PartitionName
 from rulec.partition.snap import snapped
-from rulec.partition.start import start_cell
+from rulec.partition.start import start_cell, step_that_leaves_room
 from rulec.scenario import Obstacle, Scenario
-from rulec.scenario.timing import timing
+from rulec.scenario.timing import Timing, timing
 
 if TYPE_CHECKING:
     import networkx
@@ -84,10 +84,20 @@ class NavigationGraph:
         return to_networkx(self)
 
 
+class GraphOptions(TypedDict, total=False):
+    """The options of ``navigation_graph``; None is as if there were none."""
+
+    partition: PartitionName | None
+    adjacency: AdjacencyName
+    extent: ExtentName
+    step_s: float | None
+    horizon_s: float | None
+
+
 def navigation_graph(
     scenario: Scenario,
     *,
-    partition: PartitionName = "paper",
+    partition: PartitionName | None = None,
     adjacency: AdjacencyName = "touch",
     extent: ExtentName = "lane",
     step_s: float | None = None,
@@ -97,16 +107,19 @@ def navigation_graph(
 
     Args:
         scenario: the scene and its prediction.
-        partition: ``paper`` (behind, in front, left, right) or ``fine`` (station and lateral).
+        partition: ``paper`` (behind, in front, left, right), which it is unless given, or ``fine``
+            (station and lateral).
         adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
         extent: how wide obstacles are: ``lane`` (all of the lanes that they touch) or ``body``.
-        step_s: planning interval in seconds, instead of the scenario's.
+        step_s: planning interval in seconds, instead of the scenario's; in a recorded scene it is,
+            unless given, the longest one up to that which leaves ego a place to start.
         horizon_s: planning horizon in seconds, instead of the scenario's.
 
     Raises:
         RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
             R0608 for an unknown partition, adjacency or extent.
     """
+    partition = partition or "paper"
     _check_choice("partition", partition, get_args(PartitionName))
     _check_choice("adjacency", adjacency, get_args(AdjacencyName))
     _check_choice("extent", extent, get_args(ExtentName))
@@ -114,6 +127,10 @@ def navigation_graph(
         scenario.horizon_s if horizon_s is None else horizon_s,
         scenario.step_s if step_s is None else step_s,
     )
+    if step_s is None and scenario.account is not None:
+        free = step_that_leaves_room(scenario, times, partition, extent)
+        if free is not None:
+            times = Timing(free.step, int((times.layers - 1) * times.step / free.step) + 1)
     places = scene(scenario, times, partition, extent)
     planes = [
         plane(places.roadway, regions, partition, names)

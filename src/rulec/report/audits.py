@@ -6,12 +6,13 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import groupby
-from textwrap import wrap
+from textwrap import fill, wrap
 
 import click
 
 from rulec.analysis.audit import Audit, Changes, Finding
 from rulec.analysis.audit_kinds import KINDS
+from rulec.report.console import PAGE_WIDTH
 from rulec.report.excerpt import visible
 from rulec.report.markdown import code, escaped, table
 
@@ -19,15 +20,17 @@ Compared = Mapping[str, Changes]
 """Rulebook -> what has changed since an older audit of it."""
 
 
-def render(audits: Sequence[Audit], compared: Compared, output_format: str) -> str:
-    """All audits as ``text``, ``markdown`` or ``json``."""
+def render(
+    audits: Sequence[Audit], compared: Compared, output_format: str, width: int = PAGE_WIDTH
+) -> str:
+    """All audits as ``text`` of a width, ``markdown`` or ``json``."""
     match output_format:
         case "json":
             return _as_json(audits, compared)
         case "markdown":
             return "\n\n".join(_as_markdown(one, compared.get(one.rulebook)) for one in audits)
         case _:
-            return "\n\n\n".join(_as_text(one, compared.get(one.rulebook)) for one in audits)
+            return "\n\n\n".join(_as_text(one, compared.get(one.rulebook), width) for one in audits)
 
 
 def counts(audit: Audit) -> Iterator[tuple[str, str]]:
@@ -49,34 +52,41 @@ def law_of(audit: Audit) -> str:
     return f"{audit.law}{since}" if audit.law else "no law is named"
 
 
-def _as_text(audit: Audit, compared: Changes | None) -> str:
+def _as_text(audit: Audit, compared: Changes | None, width: int) -> str:
     title = f": {audit.title}" if audit.title else ""
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
-    width = max(len(name) for name, _ in rows)
     blocks = [
-        click.style(visible(f"{audit.rulebook}{title}"), bold=True)
-        + "".join(f"\n  {name:<{width}}  {visible(value)}" for name, value in rows)
+        click.style(visible(f"{audit.rulebook}{title}"), bold=True) + "\n" + _rows(rows, width)
     ]
     for kind, found in groupby(audit.findings, key=lambda one: one.kind):
-        blocks.append(f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(found))}")
-    width = max((len(visible(one.cite)) for one in audit.articles), default=0)
+        blocks.append(
+            f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(found), width)}"
+        )
     for book, articles in groupby(audit.articles, key=lambda one: one.book):
-        lines = [f"  {visible(one.cite):<{width}}  {', '.join(one.rules)}" for one in articles]
         title = f"{click.style('provisions', bold=True)} cited in {book}, and the rules they are in"
-        blocks.append("\n".join([title, *lines]))
+        rows = [(one.cite, ", ".join(one.rules)) for one in articles]
+        blocks.append(f"{title}\n{_rows(rows, width)}")
     if compared is not None:
         blocks.append(_changes_as_text(compared))
     return "\n\n".join(blocks)
 
 
-def _lines(found: Sequence[Finding]) -> str:
+def _lines(found: Sequence[Finding], width: int) -> str:
     if not any(one.note for one in found):
         names = ", ".join(visible(one.name) for one in found)
-        return "\n".join(wrap(names, 98, initial_indent="  ", subsequent_indent="  "))
-    width = max(len(visible(one.name)) for one in found)
-    return "\n".join(
-        f"  {visible(one.name):<{width}}  {visible(one.note)}".rstrip() for one in found
-    )
+        return fill(names, width, initial_indent="  ", subsequent_indent="  ")
+    return _rows([(one.name, one.note) for one in found], width)
+
+
+def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
+    """Two columns; what is too long for the second one goes on below it."""
+    column = max(len(visible(name)) for name, _ in rows)
+    lines: list[str] = []
+    for name, text in rows:
+        first, *rest = wrap(visible(text), max(20, width - column - 4)) or [""]
+        lines.append(f"  {visible(name):<{column}}  {first}".rstrip())
+        lines += [f"{'':{column + 4}}{line}" for line in rest]
+    return "\n".join(lines)
 
 
 def _changes_as_text(compared: Changes) -> str:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from rulec.automata.compiled import CompiledRule
 from rulec.automata.machine import NumberRead, Read
 from rulec.diagnostics.wording import any_of
 from rulec.logic.english import comparison_text, number_text, terms_text
-from rulec.logic.formula import Atom, Comparison, Quantity, Relation, atoms_of
+from rulec.logic.formula import Atom, Comparison, Count, Quantity, Relation, atoms_of
 from rulec.report.excerpt import visible
 from rulec.rulebook.model import ExampleState
 from rulec.runtime.edges import Cube
@@ -26,6 +26,14 @@ _DENIAL: dict[Relation, Relation] = {
     "!=": "=",
 }
 
+_OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
+    "<": ("<=", -1),
+    "<=": ("<", 1),
+    ">": (">=", 1),
+    ">=": (">", -1),
+}
+"""`< 2` is `<= 1`."""
+
 _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
@@ -39,8 +47,9 @@ class Wording:
         for one in atoms_of(rule.formula):
             if isinstance(one, Comparison):
                 text = comparison_text(one)
-                self._said[one.terms, one.relation, one.limit] = text
-                self._said.setdefault((one.terms, _DENIAL[one.relation], one.limit), _denied(text))
+                for relation, limit in _alike(one):
+                    self._said[one.terms, relation, limit] = text
+                    self._said.setdefault((one.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
         """What holds of exactly the letters of these cubes; ``true`` of all."""
@@ -88,8 +97,8 @@ class Wording:
             lower, upper = read.thresholds[left_out[0] - 1], read.thresholds[left_out[0]]
             if lower.limit == upper.limit:
                 return self._compared(read, "!=", lower.limit), False
-        runs = [self._run(read, run) for run in _runs(sorted(allowed))]
-        return " or ".join(runs), len(runs) > 1 or " and " in runs[0]
+        texts = [self._run(read, run) for run in runs(sorted(allowed))]
+        return " or ".join(texts), len(texts) > 1 or " and " in texts[0]
 
     def _run(self, read: NumberRead, run: range) -> str:
         """The words for neighbouring digits."""
@@ -134,14 +143,24 @@ class Wording:
         return visible(" and ".join(facts)) or "true"
 
 
-def _runs(digits: Sequence[int]) -> list[range]:
-    runs: list[range] = []
-    for digit in digits:
-        if runs and runs[-1].stop == digit:
-            runs[-1] = range(runs[-1].start, digit + 1)
+def _alike(one: Comparison) -> Iterator[tuple[Relation, Fraction]]:
+    """The comparison, and the one that a machine may have made of it: counts are whole numbers."""
+    yield one.relation, one.limit
+    match one.terms:
+        case ((_, Count()),) if one.limit.denominator == 1 and one.relation in _OF_WHOLE_NUMBERS:
+            relation, step = _OF_WHOLE_NUMBERS[one.relation]
+            yield relation, one.limit + step
+
+
+def runs(numbers: Sequence[int]) -> list[range]:
+    """Ascending numbers as ranges of neighbours."""
+    found: list[range] = []
+    for number in numbers:
+        if found and found[-1].stop == number:
+            found[-1] = range(found[-1].start, number + 1)
         else:
-            runs.append(range(digit, digit + 1))
-    return runs
+            found.append(range(number, number + 1))
+    return found
 
 
 def _denied(text: str) -> str:

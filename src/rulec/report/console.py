@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
@@ -23,10 +24,20 @@ if TYPE_CHECKING:
 
 REFRESH_S = 0.2
 
+PAGE_WIDTH = 100
+"""The width of a text that goes to no terminal."""
+
 
 def wants_color(stream: TextIO) -> bool:
     """Is the stream a terminal, and has the user not asked for plain text (no-color.org)?"""
     return stream.isatty() and not os.environ.get("NO_COLOR")
+
+
+def page_width() -> int:
+    """How wide a text on standard output is to be."""
+    if not sys.stdout.isatty():
+        return PAGE_WIDTH
+    return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
 
 
 def print_result(text: str) -> None:

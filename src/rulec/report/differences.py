@@ -77,7 +77,16 @@ def _head(found: Difference) -> str:
     days = f"the law of {first.at}"
     if first.at != second.at:
         days = f"{first.name} is the law of {first.at}, {second.name} that of {second.at}"
-    return f"{title}; {days}"
+    return "\n".join([f"{title}; {days}", *sides(found)])
+
+
+def sides(found: Difference) -> list[str]:
+    """A line on traffic if it keeps to different sides, which many rules differ by."""
+    first, second = found.first, found.second
+    if {first.traffic, second.traffic} != {"left", "right"}:
+        return []
+    ours = f"{first.name} drives on the {first.traffic}"
+    return [f"{ours}, {second.name} on the {second.traffic}: near and far change sides"]
 
 
 def verdict(pair: RulePair, found: Difference) -> str:

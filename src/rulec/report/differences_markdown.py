@@ -6,7 +6,14 @@ from collections.abc import Iterator, Sequence
 
 from rulec.analysis.difference import Difference, OneSided, RulePair
 from rulec.report import trace_table
-from rulec.report.differences import about_types, is_worth_a_block, only_why, summary, verdict
+from rulec.report.differences import (
+    about_types,
+    is_worth_a_block,
+    only_why,
+    sides,
+    summary,
+    verdict,
+)
 from rulec.report.markdown import code, escaped, table
 
 
@@ -14,6 +21,7 @@ def as_markdown(found: Difference) -> str:
     """A document of its own."""
     one, other = found.first.name, found.second.name
     parts = [f"# {code(one)} compared to {code(other)}", f"{escaped(summary(found))}."]
+    parts += [f"{escaped(line)}." for line in sides(found)]
     parts += [part for pair in found.pairs if is_worth_a_block(pair) for part in _pair(pair, found)]
     for rules, has, lacks in ((found.only_first, one, other), (found.only_second, other, one)):
         if rules:

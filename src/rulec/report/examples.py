@@ -7,7 +7,9 @@ from dataclasses import replace
 
 import click
 
-from rulec.logic.formula import Atom
+from rulec.diagnostics import Diagnostic
+from rulec.logic.constants import folded
+from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import in_words, number_in_words
 from rulec.report.diagnostics import render_diagnostics
 from rulec.report.excerpt import visible
@@ -47,8 +49,9 @@ def as_text(
 ) -> str:
     """A line for each example, what there is to say about those that failed, and the numbers."""
     lines = [_line(one, run.rulebook.name) for run in runs for one in run.outcomes]
-    failed = [one for run in runs for one in run.outcomes if not one.passed]
-    problems = [replace(surprise(one), severity="error") for one in failed]
+    problems = [
+        failure(one, run.rulebook.name) for run in runs for one in run.outcomes if not one.passed
+    ]
     if problems:
         lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
     if covered is not None:
@@ -60,6 +63,25 @@ def as_text(
         together = percent(rule for rules in covered for rule in rules)
         lines.append(f"coverage {as_percent(together)}")
     return "\n".join([*lines, _summary(runs)])
+
+
+def failure(one: Outcome, rulebook: str) -> Diagnostic:
+    """The error about an example that fails in a rulebook, which may have inherited it."""
+    problem = replace(surprise(one), severity="error")
+    rule = one.rule
+    if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
+        why = "the rule's condition is false as options are set"
+        return replace(problem, help=f"{why}: set them, or leave the example out")
+    stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
+    if rule.book == rulebook and len(set(stands_in)) < 2:
+        return problem
+    variables = ", ".join(f"{each.name}: {each.type}" for each in rule.variables)
+    head = f"{rule.name} ({variables})" if variables else rule.name
+    return replace(
+        problem,
+        help="the example is inherited: undo what makes the rule another one here, or give it "
+        f"examples of this rulebook's own in `override rule {head} {{ … }}`",
+    )
 
 
 def shortcomings(
@@ -121,7 +143,8 @@ def as_percent(number: float) -> str:
 def missing_example(edge: MissingEdge, vocabulary: Vocabulary) -> str:
     """The example that would take an edge, as it would be written in the rule.
 
-    What cannot be written as facts stands in a comment behind it.
+    What has its default is not said, unless it is a number. What cannot be written as facts stands
+    in a comment behind it.
     """
     states = "; ".join(
         " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states
@@ -141,6 +164,8 @@ def _facts(state: ExampleState, vocabulary: Vocabulary) -> Iterator[str]:
         if isinstance(declaration, Quantity):
             number = number_in_words(exact(float(value)))
             yield f"{Atom(name, variables)} = {number} {declaration.unit}"
+        elif value == declaration.default:
+            continue
         elif isinstance(value, str):
             yield str(Atom(name, variables, value))
         else:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from xml.etree import ElementTree
 
 from rulec.diagnostics.diagnostic import at
 from rulec.report.diagnostics import render_diagnostics
-from rulec.report.examples import coverage_lines
+from rulec.report.examples import coverage_lines, failure
 from rulec.runtime.coverage import RuleCoverage, percent
-from rulec.runtime.examples import ExampleRun, Outcome, surprise
+from rulec.runtime.examples import ExampleRun, Outcome
 
 _NOT_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 cannot hold, not even escaped (section 2.2)."""
@@ -54,9 +53,9 @@ def _case(suite: ElementTree.Element, rulebook: str, one: Outcome) -> None:
         suite, "testcase", {name: _text(value) for name, value in attributes.items()}
     )
     if not one.passed:
-        problem = replace(surprise(one), severity="error")
-        failure = {"type": problem.code, "message": _text(problem.message)}
-        element = ElementTree.SubElement(case, "failure", failure)
+        problem = failure(one, rulebook)
+        said = {"type": problem.code, "message": _text(problem.message)}
+        element = ElementTree.SubElement(case, "failure", said)
         element.text = _text(render_diagnostics([problem], summary=False))
 
 

@@ -125,11 +125,14 @@ def _some(names: Sequence[str]) -> str:
     return f"{shown}{more}"
 
 
-def in_detail(one: Judged, judged: JudgedRecording, explained: Sequence[Explanation]) -> str:
+def in_detail(
+    one: Judged, judged: JudgedRecording, explained: Sequence[Explanation], *, every_part: bool
+) -> str:
     """The verdict on one drive, with explanations of its first violations; nothing without one."""
     if not isinstance(one.answer, Verdict):
         return ""
-    return f"\n{verdicts.as_text(one.answer, judged.rules, explained)}"
+    text = verdicts.as_text(one.answer, judged.rules, explained, every_part=every_part)
+    return f"\n{text}"
 
 
 def summary(tally: Tally) -> str:

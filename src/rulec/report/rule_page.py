@@ -12,10 +12,11 @@ from typing import Any
 import click
 
 from rulec.automata.compiled import CompiledRule
+from rulec.logic.constants import folded
 from rulec.logic.english import amount, number_text, plural, spoken
-from rulec.logic.formula import Unary, UnaryOperator
+from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import in_words
-from rulec.logic.sentence import Phrase, condition, exemption, sentence
+from rulec.logic.sentence import Phrase, Shape, condition, exemption, sentence
 from rulec.logic.sentence_lines import in_one_line, lines
 from rulec.report import automaton_text
 from rulec.report.automaton import Automaton, automaton_of
@@ -96,20 +97,29 @@ def _remarks(states: Sequence[Witness]) -> Iterator[str]:
 def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
     """The rule as a sentence, without its exceptions."""
     return sentence(
-        rule.required or rule.formula,
+        folded(rule.required or rule.formula),
         [(variable.name, variable.type) for variable in rule.variables],
         lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
     )
 
 
 def restrictions_of(rule: Rule) -> list[Phrase]:
-    """When the rule applies, and its exceptions, as sentences."""
-    found = [exemption(one.formula, one.scope) for one in rule.exemptions]
-    if rule.condition is None:
+    """When the rule applies, and its exceptions, as sentences; none of what an option rules out."""
+    found = [
+        exemption(formula, one.scope)
+        for one in rule.exemptions
+        if (formula := folded(one.formula)) != Constant(False)
+    ]
+    applies = None if rule.condition is None else folded(rule.condition)
+    if applies is None or applies == Constant(True):
         return found
+    if applies == Constant(False):
+        return [
+            Phrase("it never counts, for its condition is false as options are set", Shape.CLAUSE)
+        ]
     guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
     guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
-    return [condition(rule.condition, guards=guards), *found]
+    return [condition(applies, guards=guards), *found]
 
 
 def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:

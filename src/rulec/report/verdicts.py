@@ -68,11 +68,16 @@ def error_as_data(error: RulecError) -> dict[str, Any]:
 
 
 def as_text(
-    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
+    verdict: Verdict,
+    rulebook: CompiledRulebook,
+    explained: Sequence[Explanation] = (),
+    *,
+    every_part: bool = False,
 ) -> str:
     """The violations of a trace, a line each, below a line that names the trace.
 
-    ``explained`` are explanations of the first violations; each follows its line.
+    ``explained`` are explanations of the first violations; each follows its line, folded unless
+    ``every_part`` of it is wanted.
     """
     if not verdict.violations:
         return f"{visible(verdict.trace)}: {click.style('satisfied', fg='green')}"
@@ -88,7 +93,7 @@ def as_text(
         line = in_a_line(violation, rules[violation.rule], rulebook.name)
         lines.append(f"  {visible(line)}")
         if number < len(explained):
-            lines.append(explanation.as_text(explained[number]))
+            lines.append(explanation.as_text(explained[number], every_part=every_part))
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join(lines)

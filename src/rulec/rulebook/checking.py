@@ -9,12 +9,14 @@ from datetime import date
 from pathlib import Path
 from typing import NoReturn
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.rulebook.finding import (
+    BY_PATH,
     available_rulebooks,
     available_vocabularies,
     find_rulebook,
     read_bytes,
+    suggest,
 )
 from rulec.rulebook.recollection import Question, recall, remember
 
@@ -151,6 +153,6 @@ def _nothing_called(name: str, known: Sequence[str]) -> Diagnostic:
     return Diagnostic(
         "R0703",
         f"there is no rulebook, vocabulary or folder `{name}`",
-        help=did_you_mean(name, known) or f"available: {named(known)}",
-        notes=("a file is given by its path, such as `./mine.rules`",),
+        help=suggest(name, known),
+        notes=(BY_PATH,),
     )

@@ -70,6 +70,19 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
     )
 
 
+def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:
+    """Two vocabularies that cannot be used together, since they share names."""
+    one, other = first.name.text, again.name.text
+    return Diagnostic(
+        "R0204",
+        f"the vocabularies `{one}` and `{other}` both declare {named(sorted(set(names)))}",
+        again.span.place,
+        expected=f"cannot be used beside `{one}`",
+        help="use one of them, and declare here what you miss of the other",
+        labels=(Label(first.span.place, f"`{one}` is used here"),),
+    )
+
+
 def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
     """A quantity in a unit that nobody knows, or that cannot be converted exactly."""
     refusal = unit_refusal(item.unit)

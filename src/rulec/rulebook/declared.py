@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.rulebook.declaration_messages import (
+    both_declare,
     no_such_value,
     twice,
     unknown_type,
@@ -23,9 +24,10 @@ from rulec.vocabulary.units import Unit, parse_unit
 class Declared:
     """What the files declare, and where; filled by ``declare``.
 
-    ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
-    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain``
-    are types whose parents are not known for such a reason.
+    ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
+    may have declared; with ``opaque`` any name may be missing for a reason that has been reported,
+    with ``opaque_types`` any type. ``uncertain`` are types whose parents are not known for such a
+    reason.
     """
 
     types: dict[str, ObjectType] = field(default_factory=dict)
@@ -37,9 +39,21 @@ class Declared:
     units: dict[str, Unit | None] = field(default_factory=dict)
     suspects: set[str] = field(default_factory=set)
     uncertain: set[str] = field(default_factory=set)
+    of_vocabularies: set[Source] = field(default_factory=set)
     opaque: bool = False
     opaque_types: bool = False
     mistakes: list[Diagnostic] = field(default_factory=list)
+    shared: dict[tuple[Source, Source], list[str]] = field(default_factory=dict)
+    """Names that two vocabularies declare: the earlier one, the later one, and which."""
+
+    def twice(self, what: str, again: tree.Name, first: Span) -> None:
+        """Note that something is declared twice."""
+        files = first.source, again.span.source
+        if files[0] != files[1] and set(files) <= self.of_vocabularies:
+            self.shared.setdefault(files, []).append(again.text)
+            self.uncertain.add(again.text)
+        else:
+            self.mistakes.append(twice(what, again, first))
 
     def vocabulary(self, name: str) -> Vocabulary:
         """The declarations as data; only of use when there were no mistakes."""
@@ -103,7 +117,11 @@ class Declared:
 
 def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
     """The declarations of used vocabularies and of the file that uses them, in this order."""
-    declared = Declared(opaque=opaque or not all(file.complete for file in files))
+    vocabularies = {one.span.source for one in files if one.name and one.kind == "vocabulary"}
+    declared = Declared(
+        of_vocabularies=vocabularies,
+        opaque=opaque or not all(file.complete for file in files),
+    )
     for file in files:
         _note_suspects(declared, file)
         _declare_types(declared, file)
@@ -112,7 +130,16 @@ def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
             if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
                 _declare_item(declared, item, _roots(declared, file))
     _note_clashes(declared, files)
+    for (first, again), names in declared.shared.items():
+        uses = [_use_of(source, files) for source in (first, again)]
+        declared.mistakes.append(both_declare(names, *uses))
     return declared
+
+
+def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
+    """The last line that uses a vocabulary."""
+    (name,) = (one.name.text for one in files if one.name and one.span.source == vocabulary)
+    return [use for one in files for use in one.uses if use.name.text == name][-1]
 
 
 def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
@@ -121,7 +148,7 @@ def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
     for name in declared.type_spans.keys() & declared.spans.keys():
         spans = (declared.type_spans[name], declared.spans[name])
         first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
-        declared.mistakes.append(twice("name", tree.Name(name, again), first))
+        declared.twice("name", tree.Name(name, again), first)
 
 
 def _note_suspects(declared: Declared, file: tree.File) -> None:
@@ -138,7 +165,7 @@ def _declare_types(declared: Declared, file: tree.File) -> None:
     for item in own:
         name = item.name.text
         if name in declared.types:
-            declared.mistakes.append(twice("type", item.name, declared.type_spans[name]))
+            declared.twice("type", item.name, declared.type_spans[name])
             continue
         declared.types[name] = ObjectType(name, item.parent.text if item.parent else None)
         declared.type_spans[name] = item.name.span
@@ -217,7 +244,7 @@ def _declare_item(
             for value in values:
                 first = declared.spans.get(value.text)
                 if first is not None:
-                    declared.mistakes.append(twice("name", value, first))
+                    declared.twice("name", value, first)
                 else:
                     declared.spans[value.text] = value.span
                     declared.value_of[value.text] = enumeration
@@ -226,7 +253,7 @@ def _declare_item(
 def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
     first = declared.spans.get(name.text)
     if first is not None:
-        declared.mistakes.append(twice("name", name, first))
+        declared.twice("name", name, first)
         return
     declared.spans[name.text] = name.span
     declared.items[name.text] = item

@@ -6,11 +6,16 @@ from rulec.diagnostics import Span
 
 
 def description(span: Span) -> str:
-    """The comment lines right above an item, or the comment behind it, as one line of text.
+    """The comment behind an item, else the comment lines right above it, as one line of text.
 
-    A comment with a blank line below it is about more than the next item. Empty if there is none.
+    With one behind the item, those above it may be about several items. A comment with a blank line
+    below it is about more than the next item. Empty if there is none.
     """
     source = span.source
+    last, column = source.position(span.end)
+    _, sign, behind = source.line(last)[column - 1 :].partition("#")
+    if sign:
+        return behind.strip()
     first, _ = source.position(span.start)
     found: list[str] = []
     for number in range(first - 1, 0, -1):
@@ -18,8 +23,4 @@ def description(span: Span) -> str:
         if not line.startswith("#"):
             break
         found.insert(0, line.lstrip("#").strip())
-    if not found:
-        last, column = source.position(span.end)
-        _, sign, behind = source.line(last)[column - 1 :].partition("#")
-        found = [behind.strip()] if sign else []
     return " ".join(filter(None, found))

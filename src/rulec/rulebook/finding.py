@@ -16,6 +16,8 @@ _SUFFIX = ".rules"
 _LEAD = re.compile(r"(?:\s+|#[^\n]*)*(\w*)")
 _LEAD_BYTES = 65536
 
+BY_PATH = "a file is given by its path, such as `./mine.rules`"
+
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
@@ -45,7 +47,9 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
     found = _by_name(text, search_path)
     if found is not None:
         return found
-    raise RulecError(_no_rulebook(text, available_rulebooks(search_path)))
+    known = available_rulebooks(search_path)
+    missing = _no_rulebook(text, known)
+    raise RulecError(replace(missing, help=suggest(text, known), notes=(BY_PATH,)))
 
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
@@ -113,7 +117,8 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
         return found
     missing = _no_rulebook(name, available_rulebooks([*_around(user), *search_path]))
     expected = "expected the name of a rulebook"
-    raise RulecError(replace(missing, place=line.place, expected=expected))
+    looked = f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
+    raise RulecError(replace(missing, place=line.place, expected=expected, notes=(looked,)))
 
 
 def locate_base(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
@@ -197,8 +202,14 @@ def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
         "R0703",
         f"there is no rulebook `{name}`",
         help=_suggest(name, known),
-        notes=("a file is given by its path, such as `./mine.rules`",),
     )
+
+
+def suggest(name: str, known: Sequence[str]) -> str:
+    """What else somebody may have meant by a name in a command."""
+    if name and _is_file(Path(f"{name}{_SUFFIX}")):
+        return f"write `./{name}{_SUFFIX}` for the file in the working folder"
+    return _suggest(name, known)
 
 
 def _suggest(name: str, known: Sequence[str]) -> str:

@@ -15,7 +15,7 @@ from rulec.rulebook.finding import (
     find_rulebook,
     read_bytes,
 )
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.model import Rulebook, Traffic
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.vocabularies import Vocabularies
 from rulec.syntax import decode, parse, tree
@@ -60,7 +60,7 @@ class Diagnosis:
 
 
 def load_rulebook(
-    reference: str | Path, search_path: Sequence[Path] = (), at: str = ""
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> Rulebook:
     """A rulebook as meant.
 
@@ -78,11 +78,20 @@ def load_rulebook(
     return read_rulebook(reference, search_path, at).rulebook
 
 
-def read_rulebook(reference: str | Path, search_path: Sequence[Path] = (), at: str = "") -> Loaded:
-    """As ``load_rulebook``, with the warnings."""
-    path = find_rulebook(reference, search_path)
+def read_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    traffic: Traffic = "",
+) -> Loaded:
+    """As ``load_rulebook``, with the warnings.
+
+    ``traffic``: read it as one for this side, whatever it says itself.
+    """
+    folders = [Path(folder) for folder in search_path]
+    path = find_rulebook(reference, folders)
     data = read_bytes(path)
-    return _load(decode(str(path), data), data, path, search_path, at)
+    return _load(decode(str(path), data), data, path, folders, at, traffic)
 
 
 def parse_rulebook(
@@ -143,12 +152,17 @@ def diagnose(
 
 
 def _load(
-    source: Source, data: bytes, path: Path | None, search_path: Sequence[Path], at: str
+    source: Source,
+    data: bytes,
+    path: Path | None,
+    search_path: Sequence[Path],
+    at: str,
+    traffic: Traffic = "",
 ) -> Loaded:
     file, mistakes = parse(source)
     if file.kind == "vocabulary" and file.name is not None:
         raise RulecError(_not_a_rulebook(file))
-    loaded, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at)
+    loaded, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at, traffic)
     if loaded is None:
         raise RulecError(diagnosis.findings)
     return loaded
@@ -161,6 +175,7 @@ def _resolved(
     search_path: Sequence[Path],
     parsed: tuple[tree.File, tuple[Diagnostic, ...]],
     at: str,
+    traffic: Traffic = "",
 ) -> tuple[Loaded | None, Diagnosis]:
     """The rulebook if it has no errors, and what there is to say about it."""
     file, mistakes = parsed
@@ -177,6 +192,7 @@ def _resolved(
         sources=(source_file(source.name, data), *based.sources, *found.sources),
         opaque=opaque,
         at=at or (file.law.as_of if file.law else "") or date.today().isoformat(),  # noqa: DTZ011
+        traffic=traffic,
     )
     everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
     needed = None if opaque else (*based.dependencies, *found.dependencies)

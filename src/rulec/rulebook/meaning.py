@@ -210,11 +210,19 @@ def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
 
 
 def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
+    for side, other in ((node.left, node.right), (node.right, node.left)):
+        if isinstance(side, tree.AtomUse) and (item := scope.enumeration(side)) is not None:
+            scope.used |= {one.text for one in side.arguments}
+            scope.report(say.values_compared(node, side, item, other, scope))
+            return None
     left, right = meaning(node.left, scope), meaning(node.right, scope)
     if isinstance(left, Object) and isinstance(right, Object):
         return _same(node, left, right, scope)
     if isinstance(left, Anything) or isinstance(right, Anything):
         return Anything()
+    if isinstance(left, Formula) and isinstance(right, Formula):
+        scope.report(say.truths_compared(node, scope))
+        return None
     first = _as_number(node.left, left, node, scope)
     second = _as_number(node.right, right, node, scope)
     if first is None or second is None:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from itertools import chain
 
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
 from rulec.logic.formula import Formula
 from rulec.rulebook.declaration_messages import unit_help
 from rulec.rulebook.numbers import Number
+from rulec.rulebook.scope import SIDES, Scope
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
+from rulec.vocabulary import Enumeration
 from rulec.vocabulary.units import DIMENSIONS, Dimension, unit_refusal
-
-if TYPE_CHECKING:
-    from rulec.rulebook.scope import Scope
 
 
 def kind_of(dimension: Dimension | None) -> str:
@@ -99,20 +98,63 @@ def no_number(node: tree.Formula, found: object, scope: Scope) -> Diagnostic:
     )
 
 
+def values_compared(
+    node: tree.Compare,
+    side: tree.AtomUse,
+    item: Enumeration,
+    other: tree.Formula,
+    scope: Scope,
+) -> Diagnostic:
+    """``surface = crossing``: an enumeration's value is an atom by itself."""
+    name = side.name.text
+    value = other.name.text if isinstance(other, tree.AtomUse) else ""
+    relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
+    arguments = f"({', '.join(one.text for one in side.arguments)})" if side.arguments else ""
+    if value not in item.values and not relative:
+        way_out = did_you_mean(value, item.values) or (
+            f"write {any_of([f'`{one}{arguments}`' for one in item.values])}"
+        )
+    else:
+        way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
+    return Diagnostic(
+        "R0303",
+        f"`{name}` is not compared: each of its values is true or false by itself",
+        node.span.place,
+        expected="expected the value alone",
+        help=way_out,
+        labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
+    )
+
+
+def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
+    """Both sides of a comparison are true or false."""
+    way_out = {
+        "=": "formulas are compared by `iff`",
+        "!=": "formulas are compared by `xor`",
+    }.get(node.relation, "numbers are compared, and objects by `=` and `!=`")
+    if isinstance(node.right, tree.Truth) and isinstance(node.left, tree.AtomUse):
+        holds = node.right.value == (node.relation == "=")
+        way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
+    return Diagnostic(
+        "R0313",
+        f"both sides of `{node.relation}` are true or false, not numbers",
+        node.span.place,
+        expected="expected two numbers",
+        help=way_out,
+        labels=_once(chain(origins(node.left, scope), origins(node.right, scope))),
+    )
+
+
 def not_comparable(
     node: tree.Formula, found: object, around: tree.Compare, scope: Scope
 ) -> Diagnostic:
     """A side of a comparison that is no number."""
-    way_out = "numbers are compared, and objects by `=` and `!=`"
-    if isinstance(found, Formula) and around.relation in ("=", "!="):
-        sign = "iff" if around.relation == "=" else "xor"
-        way_out = f"formulas are compared by `{sign}`"
     return Diagnostic(
         "R0313",
         f"`{short(node)}` is {what_of(found)}, not a number",
         node.span.place,
         expected=f"expected a number beside `{around.relation}`",
-        help=way_out,
+        help="numbers are compared, and objects by `=` and `!=`",
         labels=_once(origins(node, scope)),
     )
 

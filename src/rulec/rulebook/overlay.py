@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from rulec.diagnostics import Diagnostic, Span
 from rulec.rulebook import overlay_messages as say
 from rulec.rulebook.model import Remark
+from rulec.rulebook.uses import names_in_examples, names_used
 from rulec.syntax import tree
 
 
@@ -126,7 +127,11 @@ class _Layer:
                 if name.text not in self.result.definitions:
                     self._nothing(name, "definition", "redefine", self.result.definitions)
                 elif self._changes(name, "definition", "redefine"):
-                    self.result.definitions[name.text] = item
+                    before = self.result.definitions[name.text]
+                    if len(item.parameters) != len(before.parameters):
+                        self.result.mistakes.append(say.other_parameters(item, before))
+                    else:
+                        self.result.definitions[name.text] = item
             case tree.DropItem(name, because):
                 if self._inherited(name, "drop"):
                     del self.result.rules[name.text]
@@ -209,8 +214,14 @@ class _Layer:
     def _override(self, item: tree.RuleItem) -> None:
         if self._inherited(item.name, "override"):
             base = self.result.rules[item.name.text]
+            after = merged(base.item, item)
+            lost = _lost_variables(base.item, item)
+            if lost:
+                self.result.mistakes.append(say.lost_variables(item, lost))
+                variables = (*after.variables, *lost)
+                after = replace(after, variables=variables, examples=item.examples, complete=False)
             self.result.rules[item.name.text] = RuleEntry(
-                merged(base.item, item),
+                after,
                 self.file,
                 self.file if item.examples else base.examples_from,
                 item.name,
@@ -259,6 +270,27 @@ class _Layer:
 def never_in_force(dates: tree.InForce | None) -> bool:
     """Do the dates end before they begin?"""
     return dates is not None and bool(dates.until) and dates.until < dates.since
+
+
+def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parameter]:
+    """Variables that an override leaves out although what it inherits speaks of them."""
+    if not over.variables:
+        return []
+    inherited = replace(
+        base,
+        require=None if over.require else base.require,
+        when=None if over.when else base.when,
+        unless=() if over.unless else base.unless,
+        examples=() if over.examples else base.examples,
+    )
+    spoken_of = {*names_used(inherited), *names_in_examples(inherited)}
+    kept = {one.name.text for one in over.variables}
+    return [
+        one
+        for one in base.variables
+        if one.name.text not in kept
+        and any(name == one.name.text or name.endswith(f"_{one.name.text}") for name in spoken_of)
+    ]
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:

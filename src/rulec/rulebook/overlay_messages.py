@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.rulebook.declaration_messages import twice
 from rulec.syntax import tree
+from rulec.syntax.printer import print_parameters
 
 __all__ = [
     "changed_twice",
     "inherited_name",
     "inherited_rule",
+    "lost_variables",
     "never_in_force",
     "nothing_to",
     "option_is_on_or_off",
+    "other_parameters",
     "own",
     "own_rule",
     "parameter_is_a_number",
@@ -114,6 +117,36 @@ def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
         expected="changed again here",
         help="say all of it in one place",
         labels=(Label(before.span.place, "first changed here"),),
+    )
+
+
+def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnostic:
+    """A definition that is given another meaning for more or fewer things."""
+    name = item.name.text
+    needed, given = len(before.parameters), len(item.parameters)
+    things = {0: "nothing", 1: "one thing"}
+    return Diagnostic(
+        "R0301",
+        f"`{name}` takes {things.get(needed, f'{needed} things')} where it comes from, "
+        f"and {things.get(given, f'{given} things')} here",
+        item.name.span.place,
+        expected=f"expected `{name}{print_parameters(before.parameters)}`",
+        help="redefine it with the same parameters, or define something new by another name",
+        labels=(Label(before.name.span.place, f"`{name}` is defined here"),),
+    )
+
+
+def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagnostic:
+    """An override without variables that the clauses which it inherits speak of."""
+    names = " and ".join(f"`{one.name.text}`" for one in lost)
+    first, last = item.variables[0].span, item.variables[-1].span
+    return Diagnostic(
+        "R0203",
+        f"what `{item.name.text}` inherits speaks of {names}, and here is no such variable",
+        Span(first.source, first.start, last.end).place,
+        expected=f"expected {names}",
+        help="call variables as they are called there, or write every clause and example anew",
+        labels=tuple(Label(one.span.place, f"`{one.name.text}` comes from here") for one in lost),
     )
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Place
 from rulec.rulebook import rule_messages
 from rulec.rulebook.declared import declare
 from rulec.rulebook.fact_checks import contradicted
 from rulec.rulebook.facts import fact_of
-from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile
+from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.overlay import Overlay, overlay
 from rulec.rulebook.priorities import pre_order
 from rulec.rulebook.provision_checks import check_provisions
@@ -29,6 +28,7 @@ def resolve(
     sources: tuple[SourceFile, ...] = (),
     opaque: bool = False,
     at: str,
+    traffic: Traffic = "",
 ) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
     """The rulebook as meant, and what is wrong with it.
 
@@ -40,6 +40,7 @@ def resolve(
         opaque: a vocabulary or a base could not be read, so that any name may be missing for that
             reason.
         at: the day (ISO) whose law it is.
+        traffic: the side on which traffic drives, whatever the trees say; if empty, what they say.
 
     Returns:
         The rulebook, None if there is an error in it or if its tree is not whole; errors and
@@ -50,7 +51,7 @@ def resolve(
     spans = {**declared.type_spans, **declared.spans}
     unsure = opaque or not all(one.complete for one in books)
     laid = overlay(books, spans, unsure=unsure)
-    provisions = Provisions(laid, at, _last_traffic(books))
+    provisions = Provisions(laid, at, traffic or _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
     known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
@@ -127,8 +128,8 @@ def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
     return list(first.values())
 
 
-def _last_traffic(books: Sequence[tree.File]) -> Literal["", "left", "right"]:
-    sides: list[Literal["left", "right"]] = [one.traffic.side for one in books if one.traffic]
+def _last_traffic(books: Sequence[tree.File]) -> Traffic:
+    sides: list[Traffic] = [one.traffic.side for one in books if one.traffic]
     return sides[-1] if sides else ""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.rulebook.extent import DEEPEST, MOST_PARTS
 from rulec.syntax import tree
 
@@ -48,6 +48,18 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
         level.span.place,
         expected="expected a level of a `priority` line",
         help=way_out,
+    )
+
+
+def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
+    """Inherited examples that do not fit the rule any more as it has been changed."""
+    return Diagnostic(
+        first.code,
+        f"the examples that `{changed.text}` inherits do not fit it any more: {first.message}",
+        changed.span.place,
+        expected="the rule is changed here",
+        help="give it examples of its own, by `accept { … }` and `reject { … }`",
+        labels=() if first.place is None else (Label(first.place, "an inherited example"),),
     )
 
 

@@ -121,6 +121,13 @@ class Scope:
             return None
         return side
 
+    def enumeration(self, use: tree.AtomUse) -> Enumeration | None:
+        """The enumeration of that name, which is no atom: its values are."""
+        name = use.name.text
+        item = self.declared.items.get(name)
+        hidden = name in self.variables or name in self.relations
+        return item if isinstance(item, Enumeration) and not hidden else None
+
     def reference(self, use: tree.AtomUse) -> Atom | Quantity | None:
         """The atom or quantity meant; None when that is not known, which is then reported."""
         name = self.absolute(use, use.name.text)

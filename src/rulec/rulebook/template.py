@@ -6,8 +6,12 @@ from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
 
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.descriptions import description
+from rulec.rulebook.loader import Loaded, parse_rulebook, read_rulebook
+from rulec.rulebook.model import Rule
+from rulec.rulebook.provisions import in_force
+from rulec.syntax import tree
+from rulec.syntax.printer import print_formula
 
 _TEXT = """\
 # {name}: a rulebook to start from. `rulec check` says what is wrong in it, `rulec test` runs its
@@ -73,22 +77,49 @@ def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[P
     Raises:
         RulecError: if a rulebook cannot have this name, or if the base cannot be read.
     """
-    inherited = load_rulebook(base, search_path)
+    inherited = read_rulebook(base, search_path)
     head = _UPON.format(name=name, base=base, today=today.isoformat())
     text = "\n".join([head, *_changes(inherited)])
     parse_rulebook(text, f"{name}.rules", search_path)
     return text
 
 
-def _changes(base: Rulebook) -> Iterator[str]:
+def _changes(loaded: Loaded) -> Iterator[str]:
+    base = loaded.rulebook
     if base.traffic:
         other = "left" if base.traffic == "right" else "right"
         yield f"# traffic {other}   # belongs into the header; `{base.name}` says {base.traffic}"
         yield ""
+    settings = _settings(loaded)
+    if settings:
+        yield from (*settings, "")
     for rule in base.rules:
         yield from _rule(rule)
     yield '# silent on TOPIC because "…"'
     yield ""
+
+
+def _settings(loaded: Loaded) -> list[str]:
+    """The options and parameters with the values that they have now, and what is said of them."""
+    values: dict[str, str] = {}
+    notes: dict[str, str] = {}
+    for item in (item for book in loaded.books for item in book.items):
+        match item:
+            case tree.OptionItem(name, value) | tree.SetItem(name, bool() as value):
+                text = "on" if value else "off"
+            case tree.ParamItem() | tree.SetItem():
+                if not in_force(item.in_force, loaded.rulebook.at):
+                    continue
+                assert not isinstance(item.value, bool), "that is an option's"
+                name, text = item.name, print_formula(item.value, "written")
+            case _:
+                continue
+        values[name.text] = text
+        notes[name.text] = description(item.span) or notes.get(name.text, "")
+    return [
+        f"# set {name} = {value}" + (f"  # {notes[name]}" if notes[name] else "")
+        for name, value in values.items()
+    ]
 
 
 def _rule(rule: Rule) -> Iterator[str]:

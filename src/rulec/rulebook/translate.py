@@ -54,7 +54,13 @@ def translate_rule(
     weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
     if item.weight is not None and weight == 0:
         scope.report(rule_messages.weightless(item.weight))
+    sound = len(mistakes)
     examples = [example_of(example, formula, scope) for example in item.examples]
+    misfit = next((one for one in mistakes[sound:] if one.severity == "error"), None)
+    if misfit is not None and entry.changed is not None and entry.examples_from is not entry.book:
+        # What is wrong with the rest of the rule may be why.
+        clean = formula is not None and not any(one.severity == "error" for one in mistakes[:sound])
+        mistakes[sound:] = [rule_messages.misfit(entry.changed, misfit)] if clean else []
     step = _step_of(entry.examples_from, scope)
     if (
         parts is None

@@ -25,6 +25,14 @@ def names_used(item: tree.Item) -> Iterator[str]:
             return
 
 
+def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:
+    """Every name in the states of a rule's examples, with repetitions."""
+    for example in rule.examples:
+        for state in example.states:
+            for literal in state.literals:
+                yield from names_in(literal.atom)
+
+
 def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
     """Every name in a formula with its arguments, with repetitions; not those in bounds."""
     if isinstance(formula, tree.AtomUse):

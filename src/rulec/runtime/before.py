@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
+from pathlib import Path
 from typing import Any, TypeAlias
 
 from rulec.automata.compiled import CompiledRulebook
@@ -16,9 +17,11 @@ from rulec.runtime.checking import check_objects
 from rulec.runtime.instances import HARD
 from rulec.runtime.monitor import Monitor
 from rulec.runtime.numbers import exact
+from rulec.runtime.online.file import read_saved
 from rulec.runtime.online.past import Past
 from rulec.runtime.online.replay import replayed
 from rulec.trace import Trace, TraceGraph
+from rulec.trace.formats import read_traces
 
 Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
 """A trace, a monitor that has taken one, or that monitor's snapshot."""
@@ -53,6 +56,14 @@ def past_of(
     return replace(
         past, violations=tuple(one for one in past.violations if one.strength in strengths)
     )
+
+
+def read_past(path: Path) -> Before:
+    """The one trace of a file, or a saved monitor's snapshot (.json). Raises RulecError."""
+    if path.suffix == ".json":
+        saved: Mapping[str, Any] = read_saved(path)
+        return saved
+    return only_trace(read_traces(path), Place(str(path)))
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:

@@ -65,7 +65,8 @@ def _check_value(
             message = f"{where} says `{name}` is {_shown(value)}; {_wanted(declaration)}"
             raise _error("R0503", message, place, _nearest_value(value, declaration))
         return
-    if not isinstance(value, Mapping):
+    # Asking for a mapping takes far longer than asking for a dictionary.
+    if type(value) is not dict and not isinstance(value, Mapping):
         message = f"{where} gives `{name}` one value; it is about each `{parameters[0]}`"
         way_out = f'write {{"{name}": {{"OBJECT": VALUE}}}}'
         raise _error("R0503", message, place, way_out)
@@ -101,7 +102,7 @@ def _wanted(declaration: Declaration) -> str:
         case Signal():
             return "it is true or false"
         case Quantity():
-            return f"it is a number, in {declaration.unit}"
+            return f"it is a finite number, in {declaration.unit}"
 
 
 def _nearest_value(value: Any, declaration: Declaration) -> str:

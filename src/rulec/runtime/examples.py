@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.timing import speaks_of_seconds
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.runtime.facts import ImpossibleStateError, check_counting_facts
 from rulec.runtime.verify import columns_of, run
@@ -130,6 +132,21 @@ def example_trace(rule: Rule, example: Example) -> Trace:
 def own_names(rule: Rule) -> dict[str, str]:
     """The binding of its examples: every variable stands for the object of its own name."""
     return {variable.name: variable.name for variable in rule.variables}
+
+
+def surprises(
+    rulebook: Rulebook, compiled: Callable[[Sequence[Rule]], CompiledRulebook]
+) -> list[Diagnostic]:
+    """The warnings about all such examples; ``compiled`` compiles rules for their examples' steps.
+
+    Raises RulecError.
+    """
+    # A rule with bounds in seconds but no examples need not fit the step that those would have.
+    rules = tuple(
+        [one for one in rulebook.rules if one.examples or not speaks_of_seconds(one.formula)]
+    )
+    outcomes = run_all(replace(rulebook, rules=rules), compiled(rules)).outcomes
+    return [surprise(one) for one in outcomes if not one.passed]
 
 
 def surprise(outcome: Outcome) -> Diagnostic:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
 
 from rulec.automata.compiled import CompiledRule, CompiledRulebook
+from rulec.automata.machine import Machine, NumberRead
+from rulec.logic.deciding import deciding_instants
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -13,18 +15,18 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Proposition,
-    Quantity,
     Term,
     Unary,
     atoms_of,
 )
-from rulec.logic.one_state import Unknown, counted, holds
+from rulec.logic.one_state import Unknown, counted, holds, total
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
 from rulec.logic.timing import in_steps
 from rulec.runtime.binding import Binding, bindings
 from rulec.runtime.moment import Moment
 from rulec.runtime.numbers import exact
+from rulec.runtime.repair import Change, nearest_kept
 from rulec.runtime.verdict import Violation
 from rulec.runtime.verify import columns_of
 from rulec.trace import Trace, Value
@@ -41,11 +43,13 @@ class Fact:
 
     ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
     ``changed``: does the rule tell the value in the decisive state from the one before?
+    ``decides``: does a part that decides read it?
     """
 
     text: str
     values: tuple[Value, ...]
     changed: bool
+    decides: bool
     unit: str = ""
     objects: tuple[tuple[str, ...], ...] | None = None
 
@@ -54,13 +58,16 @@ class Fact:
 class Part:
     """A part of the formula, ``depth`` operators inside it, and whether it holds in each state.
 
-    ``changed``: is its value in the decisive state another than in the one before?
+    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
+    it one of those that, at some instant, make the formula come out as it does?
     """
 
+    formula: Formula
     text: str
     depth: int
     values: tuple[bool, ...]
     changed: bool
+    decides: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,8 @@ class Explanation:
     ``states`` are the numbers of the states that are shown, ``decisive`` is the one after which
     nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
     each of ``states``; the first part is the formula itself, each stands before what it is made of.
+    ``repair`` is what states would have had to say for the rule to be kept, their places being
+    their numbers in the trace; None if nothing would have helped.
     """
 
     rule: CompiledRule
@@ -78,6 +87,8 @@ class Explanation:
     decisive: int
     facts: tuple[Fact, ...]
     parts: tuple[Part, ...]
+    repair: tuple[Change, ...] | None
+    vocabulary: Vocabulary
 
 
 def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
@@ -100,14 +111,23 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     ]
     formula = in_steps(rule.formula, exact(trace.step_s))
     values = values_of_parts(formula, word, rulebook.semantics)
+    instants = deciding_instants(formula, word, rulebook.semantics)
+    decides = {part for part, at in instants.items() if any(at)}
     return Explanation(
         rule,
         violation,
         states,
         decisive,
-        tuple(_facts(truths, seen)),
-        tuple(_parts(rule.formula, formula, values, seen, 0)),
+        tuple(_facts(truths, decides, seen)),
+        tuple(_parts(rule.formula, formula, values, decides, seen, 0)),
+        _repair(rule.machine, seen, binding.first),
+        rulebook.vocabulary,
     )
+
+
+def _repair(machine: Machine, seen: _Seen, first: int) -> tuple[Change, ...] | None:
+    found = nearest_kept(machine, [seen.letter(machine, moment) for moment in seen.moments])
+    return found and tuple([replace(one, place=first + one.place) for one in found])
 
 
 def _binding(
@@ -147,6 +167,21 @@ class _Seen:
         found = [moment.value(name, items) for moment in self.moments]
         return [value for value in found if not isinstance(value, Unknown)]
 
+    def letter(self, machine: Machine, moment: Moment) -> tuple[int, ...]:
+        """What a machine reads of a moment, digit by digit."""
+        digits = []
+        for read in machine.reads:
+            if isinstance(read, NumberRead):
+                number = total(read.terms, self.bound, moment)
+                assert not isinstance(number, Unknown), "verify has read it"
+                digits.append(read.digit(number))
+            else:
+                items = tuple([self.bound[variable] for variable in read.variables])
+                value = moment.value(read.name, items)
+                assert not isinstance(value, Unknown), "verify has read it"
+                digits.append(read.digit(value))
+        return tuple(digits)
+
     def counted(self, term: Count) -> list[tuple[str, ...]]:
         """The objects that count in each moment."""
         found = [counted(term, self.bound, moment) for moment in self.moments]
@@ -157,58 +192,64 @@ class _Seen:
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
 
 
-def _facts(truths: Mapping[Proposition, list[bool]], seen: _Seen) -> Iterator[Fact]:
+def _facts(
+    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], seen: _Seen
+) -> Iterator[Fact]:
     """What is read, in the order in which the formula first speaks of it."""
-    changed: dict[Atom | Term, bool] = {}
-    for proposition, column in truths.items():
-        if isinstance(proposition, Comparison):
-            for _, term in proposition.terms:
-                # A number always changes a little; what counts is whether it passes a limit.
-                changed[term] = changed.get(term, False) or seen.changes(column)
+    readers: dict[Atom | Term, list[Proposition]] = {}
+    for proposition in truths:
+        for read in _read_by(proposition):
+            readers.setdefault(read, []).append(proposition)
+    for read, propositions in readers.items():
+        # A number always changes a little; what counts is whether it passes a limit.
+        passes = isinstance(read, Atom) or any(seen.changes(truths[one]) for one in propositions)
+        decides = not deciding.isdisjoint(propositions)
+        if isinstance(read, Count):
+            objects = seen.counted(read)
+            yield Fact(
+                term_in_words(read),
+                tuple(len(objects[n]) for n in seen.shown),
+                passes and seen.changes([len(one) for one in objects]),
+                decides,
+                objects=tuple(objects[n] for n in seen.shown),
+            )
         else:
-            changed[Atom(proposition.name, proposition.arguments)] = False
-    for read, passes in changed.items():
-        match read:
-            case Atom(name, arguments):
-                values = seen.values(name, arguments)
-                yield _fact(read, values, seen, changed=seen.changes(values))
-            case Quantity(name, arguments):
-                values = seen.values(name, arguments)
-                yield _fact(read, values, seen, changed=passes and seen.changes(values))
-            case Count():
-                objects = seen.counted(read)
-                yield Fact(
-                    term_in_words(read),
-                    tuple(len(objects[n]) for n in seen.shown),
-                    passes and seen.changes([len(one) for one in objects]),
-                    objects=tuple(objects[n] for n in seen.shown),
-                )
+            values = seen.values(read.name, read.arguments)
+            items = tuple(seen.bound[variable] for variable in read.arguments)
+            declaration = seen.moments[0].vocabulary.declarations[read.name]
+            yield Fact(
+                str(Atom(read.name, items)),
+                tuple(values[n] for n in seen.shown),
+                passes and seen.changes(values),
+                decides,
+                declaration.unit if isinstance(declaration, QuantityDeclaration) else "",
+            )
 
 
-def _fact(read: Atom | Quantity, values: Sequence[Value], seen: _Seen, *, changed: bool) -> Fact:
-    items = tuple(seen.bound[variable] for variable in read.arguments)
-    declaration = seen.moments[0].vocabulary.declarations[read.name]
-    unit = declaration.unit if isinstance(declaration, QuantityDeclaration) else ""
-    text = str(Atom(read.name, items))
-    return Fact(text, tuple(values[n] for n in seen.shown), changed, unit)
+def _read_by(proposition: Proposition) -> list[Atom | Term]:
+    if isinstance(proposition, Comparison):
+        return [term for _, term in proposition.terms]
+    return [Atom(proposition.name, proposition.arguments)]
 
 
 def _parts(
     written: Formula,
     stepped: Formula,
     truths: Mapping[Formula, list[bool]],
+    deciding: Set[Formula],
     seen: _Seen,
     depth: int,
 ) -> Iterator[Part]:
     """The parts as they are written, with the values of the same formula with bounds in steps."""
     values = truths[stepped]
     shown = tuple(values[n] for n in seen.shown)
-    yield Part(in_words(written), depth, shown, seen.changes(values))
+    text, decides = in_words(written), stepped in deciding
+    yield Part(written, text, depth, shown, seen.changes(values), decides)
     match written, stepped:
         case Unary(_, operand), Unary(_, same):
-            yield from _parts(operand, same, truths, seen, depth + 1)
+            yield from _parts(operand, same, truths, deciding, seen, depth + 1)
         case Binary(_, left, right), Binary(_, same_left, same_right):
-            yield from _parts(left, same_left, truths, seen, depth + 1)
-            yield from _parts(right, same_right, truths, seen, depth + 1)
+            yield from _parts(left, same_left, truths, deciding, seen, depth + 1)
+            yield from _parts(right, same_right, truths, deciding, seen, depth + 1)
         case _:
             return

@@ -26,8 +26,13 @@ class Moment:
 
     def value(self, name: str, items: tuple[str, ...]) -> Value | Unknown:
         """The value that the state gives, or the declared default."""
-        found = value_in(self.state, name, items, self.vocabulary.declarations[name])
-        return Unknown(name, items) if found is None else found
+        # As value_in, which is not called because this is asked of every object in every state.
+        value: Any = self.state.get(name)
+        for item in items:
+            value = value.get(item) if value is not None else None
+        if value is None:
+            value = self.vocabulary.declarations[name].default
+        return Unknown(name, items) if value is None else value
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
         """The quantity's value: exact."""

@@ -105,8 +105,21 @@ def scan(
             raise form.refused(path, "it is empty")
         parser.Parse(b"", True)
     except ExpatError as problem:
-        why = f"it is not well-formed XML: {errors.messages[problem.code]}"
+        words = errors.messages[problem.code]
+        why = f"it is not well-formed XML: {words}"
+        if words in _ENDS_EARLY:
+            why = "it ends before all that has begun in it ends; it has been cut short"
         raise form.refused(path, why, problem.lineno) from None
+
+
+_ENDS_EARLY = frozenset(
+    (
+        errors.XML_ERROR_NO_ELEMENTS,
+        errors.XML_ERROR_UNCLOSED_TOKEN,
+        errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
+        errors.XML_ERROR_PARTIAL_CHAR,
+    )
+)
 
 
 def root_of(path: Path, form: XmlFormat) -> str:

@@ -13,10 +13,12 @@ from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 MAX_TOKENS = 1_000_000
 """Far above what a file of the permitted size holds, far below what would exhaust memory."""
 
+# A text that runs on is taken for one if a quote ends the line that it ends on.
 _TOKEN = re.compile(
     r"""
       (?P<skip>\s+|\#[^\n]*)
     | (?P<string>"(?:[^"\\\r\n]|\\[^\r\n])*")
+    | (?P<run_on>"[^"\r\n]*(?:\r?\n[^"\r\n]*){1,20}"(?=[ \t]*(?:\#[^\n]*)?(?:\r?\n|\Z)))
     | (?P<unterminated>"[^\r\n]*)
     | (?P<quoted>'[^'\r\n]*')
     | (?P<word>[^\W\d]\w*)
@@ -58,7 +60,9 @@ def scan(source: Source) -> list[Token]:
         if kind == "skip":
             first = first or "\n" in found.group()
         else:
-            if kind == "unterminated":
+            if kind == "run_on":
+                kind = "unterminated"
+            elif kind == "unterminated":
                 end = _end_of_unterminated(text, position, end)
             tokens.append(Token(kind, text[position:end], position, end, first))
             first = False

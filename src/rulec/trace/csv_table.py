@@ -8,12 +8,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
-from typing import IO
+from typing import IO, cast
 
 from rulec.diagnostics import Place, RulecError
 from rulec.trace.chunks import in_chunks
+from rulec.trace.foreign import foreign
+from rulec.trace.lines import not_utf8, placed
 from rulec.trace.model import Trace, Value
-from rulec.trace.rows import Row, Table, check_columns, problem, traces_in
+from rulec.trace.rows import TRACE, Row, Table, check_columns, problem, traces_in
 
 LARGE_BYTES = 1 << 22
 """Of a smaller file the rows are read sooner than Arrow is."""
@@ -29,6 +31,10 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
 
     A large file is read in blocks, if Arrow is installed.
     """
+    error = _no_table(stream, file)
+    if error is not None:
+        yield [error]
+        return
     columns = _columns_if_large(stream)
     if columns is None:
         yield from in_chunks(_traces(stream, file))
@@ -38,6 +44,21 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
 
     plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
     yield from cut(plain, _table(columns, file), 2, Place(file))
+
+
+def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
+    """Why a file that begins like this is no table at all, if that is so."""
+    if stream.seekable():
+        beginning = stream.read(_LONGEST_HEAD_BYTES)
+        stream.seek(-len(beginning), io.SEEK_CUR)
+    else:
+        beginning = cast("io.BufferedReader", stream).peek()
+    found = foreign(beginning)
+    if found is not None:
+        return problem(f"this is no CSV, but {found.noun}", Place(file), found.help)
+    if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
+        return problem("this is no CSV, but JSON", Place(file), "add `--format jsonl`")
+    return None
 
 
 def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
@@ -66,11 +87,23 @@ def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
     try:
         number, columns = next(rows, (0, []))
         if columns:
+            _check_separator(columns, Place(file, number))
             check_columns(columns, Place(file, number))
     except RulecError as error:
         yield error
         return
     yield from traces_in(rows, _table(columns, file), Place(file))
+
+
+def _check_separator(columns: Sequence[str], place: Place) -> None:
+    """Raises RulecError R0509."""
+    if len(columns) == 1:
+        for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
+            if TRACE in columns[0].split(mark) and mark in columns[0]:
+                message = f"the columns' names are separated by {name}"
+                raise problem(
+                    message, place, "separate the cells by commas, and decimals by points"
+                )
 
 
 def _table(columns: Sequence[str], file: str) -> Table:
@@ -80,19 +113,53 @@ def _table(columns: Sequence[str], file: str) -> Table:
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
     """The rows from line ``number`` on, the columns' names among them. Raises RulecError R0509."""
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
-    lines = csv.reader(text, strict=True)
+    lines = csv.reader(_without_null(text), strict=True)
     before = number - 1
     try:
         for cells in lines:
             if cells:
                 yield number, cells
             number = before + lines.line_num + 1
-    except (csv.Error, UnicodeDecodeError) as reason:
-        words = "it is not in UTF-8" if isinstance(reason, UnicodeDecodeError) else str(reason)
+    except UnicodeDecodeError as reason:
+        raise _not_utf8(stream, Place(file, number), reason) from None
+    except csv.Error as reason:
+        words = next((ours for theirs, ours in _WORDS.items() if theirs in str(reason)), reason)
         message = f"from here on the file cannot be read as CSV: {words}"
-        raise problem(message, Place(file, number)) from None
+        raise problem(message, Place(file, number), _QUOTES) from None
     finally:
-        text.detach()  # the stream is its owner's
+        with suppress(ValueError):  # who has read enough may have closed the stream
+            text.detach()  # the stream is its owner's
+
+
+_WORDS = {
+    "unexpected end of data": "it ends within quotes, which have begun here",
+    "field larger than field limit": f"a cell has more than {csv.field_size_limit():,} characters",
+    "expected after": "behind closing quotes there is neither a comma nor the line's end",
+    "NUL": "it holds a null character",
+}
+_QUOTES = "what stands in quotes ends with quotes; is one missing, or has the file been cut short?"
+
+
+def _without_null(text: Iterable[str]) -> Iterator[str]:
+    for line in text:
+        if "\0" in line:
+            raise csv.Error("NUL")
+        yield line
+
+
+def _not_utf8(stream: IO[bytes], place: Place, reason: UnicodeDecodeError) -> RulecError:
+    """Which byte of which line; of a pipe, which cannot be read again, behind which place."""
+    byte, where = reason.object[reason.start], "here or further on "
+    if stream.seekable():
+        stream.seek(0)
+        for number, line in enumerate(stream, 1):
+            at = not_utf8(line)
+            if at is not None:
+                byte, where = line[at], ""
+                place = placed(Place(place.file, number), line.rstrip(b"\n"), at)
+                break
+    message = f"{where}the byte 0x{byte:02x} is not UTF-8"
+    return problem(message, place, "save the file in UTF-8")
 
 
 def _value(cell: str) -> Value:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import IO, Literal, get_args
 
 from rulec.diagnostics import RulecError
+from rulec.files import opened
 from rulec.trace import json_lines
 from rulec.trace.model import Trace
 from rulec.trace.tables import Kinds, columns_for, rows_of
@@ -24,6 +25,16 @@ def format_of(file: str) -> Format:
         case ".parquet" | ".pq":
             return "parquet"
     return "jsonl"
+
+
+def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
+    """The traces of a file one by one; in place of a bad one, what is wrong with it.
+
+    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
+    """
+    with opened(Path(path)) as stream:
+        for chunk in read_chunks(stream, str(path), format_of(str(path))):
+            yield from chunk
 
 
 def read_chunks(

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import IO, Any
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.diagnostics.json_words import json_words
-from rulec.trace.lines import lines_as_they_come
-from rulec.trace.mending import way_out
+from rulec.diagnostics import Place, RulecError
+from rulec.trace.foreign import foreign
+from rulec.trace.json_problems import ONE_LINE, Kind, is_beginning, middle_of
+from rulec.trace.lines import lines_as_they_come, placed
 from rulec.trace.model import State, Trace
 
 LONGEST_LINE_BYTES = 256 << 20
 """A longer line is refused: it is not a trace but a file that lacks its line ends."""
+
+_LONGEST_HEAD_BYTES = 1 << 16
 
 
 class _Record(msgspec.Struct, forbid_unknown_fields=True):
@@ -35,7 +38,11 @@ class _Outline(msgspec.Struct, forbid_unknown_fields=True):
     present: dict[str, tuple[int, int]] = {}
 
 
-_EXAMPLE = 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
+_TRACE = Kind(
+    "trace",
+    _Record.__struct_fields__,
+    'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}',
+)
 _DECODER = msgspec.json.Decoder(_Record)
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
@@ -61,28 +68,77 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
     """
     number = found = 0
     read_state = _StateReader()
+    torn: _Torn | None = None
     for lines in lines_as_they_come(stream, LONGEST_LINE_BYTES):
         chunk: list[Trace | RulecError] = []
         for line in lines:
             number += 1
+            place = Place(file, number)
             if number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
+                error = _no_traces(line, place)
+                if error is not None:
+                    yield [error]
+                    return
             if line.isspace() or not line:
                 continue
-            place = Place(file, number)
-            if len(line) > LONGEST_LINE_BYTES:
-                chunk.append(_bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place))
+            one = _trace(line, place, read_state)
+            if torn is not None:
+                if isinstance(one, RulecError) and not line.startswith(b"{"):
+                    torn.goes_on = True
+                    continue
+                chunk.append(torn.error(at_the_end=False))
+                torn = None
+            if isinstance(one, RulecError) and is_beginning(line):
+                torn = _Torn(line, place)
             else:
-                chunk.append(_trace(line, place, read_state))
+                chunk.append(one)
         found += len(chunk)
         if chunk:
             yield chunk
-    if not found:
-        yield [_bad("there is no trace in this file", Place(file))]
+    if torn is not None:
+        yield [torn.error(at_the_end=True)]
+    elif not found:
+        yield [_TRACE.bad("there is no trace in this file: it is empty", Place(file))]
+
+
+@dataclass(slots=True)
+class _Torn:
+    """A line that is the beginning of a trace. Does what follows look as if it went on there?"""
+
+    line: bytes
+    place: Place
+    goes_on: bool = False
+
+    def error(self, *, at_the_end: bool) -> RulecError:
+        """What is wrong with it, which only shows in what follows."""
+        what = f"the line ends in the middle of {middle_of(self.line)}"
+        place = placed(self.place, self.line, len(self.line) - 1)
+        if self.goes_on:
+            return _TRACE.bad(f"{what} and goes on below: a trace is one line", place, ONE_LINE)
+        if at_the_end:
+            message = f"{what.replace('line', 'file', 1)}: it has been cut short"
+            return _TRACE.bad(message, place, "write or copy the file again")
+        return _TRACE.bad(f"{what}: it has been cut short", place, "write it again, or delete it")
+
+
+def _no_traces(first: bytes, place: Place) -> RulecError | None:
+    """Why a file with this first line has no traces in it at all, if that is so."""
+    found = foreign(first)
+    if found is not None:
+        return _TRACE.bad(f"these are no traces, but {found.noun}", Place(place.file), found.help)
+    if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
+        return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")
+    if first.startswith(b"[") and is_beginning(first):
+        message = "these are no traces, a line each, but a list in JSON"
+        return _TRACE.bad(message, place, _TRACE.no_list)
+    return None
 
 
 def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | RulecError:
     record: _Outline | _Record
+    if len(line) > LONGEST_LINE_BYTES:
+        return _TRACE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
     if read_state.pays:
         try:
             record = _OUTLINE_DECODER.decode(line)
@@ -92,11 +148,8 @@ def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | Rulec
             pass  # read as a whole, it says what is wrong
     try:
         record = _DECODER.decode(line)
-    except RecursionError:
-        return _bad("this is not a trace: it is nested too deep", place)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
-        message = f"this is not a trace: {json_words(problem)}"
-        return _bad(message, place, way_out(problem, line, _Record.__struct_fields__, _EXAMPLE))
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as problem:
+        return _TRACE.refused(problem, line, place)
     return _made(record, tuple(record.states), place)
 
 
@@ -125,10 +178,6 @@ class _StateReader(dict[bytes, State]):
         else:
             self[text] = state
         return state
-
-
-def _bad(message: str, place: Place, help_text: str = "") -> RulecError:
-    return RulecError(Diagnostic("R0501", message, place, help=help_text))
 
 
 def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:

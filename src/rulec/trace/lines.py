@@ -1,11 +1,17 @@
-"""Lines of a stream, as many at a time as have arrived."""
+"""Lines of a stream, as many at a time as have arrived, and places in them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import IO, Protocol, cast
 
+from rulec.diagnostics import Place
+
 _BLOCK_BYTES = 1 << 22
+
+_MOST_SHOWN = 1 << 20
+"""A longer line is not shown, not even in part."""
 
 
 class _Arriving(Protocol):
@@ -31,3 +37,19 @@ def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]
             parts, size = [more[-1]], len(more[-1])
     if size:
         yield [b"".join(parts)]
+
+
+def not_utf8(line: bytes) -> int | None:
+    """The place of the first byte that is not UTF-8."""
+    try:
+        line.decode()
+    except UnicodeDecodeError as reason:
+        return reason.start
+    return None
+
+
+def placed(place: Place, line: bytes, byte: int) -> Place:
+    """The place of a line's byte, with the line."""
+    column = len(line[:byte].decode("utf-8", "replace")) + 1
+    text = line.decode("utf-8", "replace").rstrip("\r\0") if len(line) < _MOST_SHOWN else ""
+    return replace(place, column=column, end_line=place.line, end_column=column + 1, excerpt=text)

@@ -8,10 +8,10 @@ from typing import IO, Any
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.diagnostics.json_words import json_words
+from rulec.diagnostics import Place, RulecError
+from rulec.trace.foreign import foreign
+from rulec.trace.json_problems import Kind
 from rulec.trace.lines import lines_as_they_come
-from rulec.trace.mending import way_out
 from rulec.trace.model import State
 
 LONGEST_LINE_BYTES = 256 << 20
@@ -32,7 +32,11 @@ class _Record(msgspec.Struct, forbid_unknown_fields=True):
     objects: dict[str, str] = {}
 
 
-_EXAMPLE = 'a state is a line such as {"state": {…}, "objects": {"v1": "vehicle"}}'
+_STATE = Kind(
+    "state",
+    _Record.__struct_fields__,
+    'a state is a line such as {"state": {…}, "objects": {"v1": "vehicle"}}',
+)
 _DECODER = msgspec.json.Decoder(_Record)
 
 
@@ -52,22 +56,20 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             number += 1
             if number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
+                found = foreign(line)
+                if found is not None:
+                    message = f"these are no states, but {found.noun}"
+                    yield _STATE.bad(message, Place(file), found.help)
+                    return
             if line.strip():
                 yield _read(line, Place(file, number))
 
 
 def _read(line: bytes, place: Place) -> LiveState | RulecError:
     if len(line) > LONGEST_LINE_BYTES:
-        return _bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
+        return _STATE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
     try:
         record = _DECODER.decode(line)
-    except RecursionError:
-        return _bad("this is not a state: it is nested too deep", place)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as problem:
-        help_text = way_out(problem, line, _Record.__struct_fields__, _EXAMPLE)
-        return _bad(f"this is not a state: {json_words(problem)}", place, help_text)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as problem:
+        return _STATE.refused(problem, line, place)
     return LiveState(record.state, record.objects, place)
-
-
-def _bad(message: str, place: Place, help_text: str = "") -> RulecError:
-    return RulecError(Diagnostic("R0501", message, place, help=help_text))

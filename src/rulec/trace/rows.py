@@ -99,7 +99,9 @@ def traces_in(rows: Iterable[Row], table: Table, file: Place) -> Iterator[Trace 
         yield error
         return
     yield (
-        problem("there is no trace in this file", file) if building is None else building.finished()
+        problem("there is no trace in this file", file, _FORM)
+        if building is None
+        else building.finished()
     )
 
 
@@ -151,7 +153,10 @@ class _Building:
         table = self.table
         if len(cells) != len(table.columns):
             found = f"{len(cells)} cells; there are {len(table.columns)} columns"
-            raise self._problem(f"this row has {found}", number)
+            few = "there is a cell for every column; has the file been cut short?"
+            many = "a text with a comma in it stands in quotes"
+            help_text = few if len(cells) < len(table.columns) else many
+            raise self._problem(f"this row has {found}", number, help_text)
         if is_empty(self.name):
             raise self._problem("this row does not say of which trace it is", number)
         self._go_to(cells[table.at[STEP]], number)

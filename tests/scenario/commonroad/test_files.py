@@ -76,7 +76,7 @@ def test_areas_and_intervals_are_taken_whole(written):
         ("<commonRoad ", "<!DOCTYPE commonRoad><commonRoad ", "it has a `DOCTYPE`"),
         ("2018b", "2017a", "its `commonRoadVersion` is `2017a`"),
         ("</lanelet>", "</lane>", "not well-formed XML: mismatched tag"),
-        ("</commonRoad>", "", "not well-formed XML"),
+        ("</commonRoad>", "", "it has been cut short"),
         (BOUND, "", "the element `lanelet` has no `leftBound`"),
         (BOUND, "<leftBound/>", "the element `leftBound` has fewer than 2 points"),
         ("<y>2</y>", "", "the element `point` has no `y`"),

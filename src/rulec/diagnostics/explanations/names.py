@@ -28,7 +28,8 @@ NAMES = {
     "R0204": Explanation(
         "a name is declared twice",
         "Types, signals, quantities, enumerations and their values share one set of names, with "
-        "those of the vocabularies that are used. Give one of the two another name.",
+        "those of the vocabularies that are used. Give one of the two another name. Two "
+        "vocabularies that share names cannot be used together.",
         "rulebook example\nsignal wet\nsurface is one of dry, wet\nhard rule r { require dry }\n",
         "rulebook example\nsignal raining\nsurface is one of dry, wet\nhard rule r { require dry }"
         "\n",

@@ -48,7 +48,9 @@ TRACES = {
     "R0501": Explanation(
         "a line is not a trace in JSON",
         "A file of traces has one JSON object on each line, with a list of `states` at least. The "
-        "message says what in the line is otherwise.",
+        "message says what in the line is otherwise, where it ends if it has been cut short, or "
+        "what the file is instead: packed, in UTF-16, a single list. `jq -c . FILE` brings JSON "
+        "that is spread over lines into this form, `jq -c '.[]' FILE` a list.",
         '[{"position": {"v1": "b"}}]\n',
         _GOOD,
         "trace",

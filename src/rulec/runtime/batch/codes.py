@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from rulec.automata.machine import IMPOSSIBLE, NumberRead
+from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead
 from rulec.runtime.batch.judged import Walk
 from rulec.runtime.batch.reading import NotGivenError, Reading
 from rulec.runtime.batch.tasks import Task
@@ -34,11 +34,34 @@ class _Digit:
     key: _Key
     size: int
     values: Array | int
-    meanings: Sequence[int]
+    meanings: Array
 
 
 _Spelling = Sequence[_Digit]
 """The digits of the letters of a task's machine, in its order."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Alphabet:
+    """A machine's classes of letters, and the ``meanings`` of each thing that it reads."""
+
+    letters: Array
+    meanings: Sequence[Array]
+
+
+def _alphabet(machine: Machine, vocabulary: Vocabulary) -> _Alphabet:
+    meanings = [
+        np.arange(read.size)
+        if isinstance(read, NumberRead)
+        else np.array([read.digit(value) for value in _values(read.name, vocabulary)])
+        for read in machine.reads
+    ]
+    return _Alphabet(np.array(machine.letters), meanings)
+
+
+def _values(name: str, vocabulary: Vocabulary) -> Sequence[bool | str]:
+    declaration = vocabulary.declarations[name]
+    return declaration.values if isinstance(declaration, Enumeration) else (False, True)
 
 
 def walks(reading: Reading, tasks: Sequence[Task], vocabulary: Vocabulary) -> Iterator[Walk]:
@@ -49,36 +72,39 @@ def walks(reading: Reading, tasks: Sequence[Task], vocabulary: Vocabulary) -> It
     together: dict[_Key, list[Task]] = {}
     for task in tasks:
         together.setdefault((frozenset(task.objects.values()), *task.stretch), []).append(task)
+    # Rules have many tasks: a machine's letters become an array once.
+    rules = {id(task.rule): task.rule for task in tasks}
+    known = {one: _alphabet(rule.machine, vocabulary) for one, rule in rules.items()}
     for group in together.values():
-        spellings = [_spelling(task, reading, vocabulary) for task in group]
+        alphabets = [known[id(task.rule)] for task in group]
+        spellings = [
+            _spelling(task, reading, alphabet)
+            for task, alphabet in zip(group, alphabets, strict=True)
+        ]
         if _size(_columns(spellings)) <= MOST_CELLS:
-            yield _walk(reading, group, spellings)
+            yield _walk(reading, group, spellings, alphabets)
             continue
-        for task, spelling in zip(group, spellings, strict=True):
+        for task, spelling, alphabet in zip(group, spellings, alphabets, strict=True):
             if _size(_columns([spelling])) <= MOST_CELLS:
-                yield _walk(reading, [task], [spelling])
+                yield _walk(reading, [task], [spelling], [alphabet])
             else:
-                yield _walk_of_classes(reading, task, spelling)
+                yield _walk_of_classes(reading, task, spelling, alphabet)
 
 
-def _spelling(task: Task, reading: Reading, vocabulary: Vocabulary) -> _Spelling:
+def _spelling(task: Task, reading: Reading, alphabet: _Alphabet) -> _Spelling:
     found = []
-    for read in task.rule.machine.reads:
+    for read, meanings in zip(task.rule.machine.reads, alphabet.meanings, strict=True):
         if isinstance(read, NumberRead):
             items = tuple([task.objects[one] for one in scale(read).variables])
             key: _Key = (read.terms, read.thresholds, scale(read).variables, items)
-            digits = reading.digits(read, task.objects)
-            found.append(_Digit(key, read.size, digits, range(read.size)))
+            found.append(_Digit(key, read.size, reading.digits(read, task.objects), meanings))
             continue
         items = tuple([task.objects[one] for one in read.variables])
         values = reading.values(read.name, items)
         if values is None:
             raise NotGivenError(read.name, items)
-        declaration = vocabulary.declarations[read.name]
-        names = declaration.values if isinstance(declaration, Enumeration) else (False, True)
-        meanings = [read.digit(name) for name in names]
         column = values if isinstance(values, np.ndarray) else int(values)
-        found.append(_Digit((read.name, items), len(names), column, meanings))
+        found.append(_Digit((read.name, items), len(meanings), column, meanings))
     return found
 
 
@@ -96,7 +122,12 @@ def _size(columns: Mapping[_Key, _Digit]) -> int:
     return prod(one.size for one in columns.values())
 
 
-def _walk(reading: Reading, tasks: Sequence[Task], spellings: Sequence[_Spelling]) -> Walk:
+def _walk(
+    reading: Reading,
+    tasks: Sequence[Task],
+    spellings: Sequence[_Spelling],
+    alphabets: Sequence[_Alphabet],
+) -> Walk:
     columns = _columns(spellings)
     strides: dict[_Key, int] = {}
     stride = 1
@@ -116,38 +147,36 @@ def _walk(reading: Reading, tasks: Sequence[Task], spellings: Sequence[_Spelling
         numbers = np.zeros(stride, dtype=smallest_unsigned(len(codes)))
         numbers[codes] = np.arange(len(codes))
         cells = numbers.take(cells)
+    said = {key: codes // strides[key] % digit.size for key, digit in columns.items()}
     letters = [
-        _letters(task, spelling, strides, codes)
-        for task, spelling in zip(tasks, spellings, strict=True)
+        alphabet.letters.take(_numbers(task.rule.machine, spelling, said, len(codes))).tolist()
+        for task, spelling, alphabet in zip(tasks, spellings, alphabets, strict=True)
     ]
     return Walk(layout, cells, tasks, letters)
 
 
-def _letters(
-    task: Task, spelling: _Spelling, strides: Mapping[_Key, int], codes: Array
-) -> list[int]:
-    """For each code the class of the letter that the task's machine reads."""
-    numbers, stride = np.zeros(len(codes), dtype=np.int64), 1
-    machine = task.rule.machine
+def _numbers(
+    machine: Machine, spelling: _Spelling, said: Mapping[_Key, Array], n_codes: int
+) -> Array:
+    """For each code the letter that the machine reads; of its digits ``said`` has those that vary.
+
+    They are numbers below the size of what is read.
+    """
+    numbers, stride = np.zeros(n_codes, dtype=np.int64), 1
     for digit, read in zip(spelling, machine.reads, strict=True):
-        if isinstance(digit.values, np.ndarray):
-            meant: Array | int = np.take(digit.meanings, codes // strides[digit.key] % digit.size)
-        else:
-            meant = digit.meanings[digit.values]
-        numbers += stride * meant
+        numbers += stride * digit.meanings.take(said.get(digit.key, digit.values))
         stride *= read.size
-    classes: list[int] = np.take(machine.letters, numbers).tolist()
-    return classes
+    return numbers
 
 
-def _walk_of_classes(reading: Reading, task: Task, spelling: _Spelling) -> Walk:
+def _walk_of_classes(
+    reading: Reading, task: Task, spelling: _Spelling, alphabet: _Alphabet
+) -> Walk:
     """For a machine with very many letters: its classes themselves are the cells."""
     layout, machine = reading.columns.layout, task.rule.machine
-    numbers, stride = np.zeros(layout.n_states, dtype=np.int64), 1
-    for digit, read in zip(spelling, machine.reads, strict=True):
-        numbers += stride * np.take(digit.meanings, digit.values)
-        stride *= read.size
+    given = {digit.key: digit.values for digit in spelling if isinstance(digit.values, np.ndarray)}
+    numbers = _numbers(machine, spelling, given, layout.n_states)
     # One more than the class, so that what is impossible is a cell, too.
     n_cells = len(machine.following[0]) + 1
-    cells = (np.array(machine.letters) - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
+    cells = (alphabet.letters - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
     return Walk(layout, cells.take(numbers), [task], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
 from operator import itemgetter
 from typing import Any
@@ -47,6 +47,7 @@ class _Gathering:
         self._names = names
         self._traces = traces
         self._vocabulary = vocabulary
+        self._known: dict[str, Set[int]] = {}
 
     def add(
         self,
@@ -108,15 +109,24 @@ class _Gathering:
         """The values with the default where none is given."""
         filler = declaration.default
         if filler is None:
-            if not all(self._is_needless(cell, items) for cell in _places(values)):
+            if self._are_there_in_any(items, _places(values)):
                 raise OddError
             # Where an object is not there, nothing reads what would be said of it.
             filler = next(value for value in values if value is not _NOT_GIVEN)
         return [filler if value is _NOT_GIVEN else value for value in values]
 
-    def _is_needless(self, cell: int, items: tuple[str, ...]) -> bool:
-        there = self._traces.there
-        return bool(there) and not all(item in there[cell] for item in items)
+    def _are_there_in_any(self, items: tuple[str, ...], places: Sequence[int]) -> bool:
+        """Are all these objects there in any of the states at these places?"""
+        if not self._traces.there:
+            return bool(places)
+        return bool(set(places).intersection(*map(self._places_of, items)))
+
+    def _places_of(self, item: str) -> Set[int]:
+        """The states that an object is there in, by their places."""
+        if item not in self._known:
+            there = enumerate(self._traces.there)
+            self._known[item] = frozenset([place for place, objects in there if item in objects])
+        return self._known[item]
 
 
 def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, Any]:

@@ -80,10 +80,7 @@ def judged(walk: Walk) -> Iterator[Judged]:
         return
     first, last = walk.tasks[0].stretch
     unread = [_unread(walk, letters) for letters in walk.letters]
-    spelled = [
-        tuple(letters) if not len(traces) else tuple([max(letter, 0) for letter in letters])
-        for letters, traces in zip(walk.letters, unread, strict=True)
-    ]
+    spelled = [_spelled(letters) for letters in walk.letters]
     machines = [task.rule.machine for task in walk.tasks]
     for joint in joined(list(zip(machines, spelled, strict=True))):
         verdicts = run(joint, walk.cells, walk.layout, first, last)
@@ -96,6 +93,13 @@ def judged(walk: Walk) -> Iterator[Judged]:
                 walk.cells,
                 spelled[member],
             )
+
+
+def _spelled(letters: Sequence[int]) -> tuple[int, ...]:
+    """Some letter for the cells that have none: they are met in no trace, or in unread ones."""
+    if min(letters, default=0) >= 0:
+        return tuple(letters)
+    return tuple([max(letter, 0) for letter in letters])
 
 
 def _unread(walk: Walk, letters: Sequence[int]) -> NDArray[np.intp]:

@@ -12,19 +12,20 @@ from typing import Any
 from rulec.diagnostics import Diagnostic, Place, RulecError
 from rulec.files import opened, written_whole
 from rulec.runtime.monitor import Monitor
+from rulec.trace.json_problems import is_beginning
 
 
 def read_saved(path: Path) -> Any:
     """What the file holds, for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
-        try:
-            return json.loads(stream.read())
-        except (ValueError, RecursionError):
-            message = "this is not a saved monitor: it is not JSON"
-            help_text = "give a file that `rulec monitor --save` has written"
-            raise RulecError(
-                Diagnostic("R0510", message, Place(str(path)), help=help_text)
-            ) from None
+        data = stream.read()
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError):
+        why = "it has been cut short" if is_beginning(data) else "it is not JSON"
+        message = f"this is not a saved monitor: {why}"
+        help_text = "give a file that `rulec monitor --save` has written"
+        raise RulecError(Diagnostic("R0510", message, Place(str(path)), help=help_text)) from None
 
 
 def step_of(saved: Any) -> Fraction | None:

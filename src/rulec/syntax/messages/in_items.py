@@ -57,6 +57,8 @@ def advise_on_item(scene: Scene) -> str:
         return dates
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
+    if first == "fact" and text == ":" and scene.text_at(1) == "(":
+        return "leave the variables' types out: a fact is about all objects that fit its words"
     if "ONE" in scene.accepted:
         return "the values stand behind `is one of`, such as `is one of a, b`"
     listed = text in (";", "|", "or", "and") or scene.is_word()
@@ -66,6 +68,8 @@ def advise_on_item(scene: Scene) -> str:
         return "a signal is true or false: write `default true` or `default false`"
     if scene.accepted == {"ON", "OFF"} and text in ("true", "false", "yes", "no"):
         return f"write `{'on' if text in ('true', 'yes') else 'off'}`"
+    if first in ("option", "set") and text == "in" and scene.text_before in ("on", "off"):
+        return "an option has no dates; a parameter and a rule may have them"
     if first == "priority" and text == "<" and scene.text_behind:
         return (
             "the more important one stands first: "

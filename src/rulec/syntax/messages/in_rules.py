@@ -118,6 +118,10 @@ def advise_on_state(scene: Scene) -> str:
         return f"write `{signal}` for true and `not {signal}` for false, without `=`"
     number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
     sums = text in ("+", "-", "*", "/")
+    if scene.text_before == "=" and scene.is_word():
+        return (
+            f"a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `{text}`"
+        )
     if number or sums or text in _RELATIONS or scene.is_number(scene.at):
         return "a state gives a quantity one value, such as `speed = 50 km/h`"
     return ""

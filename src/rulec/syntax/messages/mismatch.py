@@ -185,12 +185,16 @@ def _reserved(span: Span, word: str) -> Diagnostic:
 
 
 def _unterminated(span: Span) -> Diagnostic:
+    text = span.source.text[span.start : span.end]
+    first, *more = text.splitlines()
     return Diagnostic(
         "R0105",
-        "this text has no closing quote",
-        span.place,
+        "this text goes on behind its line" if more else "this text has no closing quote",
+        Span(span.source, span.start, span.start + len(first)).place,
         expected='expected `"` before the end of the line',
-        help="close it on the same line; texts do not run over a line's end",
+        help="write all of it on one line, however long"
+        if more
+        else "close it on the same line; texts do not run over a line's end",
     )
 
 

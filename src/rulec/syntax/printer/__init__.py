@@ -9,6 +9,7 @@ from rulec.syntax.printer.formulas import (
     needs_parentheses,
     precedence,
     print_formula,
+    print_parameters,
     print_whole,
 )
 from rulec.syntax.printer.items import print_header_line, print_in_force
@@ -26,6 +27,7 @@ __all__ = [
     "print_header_line",
     "print_in_force",
     "print_item",
+    "print_parameters",
     "print_rule_head",
     "print_state",
     "print_whole",

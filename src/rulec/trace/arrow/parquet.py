@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import Place, RulecError
 from rulec.trace.arrow.library import arrow, unavailable
+from rulec.trace.foreign import packed
 from rulec.trace.model import Trace, Value
 from rulec.trace.rows import Table, check_columns, problem
 
@@ -15,6 +17,11 @@ if TYPE_CHECKING:
     from rulec.trace.arrow.cutting import Piece
 
 _ROWS_AT_ONCE = 1 << 16
+
+_MARK = b"PAR1"
+"""How Parquet begins and ends."""
+
+_AGAIN = "write or copy the file again"
 
 
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
@@ -27,6 +34,10 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         message = "Parquet has its table of contents at the end, so it cannot be read from a pipe"
         raise unavailable(message, file, "give a file, or write JSON Lines into the pipe")
     pyarrow, parquet = arrow(file)
+    refused = _no_parquet(stream, file)
+    if refused is not None:
+        yield [refused]
+        return
     try:
         source = parquet.ParquetFile(stream)
         schema = source.schema_arrow
@@ -58,9 +69,34 @@ def _pieces(
         yield _unreadable(f"after row {number} the file", reason, file)
 
 
+def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
+    """Why a file that begins and ends like this is no Parquet, if that is so."""
+    start = stream.tell()
+    beginning = stream.read(len(_MARK))
+    size = stream.seek(0, io.SEEK_END) - start
+    stream.seek(max(start, start + size - len(_MARK)))
+    end = stream.read()
+    stream.seek(start)
+    what = "the file cannot be read as Parquet"
+    if not size:
+        return problem(f"{what}: it is empty", Place(file), _AGAIN)
+    if beginning != _MARK:
+        found = packed(beginning)
+        if found is not None:
+            return problem(f"this is no Parquet, but {found.noun}", Place(file), found.help)
+        way_out = "if it is in another format, name that with `--format`"
+        return problem(f"{what}: it does not begin with `PAR1`", Place(file), way_out)
+    if end != _MARK or size == len(_MARK):
+        why = "its table of contents, which comes last, is missing; it has been cut short"
+        return problem(f"{what}: {why}", Place(file), _AGAIN)
+    return None
+
+
 def _unreadable(what: str, reason: Exception, file: str) -> RulecError:
     words = str(reason).split(".")[0]
-    return problem(f"{what} cannot be read as Parquet: {words}", Place(file))
+    return problem(
+        f"{what} cannot be read as Parquet: it is damaged ({words})", Place(file), _AGAIN
+    )
 
 
 def _check_types(schema: Any, pyarrow: Any, file: str) -> None:

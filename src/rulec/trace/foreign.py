@@ -1,0 +1,51 @@
+"""Files that are no traces at all: what they are instead, told by how they begin."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Foreign(NamedTuple):
+    """What a file is, and the way out."""
+
+    noun: str
+    help: str
+
+
+_BEGINNINGS = {
+    b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
+    b"\x28\xb5\x2f\xfd": Foreign("data compressed with Zstandard", "unpack it with `unzstd`"),
+    b"PK\x03\x04": Foreign("a ZIP archive", "unpack it with `unzip`"),
+    b"PAR1": Foreign("Parquet", "add `--format parquet`"),
+    b"\xff\xfe": Foreign("text in UTF-16", "save it in UTF-8"),
+    b"\xfe\xff": Foreign("text in UTF-16", "save it in UTF-8"),
+}
+
+_TEXT = frozenset(b"\t\n\r\f")
+
+
+def packed(beginning: bytes) -> Foreign | None:
+    """What a file with this beginning is, if it is not plain but a well-known container."""
+    return next((one for mark, one in _BEGINNINGS.items() if beginning.startswith(mark)), None)
+
+
+def foreign(beginning: bytes) -> Foreign | None:
+    """What a file with this beginning is, if it is not text in UTF-8.
+
+    The beginning is some bytes, or the first line.
+    """
+    found = packed(beginning)
+    if found is not None:
+        return found
+    some = beginning[:1000]
+    if _is_utf16(some):
+        return Foreign("text in UTF-16", "save it in UTF-8")
+    if any(byte < 32 and byte not in _TEXT for byte in some):
+        return Foreign("something that is no text", "give traces as JSON Lines, CSV or Parquet")
+    return None
+
+
+def _is_utf16(some: bytes) -> bool:
+    """Is every other byte 0, or nearly so? Without its mark nothing else tells."""
+    zeros = sorted((some[::2].count(0), some[1::2].count(0)))
+    return len(some) > 3 and zeros[0] == 0 and zeros[1] * 2 > 0.9 * len(some)

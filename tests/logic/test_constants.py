@@ -1,0 +1,58 @@
+"""Constants are folded away, and nothing else changes."""
+
+import pytest
+from hypothesis import given
+from words import formulas, letters, words
+
+from rulec.logic.constants import folded
+from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic.printing import in_words
+from rulec.logic.semantics import truth_values
+from rulec.rulebook.loader import parse_rulebook
+
+JOINING = {BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES}
+
+
+@given(formulas, words)
+def test_the_meaning_stays(formula, word):
+    assert truth_values(folded(formula), letters(word)) == truth_values(formula, letters(word))
+
+
+@given(formulas)
+def test_no_constant_is_joined_or_denied(formula):
+    for part in _parts(folded(formula)):
+        match part:
+            case Unary(UnaryOperator.NOT, operand):
+                assert not isinstance(operand, Constant)
+            case Binary(operator, left, right) if operator in JOINING:
+                assert not isinstance(left, Constant)
+                assert not isinstance(right, Constant)
+
+
+def _parts(formula: Formula):
+    yield formula
+    match formula:
+        case Unary(_, operand):
+            yield from _parts(operand)
+        case Binary(_, left, right):
+            yield from _parts(left)
+            yield from _parts(right)
+
+
+@pytest.mark.parametrize(
+    ("written", "expected"),
+    [
+        ("never (no and p)", "never false"),
+        ("never (yes and p)", "never p"),
+        ("always (p or no)", "always p"),
+        ("always (yes or p)", "always true"),
+        ("always (no implies p)", "always true"),
+        ("always (yes implies p)", "always p"),
+        ("always (p implies no or not yes)", "always not p"),
+        ("p iff yes", "p iff true"),
+    ],
+)
+def test_what_is_left(written, expected):
+    options = "option yes = on\noption no = off\n"
+    book = parse_rulebook(f"rulebook a\nsignal p\n{options}hard rule r {{ require {written} }}")
+    assert in_words(folded(book.rules[0].formula)) == expected
