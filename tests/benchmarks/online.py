@@ -1,7 +1,8 @@
 """How long a state of a running trace takes a monitor, encoding and checking it included.
 
 States differ from each other, in that every other vehicle has moved on and numbers have changed,
-and were made before. A drive goes on from round to round, so none comes again but by chance.
+and were made before. A drive goes on from round to round, so none comes again but by chance, which
+is good where few vehicles have few places.
 Judging the growing trace anew at each state by `verify` is measured beside, on short traces.
 """
 
@@ -65,7 +66,10 @@ def driven(name: str, places: list[dict[str, Any]], rounds: int) -> Result:
             )
             for label, one in in_turns(tasks, rounds).items()
         ],
-        ["A state takes a while however little it says; few instances share it."],
+        [
+            "A state takes a while however little it says; few instances share it.",
+            "States of few vehicles come again by chance and are known; those of many do not.",
+        ],
     )
 
 
