@@ -57,7 +57,7 @@ def test_a_good_rulebooks_examples_come_out_as_they_say(path: Path) -> None:
 def test_a_bad_file_says_what_is_expected(path: Path) -> None:
     found = diagnostics_of(path)
     text = render_diagnostics(found).replace(f"{HERE}/", "")
-    text = re.sub(r"(?<=::: ).*/rulebooks/", "rulebooks/", text)
+    text = re.sub(r"(?<=::: |--> ).*/rulebooks/", "rulebooks/", text)
     text = re.sub(r"available: `another_vocabulary`[^)\n]*", "available: …", text)
     expected = path.with_suffix(".expected")
     if os.environ.get("RULEC_REFRESH"):
