@@ -158,6 +158,14 @@ def test_states_with_other_ways_out_have_lines_of_their_own():
     assert [one["state"] for one in data] == [0, 2]
 
 
+def test_states_are_those_of_the_trace_where_an_object_comes_late():
+    near = {"place": {"a": "near"}}
+    trace = Trace("t", 1.0, CARS, ({}, {}, near, {}, near), present={"a": (2, 4), "b": (0, 1)})
+    (violation,) = [one for one in verify(trace, RULES).violations if one.rule == "limit"]
+    found = explain(violation, trace, RULES)
+    assert [one.place for one in found.repair] == [2, 4]
+
+
 def test_many_stretches_are_not_all_listed():
     states = [{"place": {"a": "near"}, "speed": 5 if n % 2 else 1} for n in range(29)]
     text, data = explained("limit", *states)
