@@ -196,6 +196,23 @@ def test_no_place_to_keep_it_costs_time_only(folder, made, tmp_path, monkeypatch
     assert len(made) == 2
 
 
+def test_mistakes_that_quote_a_long_line_again_and_again_are_not_kept(folder, made):
+    rules = "".join(f"hard rule r{number} {{ require q{number} }} " for number in range(300))
+    for name, text in (("few", rules[:1000]), ("many", rules)):
+        (folder / f"{name}.rules").write_text(f"rulebook {name}\n{text}\n")
+        assert check(f"{name}.rules") == check(f"{name}.rules")
+    assert made == ["few.rules", "many.rules", "many.rules"]
+
+
+def test_mistakes_in_one_line_share_its_text(folder):
+    rules = "hard rule r { require q } hard rule s { require t }"
+    (folder / "two.rules").write_text(f"rulebook two\n{rules}\n")
+    found = checking.check(["two.rules"], lambda: b"", (), "", recalls=False).findings
+    first, second = [one.place.excerpt for one in found if one.code == "R0202"]
+    assert first is second
+    assert first == rules
+
+
 def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
     monkeypatch.delenv("RULEC_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))

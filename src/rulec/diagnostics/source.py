@@ -34,6 +34,7 @@ class Source:
     name: str
     text: str = field(repr=False)
     _line_starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
+    _known: dict[int, str] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def _lines(self) -> list[int]:
         if not self._line_starts:
@@ -52,9 +53,12 @@ class Source:
 
     def line(self, number: int) -> str:
         """The text of a line, counted from 1, without its line end."""
-        starts = self._lines()
-        end = starts[number] if number < len(starts) else len(self.text)
-        return self.text[starts[number - 1] : end].rstrip("\r\n")
+        # However many mistakes are in a long line, there is one copy of it.
+        if number not in self._known:
+            starts = self._lines()
+            end = starts[number] if number < len(starts) else len(self.text)
+            self._known[number] = self.text[starts[number - 1] : end].rstrip("\r\n")
+        return self._known[number]
 
 
 @dataclass(frozen=True, slots=True)

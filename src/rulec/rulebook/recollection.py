@@ -25,6 +25,11 @@ from rulec.version import __version__
 MOST_FILES = 1000
 """Of so many rulebooks the findings are kept; the ones longest unused go first."""
 
+MOST_CHARACTERS = 1_000_000
+"""Findings that would take more are not kept: each of them has the line that it is about."""
+
+_WORDS = 200
+
 
 @dataclass(frozen=True, slots=True)
 class Question:
@@ -94,7 +99,7 @@ def remember(
 ) -> None:
     """Keep what was found. Where that cannot be, the next check takes longer, and that is all."""
     folder = cache_folder()
-    if folder is None:
+    if folder is None or _size(findings) > MOST_CHARACTERS:
         return
     data = {
         "stamp": question.stamp(),
@@ -106,6 +111,12 @@ def remember(
         with written_whole(folder / f"{question.place()}.json") as stream:
             stream.write(json.dumps(data).encode())
         _tidy(folder)
+
+
+def _size(findings: Sequence[Diagnostic]) -> int:
+    """How many characters of sources the findings quote, with some for their own words."""
+    places = [place for one in findings for place in (one.place, *[x.place for x in one.labels])]
+    return sum(_WORDS + len(place.excerpt) for place in places if place is not None)
 
 
 def _as_it_was(one: Dependency, search_path: Sequence[Path]) -> bool:
