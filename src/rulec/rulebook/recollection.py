@@ -29,6 +29,7 @@ MOST_CHARACTERS = 1_000_000
 """Findings that would take more are not kept: each of them has the line that it is about."""
 
 _WORDS = 200
+"""About so many characters a finding has of its own."""
 
 
 @dataclass(frozen=True, slots=True)
