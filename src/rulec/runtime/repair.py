@@ -65,7 +65,7 @@ def nearest_kept(machine: Machine, word: Sequence[Letter]) -> tuple[Change, ...]
     symbols = [machine.letters[letter] for letter in letters]
     found, state = [], 0
     for place, symbol in enumerate(symbols):
-        if place in changed:
+        if letters[place] != given[place]:
             rest = symbols[place + 1 :] if place == changed[-1] else None
             does = _as_good(machine, state, symbol, rest)
             found.append(Change(place, alphabet.ways(word[place], letters[place], does)))
@@ -135,6 +135,7 @@ class _Alphabet:
         self._n_classes = len(machine.following[0])
         self._near: dict[Letter, _Near] = {}
         self._can_be: dict[Letter, bool] = {}
+        self._ways: dict[tuple[Letter, int, bytes], tuple[Cube, ...]] = {}
 
     def number(self, letter: Letter) -> int:
         """The place of a letter among all."""
@@ -177,6 +178,12 @@ class _Alphabet:
 
     def ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
         """The letters as near to a given one as this one, of the classes that do as well."""
+        key = given, number, does.tobytes()
+        if key not in self._ways:
+            self._ways[key] = self._found_ways(given, number, does)
+        return self._ways[key]
+
+    def _found_ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
         differ = self._differ(given)
         as_near = differ.sum(axis=0) == differ[:, number].sum()
         good = as_near & (self._classes != IMPOSSIBLE) & does[self._classes]
