@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "extensions"), str(HERE.parent / "src")]
 
-from rulec.report.pygments_lexer import RulecLexer  # noqa: E402
+from rulec.report.text.pygments_lexer import RulecLexer  # noqa: E402
 from rulec.version import __version__  # noqa: E402
 
 project = "rulec"

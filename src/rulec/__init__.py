@@ -21,44 +21,44 @@ from typing import TYPE_CHECKING, Any
 from rulec.version import __version__
 
 if TYPE_CHECKING:
-    from rulec.automata.compiled import CompiledRulebook as CompiledRulebook
+    from rulec.api.workflow import compile_rulebook as compile_rulebook
+    from rulec.api.workflow import find_maneuvers as find_maneuvers
+    from rulec.api.workflow import judge_recording as judge_recording
+    from rulec.api.workflow import navigation_graph as navigation_graph
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.diagnostics import RulecError as RulecError
-    from rulec.maneuvers import Maneuvers as Maneuvers
+    from rulec.monitoring.batch.batch_verify import verify_many as verify_many
+    from rulec.monitoring.online.running_monitor import Monitor as Monitor
+    from rulec.monitoring.verdict import Verdict as Verdict
+    from rulec.monitoring.verify import verify as verify
     from rulec.partition import NavigationGraph as NavigationGraph
+    from rulec.planning import Maneuvers as Maneuvers
     from rulec.rulebook.loader import load_rulebook as load_rulebook
     from rulec.rulebook.model import Rulebook as Rulebook
-    from rulec.runtime.batch.verifying import verify_many as verify_many
-    from rulec.runtime.monitor import Monitor as Monitor
-    from rulec.runtime.verdict import Verdict as Verdict
-    from rulec.runtime.verify import verify as verify
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario import load_scenario as load_scenario
     from rulec.trace import Trace as Trace
-    from rulec.trace.formats import read_traces as read_traces
-    from rulec.workflow import compile_rulebook as compile_rulebook
-    from rulec.workflow import find_maneuvers as find_maneuvers
-    from rulec.workflow import judge_recording as judge_recording
-    from rulec.workflow import navigation_graph as navigation_graph
+    from rulec.trace.formats.trace_files import read_traces as read_traces
 
 _HOME = {
-    "CompiledRulebook": "rulec.automata.compiled",
-    "Maneuvers": "rulec.maneuvers",
-    "Monitor": "rulec.runtime.monitor",
+    "CompiledRulebook": "rulec.automata.bundle.compiled_rulebook",
+    "Maneuvers": "rulec.planning",
+    "Monitor": "rulec.monitoring.online.running_monitor",
     "NavigationGraph": "rulec.partition",
     "Rulebook": "rulec.rulebook.model",
     "RulecError": "rulec.diagnostics",
     "Scenario": "rulec.scenario",
     "Trace": "rulec.trace",
-    "Verdict": "rulec.runtime.verdict",
-    "compile_rulebook": "rulec.workflow",
-    "find_maneuvers": "rulec.workflow",
-    "judge_recording": "rulec.workflow",
+    "Verdict": "rulec.monitoring.verdict",
+    "compile_rulebook": "rulec.api.workflow",
+    "find_maneuvers": "rulec.api.workflow",
+    "judge_recording": "rulec.api.workflow",
     "load_rulebook": "rulec.rulebook.loader",
     "load_scenario": "rulec.scenario",
-    "navigation_graph": "rulec.workflow",
-    "read_traces": "rulec.trace.formats",
-    "verify": "rulec.runtime.verify",
-    "verify_many": "rulec.runtime.batch.verifying",
+    "navigation_graph": "rulec.api.workflow",
+    "read_traces": "rulec.trace.formats.trace_files",
+    "verify": "rulec.monitoring.verify",
+    "verify_many": "rulec.monitoring.batch.batch_verify",
 }
 
 __all__ = ["__version__", *_HOME]

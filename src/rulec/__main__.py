@@ -2,7 +2,7 @@
 
 import sys
 
-from rulec.cli.program import run
+from rulec.cli.entry_point import run
 
 if __name__ == "__main__":
     sys.exit(run())

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.audit import (
+from rulec.analysis.audit.audit_kinds import KINDS
+from rulec.analysis.audit.rulebook_audit import (
     Article,
     Audit,
     Counts,
@@ -17,9 +18,8 @@ from rulec.analysis.audit import (
     changes,
     compared,
 )
-from rulec.analysis.audit_kinds import KINDS
-from rulec.analysis.history import Inheritance, Member, RuleHistory, Step
-from rulec.analysis.inheritance import inheritance
+from rulec.analysis.lineage.book_lineage import inheritance
+from rulec.analysis.lineage.rule_lineage import Inheritance, Member, RuleHistory, Step
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.model import Rule

@@ -8,8 +8,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, sides, states
 
-from rulec.analysis.comparison import compare
-from rulec.analysis.reasons import unusual
+from rulec.analysis.diff.diverse_witnesses import unusual
+from rulec.analysis.diff.rule_comparison import compare
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.model import Fact, Variable
 from rulec.trace import Trace

@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.family import Branch, forest
-from rulec.analysis.history import Member
+from rulec.analysis.lineage.extension_forest import Branch, forest
+from rulec.analysis.lineage.rule_lineage import Member
 
 
 def book(name, extends=""):

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pairs import ALONE, COUNTED, X, allows, formulas, sides, states
 
-from rulec.analysis.asking import analyze_rulebook
-from rulec.analysis.comparison import compare
-from rulec.analysis.conflicts import conflict, share_words
-from rulec.analysis.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.analysis.diff.rule_comparison import compare
+from rulec.analysis.lint.conflict_search import conflict, share_words
+from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.api.rulebook_questions import analyze_rulebook
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.trace import Trace
 

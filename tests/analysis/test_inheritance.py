@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.history import Setting
-from rulec.analysis.inheritance import inheritance
+from rulec.analysis.lineage.book_lineage import inheritance
+from rulec.analysis.lineage.rule_lineage import Setting
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from timed import TIMED_VOCABULARY, comparison
 
-from rulec.automata.compiled_file import from_json, read_compiled, to_json, write_compiled
+from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (

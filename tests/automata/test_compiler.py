@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from words import formulas
 
 from rulec.automata import compiler
+from rulec.automata.alphabet import names_of
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.letters import names_of
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Atom,
@@ -23,7 +23,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.past import remembered
+from rulec.logic.past_registers import remembered
 from rulec.logic.printing import in_words
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
@@ -142,8 +142,8 @@ def test_a_process_that_cannot_start_is_no_traceback(monkeypatch):
 
 def checking(automaton, formula, semantics="stutter", cpu_s=None):
     """Ask whether Spot's automaton of a text is the formula's."""
-    from rulec.automata.spot_bridge.checks import check
-    from rulec.automata.spot_bridge.wording import Wording
+    from rulec.automata.spot_bridge.equivalence_check import check
+    from rulec.automata.spot_bridge.spot_formulas import Wording
 
     past = remembered(formula)
     propositions = [*atoms_of(formula), *(one.atom for one in past.memories)]
@@ -297,7 +297,7 @@ def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
 def test_a_table_that_fails_on_random_words_is_an_error_too(monkeypatch):
     """Where Spot has not compared the whole: here a register that forgets too soon."""
     forgetting = """
-from rulec.logic.past import Register
+from rulec.logic.past_registers import Register
 after = Register.after
 Register.after = lambda self, state, left, right: after(self, state, left, right) & 0b111
 main()

@@ -2,8 +2,8 @@
 
 from itertools import product
 
-from rulec.automata.facts import fact_groups, fact_instances, linked
-from rulec.automata.letters import propositions_of
+from rulec.automata.alphabet import propositions_of
+from rulec.automata.axiom_instances import fact_groups, fact_instances, linked
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook

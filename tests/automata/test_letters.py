@@ -16,7 +16,7 @@ from timed import (
     timed_states,
 )
 
-from rulec.automata.letters import (
+from rulec.automata.alphabet import (
     count_letters,
     knowledge,
     letters_with,
@@ -24,7 +24,7 @@ from rulec.automata.letters import (
     propositions_of,
     reads_of,
 )
-from rulec.automata.machine import NumberRead, Threshold
+from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds

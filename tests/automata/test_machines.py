@@ -6,7 +6,7 @@ from hypothesis import given
 from past_in_spot import spot_automaton
 from words import VOCABULARY, formulas
 
-from rulec.automata.letters import count_letters, reads_of
+from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import (

@@ -14,10 +14,10 @@ from past_in_spot import in_spot, spot_automaton
 from words import ATOMS, VOCABULARY, formulas, letters, words
 
 from rulec.automata import compiler, spot_bridge
-from rulec.automata.compiled import CompiledFact, CompiledRulebook
-from rulec.automata.compiled_file import from_json, to_json
-from rulec.automata.letters import propositions_of
-from rulec.automata.machine import IMPOSSIBLE
+from rulec.automata.alphabet import propositions_of
+from rulec.automata.bundle.bundle_file import from_json, to_json
+from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.automata.spot_worker import Failed, _answer
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
@@ -32,8 +32,8 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.semantics import holds
+from rulec.monitoring.verify import verify
 from rulec.rulebook.model import Fact, Rule, Rulebook, Variable
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary

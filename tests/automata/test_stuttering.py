@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from past_in_spot import in_spot, spot_automaton
 from words import ATOMS, VOCABULARY, formulas
 
+from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.letters import count_letters, reads_of
-from rulec.automata.machine import IMPOSSIBLE
+from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.automata.spot_bridge import explore, translate
-from rulec.automata.stuttering import stutter_invariant
+from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.automata.tables import build_machine
+from rulec.monitoring.verify import run
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
-from rulec.runtime.verify import run
 
 
 def machine_of(formula):

@@ -13,8 +13,8 @@ from timed import (
     timed_formulas,
 )
 
-from rulec.automata.letters import count_letters, knowledge, propositions_of, reads_of
-from rulec.automata.sampling import agrees, verdict
+from rulec.automata.alphabet import count_letters, knowledge, propositions_of, reads_of
+from rulec.automata.random_words import agrees, verdict
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator

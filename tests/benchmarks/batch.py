@@ -18,11 +18,11 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.runtime.batch.gathering import gathered
-from rulec.runtime.batch.judging import judge_cells, judge_columns
-from rulec.runtime.bits.across import Across
-from rulec.runtime.bits.judging import judge_on_bits
-from rulec.runtime.verify import verify
+from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.engine import judge_cells, judge_columns
+from rulec.monitoring.bits.bit_verdicts import judge_on_bits
+from rulec.monitoring.bits.trace_planes import Across
+from rulec.monitoring.verify import verify
 
 EVERY = 400
 SPOT = "Spot, a word automaton per trace"

@@ -14,9 +14,9 @@ from program import run
 from spot import gen
 from timing import children_ms, in_turns, processor_time
 
+from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.letters import count_letters, reads_of
-from rulec.automata.sampling import agrees
+from rulec.automata.random_words import agrees
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import (

@@ -16,15 +16,15 @@ from program import run
 from timing import Timed, in_turns, once, processor_time
 
 import rulec
-from rulec.automata.compiled import CompiledRulebook
-from rulec.maneuvers import Maneuvers, judged, partition_for
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.planning import Maneuvers, judged, partition_for
+from rulec.planning.product.graph_instances import instances, violations
+from rulec.planning.product.graph_product import count_paths, explore
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.cheapest import cheapest
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances, violations
-from rulec.runtime.product import count_paths, explore
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario
-from rulec.trace.paths import paths
+from rulec.trace.graph_paths import paths
 
 CROWDED = """rulebook crowded
 use road

@@ -11,7 +11,7 @@ from program import run
 from timing import in_turns, processor_time
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
-from rulec.runtime.bits import along
+from rulec.monitoring.bits import along
 
 LENGTH = 10_000_000
 P, Q = Atom("p"), Atom("q")

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rulec
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.logic.formula import Atom, atoms_of
 from rulec.trace import Trace
-from rulec.trace.columns import TraceCells, layout_of
-from rulec.trace.paths import paths
+from rulec.trace.graph_paths import paths
+from rulec.trace.trace_columns import TraceCells, layout_of
 
 PEDESTRIAN = "ffflfll"
 """Where the pedestrian is, seen from each node of a layer."""

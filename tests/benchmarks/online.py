@@ -22,8 +22,8 @@ from stream import streamed
 from timing import in_turns, processor_time
 
 import rulec
+from rulec.monitoring.online.running_monitor import Monitor
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.monitor import Monitor
 
 N_STATES = 300
 N_PREFIXES = 30

@@ -13,9 +13,9 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.runtime.batch.judging import judge_cells
-from rulec.runtime.bits.across import Across
-from rulec.runtime.verify import verify
+from rulec.monitoring.batch.engine import judge_cells
+from rulec.monitoring.bits.trace_planes import Across
+from rulec.monitoring.verify import verify
 
 EVERY = 1500
 PROGRAMS = {"rtamt": "rtamt_traces", "reelay": "reelay_traces", "flloat": "flloat_traces"}

@@ -20,9 +20,9 @@ from pyarrow import parquet
 from timing import Timed, children_ms, in_turns, processor_time
 
 import rulec
-from rulec.runtime.batch.blocks import judge_items
+from rulec.monitoring.batch.table_verdicts import judge_items
 from rulec.trace import Trace
-from rulec.trace.formats import FORMATS, Format, format_of, read_chunks, write_traces
+from rulec.trace.formats.trace_files import FORMATS, Format, format_of, read_chunks, write_traces
 
 N_TRACES, N_STATES, N_VEHICLES = 5_000, 20, 3
 WORK = float(N_TRACES * N_STATES)

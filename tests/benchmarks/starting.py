@@ -19,7 +19,7 @@ from figure import Result, number
 from program import run
 from timing import children_ms, in_turns
 
-from rulec.rulebook.finding import available_rulebooks, find_rulebook
+from rulec.rulebook.files.search_path import available_rulebooks, find_rulebook
 from rulec.rulebook.loader import diagnose
 
 ROOT = Path(__file__).resolve().parents[2]

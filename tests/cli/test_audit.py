@@ -5,9 +5,9 @@ import json
 import island
 import pytest
 
-from rulec.analysis.asking import audit_rulebook
+from rulec.api.rulebook_questions import audit_rulebook
 from rulec.cli.main import main
-from rulec.report.audits import render
+from rulec.report.rulebooks.audit_report import render
 
 CLEAN = """\
 rulebook clean

@@ -138,13 +138,13 @@ def test_all_bad_programs_in_every_format(output_format, capsys):
 
 @pytest.mark.parametrize("arguments", [["list"], ["list", "codes"], ["explain", "--all"]])
 def test_light_verbs_import_nothing_heavy(arguments):
-    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.runtime", "rulec.automata"]
+    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.monitoring", "rulec.automata"]
     assert imported(arguments).isdisjoint(heavy)
 
 
 def test_check_neither_starts_spot_nor_imports_what_it_does_not_need():
     found = imported(["check", "esterle2019", "--no-cache"])
-    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.runtime", "rulec.automata"]
+    heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.monitoring", "rulec.automata"]
     # Spot's process is started by rulec.automata alone.
     assert found.isdisjoint([*heavy, "msgspec"])
     assert "lark" in found

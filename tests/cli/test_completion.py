@@ -8,7 +8,7 @@ import sys
 import pytest
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from rulec.cli.completion import SHELLS
+from rulec.cli.commands.completion import SHELLS
 from rulec.cli.main import VERBS, main, rulec
 from rulec.diagnostics.codes import CODES
 
@@ -120,7 +120,7 @@ def test_fish_offers_files_in_folders_and_whole_descriptions(capsys, tmp_path):
 
 def test_the_program_answers_the_script():
     done = subprocess.run(
-        [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"],
+        [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"],
         env={
             **os.environ,
             "_RULEC_COMPLETE": "bash_complete",

@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from rulec.cli.main import main
-from rulec.syntax.formatting import safety
+from rulec.syntax.formatting import safe_format
 
 GOOD = "rulebook good\nsignal p\nhard rule r { require p }\n"
 UGLY = "rulebook good   signal p\nhard rule r {require p }"
@@ -240,8 +240,8 @@ def test_a_file_in_another_encoding(folder, capsys):
 
 def test_nothing_is_written_if_the_formatter_is_wrong(folder, capsys, monkeypatch):
     (folder / "z.rules").write_text(f"{UGLY}\nsignal q")
-    real = safety.arranged
-    monkeypatch.setattr(safety, "arranged", lambda source: real(source).replace(" q", " r"))
+    real = safe_format.arranged
+    monkeypatch.setattr(safe_format, "arranged", lambda source: real(source).replace(" q", " r"))
     status, out, err = fmt(capsys)
     assert (status, out) == (70, "")
     assert "this is a bug in rulec" in err

@@ -7,7 +7,7 @@ import pytest
 
 from rulec.cli.main import main
 from rulec.diagnostics.codes import CODES
-from rulec.rulebook.catalogue import list_rulebooks, list_vocabularies
+from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
 from rulec.scenario import available_scenarios
 
 

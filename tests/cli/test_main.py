@@ -20,7 +20,7 @@ def test_version(capsys):
 def test_the_version_alone_needs_nothing_else_to_be_loaded():
     program = (
         "import sys; sys.argv = ['rulec', '--version']\n"
-        "from rulec.cli.program import run\n"
+        "from rulec.cli.entry_point import run\n"
         "status = run()\n"
         "print(status, 'click' in sys.modules)"
     )
@@ -61,7 +61,7 @@ def test_a_bug_is_status_70_with_a_line_to_report(monkeypatch, capsys):
     def broken(*_, **__):
         raise KeyError("oops")
 
-    monkeypatch.setattr("rulec.workflow.machines", broken)
+    monkeypatch.setattr("rulec.api.workflow.machines", broken)
     assert main(["verify", "x", "-r", "esterle2019"]) == 70
     err = capsys.readouterr().err
     assert "bug in rulec" in err

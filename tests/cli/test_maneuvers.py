@@ -4,9 +4,9 @@ import json
 
 import pytest
 
+from rulec.api.workflow import compile_rulebook, find_maneuvers
 from rulec.cli.main import main
-from rulec.runtime.monitor import Monitor
-from rulec.workflow import compile_rulebook, find_maneuvers
+from rulec.monitoring.online.running_monitor import Monitor
 
 
 def answer(capsys, *arguments):

@@ -10,7 +10,7 @@ from terminal_signals import as_from_a_terminal
 
 from rulec.cli.main import main
 
-RULEC = [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"]
+RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
 BOOK = """
 rulebook waiting
 type car

@@ -6,10 +6,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from rulec.api.workflow import compile_rulebook
+from rulec.book_tests.example_runs import run_all
 from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.examples import run_all
-from rulec.workflow import compile_rulebook
 
 TWO = """\
 rulebook two
@@ -233,7 +233,7 @@ def test_the_shortest_traces_can_be_pasted(capsys):
         "eventually (p implies q and next q)",
     ):
         bare = parse_rulebook(book.format(formula=formula, examples=""))
-        from rulec.report.rule_page import page_of
+        from rulec.report.rulebooks.rule_page import page_of
 
         page = page_of(bare.rules[0], compile_rulebook(bare).rules[0], bare.vocabulary)
         examples = " ".join(

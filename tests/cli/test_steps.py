@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from books import P, Q, always, book, implies, rule
 
-from rulec.automata.compiled_file import read_compiled, to_json
+from rulec.automata.bundle.bundle_file import read_compiled, to_json
 from rulec.automata.compiler import compile_rulebook
 from rulec.cli.main import main
 from rulec.logic.formula import Bound, Unary, UnaryOperator

@@ -9,7 +9,7 @@ import time
 import pytest
 from terminal_signals import as_from_a_terminal
 
-RULEC = [sys.executable, "-c", "from rulec.cli.program import run; raise SystemExit(run())"]
+RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
 MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]
 TRACES = ["traces", "s2", "--step", "0.5", "-o", "-"]
 

@@ -8,16 +8,16 @@ import sys
 
 import pytest
 
-from rulec.analysis.asking import analyze_rulebook, run_examples
+from rulec.api.rulebook_questions import analyze_rulebook, run_examples
+from rulec.api.workflow import compile_rulebook, find_maneuvers
+from rulec.book_tests.verdict_coverage import unexercised
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.codes import EXPLANATIONS, STAGES
+from rulec.monitoring.verify import judge
 from rulec.partition import navigation_graph
 from rulec.rulebook.loader import diagnose, parse_rulebook
-from rulec.runtime.exercise import unexercised
-from rulec.runtime.verify import judge
-from rulec.scenario.read import read_scenario
-from rulec.trace.formats import read_traces
-from rulec.workflow import compile_rulebook, find_maneuvers
+from rulec.scenario.scenario_files import read_scenario
+from rulec.trace.formats.trace_files import read_traces
 
 CODE = re.compile(r"\[(R\d{4})\]")
 

@@ -8,8 +8,8 @@ import pytest
 
 from rulec.cli.main import VERBS, main, rulec
 from rulec.diagnostics import Diagnostic
-from rulec.report.diagnostics_json import as_data
-from rulec.report.formats import FORMATS
+from rulec.report.findings.diagnostics_json import as_data
+from rulec.report.findings.finding_formats import FORMATS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "commands.md").read_text(encoding="utf-8")
 

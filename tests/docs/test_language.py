@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rulec.diagnostics import RulecError, Source
-from rulec.report.diagnostics import render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.resolve import resolve_vocabulary
 from rulec.syntax import parse

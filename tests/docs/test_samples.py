@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from rulec.automata.compiled_file import to_json
+from rulec.api.workflow import compile_rulebook
+from rulec.automata.bundle.bundle_file import to_json
+from rulec.book_tests.example_runs import run_all
+from rulec.monitoring.verify import run
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.examples import run_all
-from rulec.runtime.verify import run
-from rulec.workflow import compile_rulebook
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

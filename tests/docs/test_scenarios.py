@@ -6,10 +6,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from rulec.api.workflow import find_maneuvers
 from rulec.partition import navigation_graph
-from rulec.scenario import available_scenarios, load_scenario, schema
+from rulec.scenario import available_scenarios, load_scenario
 from rulec.scenario.model import SURFACES
-from rulec.workflow import find_maneuvers
+from rulec.scenario.toml import schema
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")

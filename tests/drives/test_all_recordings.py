@@ -6,14 +6,14 @@ from fractions import Fraction
 import pytest
 from roads import RECORDINGS
 
-from rulec.drives.extract import NoDrive
-from rulec.drives.judging import JudgedRecording
-from rulec.drives.tally import Tally
-from rulec.drives.wanted import Wanted
-from rulec.runtime.verdict import Verdict
-from rulec.runtime.verify import verify
-from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.api.workflow import machines
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import JudgedRecording
+from rulec.extraction.selection.requested import Wanted
+from rulec.extraction.violation_tally import Tally
+from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.verify import verify
+from rulec.scenario.recording_files import read_recording
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))

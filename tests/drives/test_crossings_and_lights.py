@@ -6,10 +6,10 @@ import pytest
 from judged import violated
 from roads import lanelet, recording, straight, vehicle
 
-from rulec.drives.extract import Drives
-from rulec.drives.thresholds import Thresholds
+from rulec.api.workflow import machines
+from rulec.extraction.drives import Drives
+from rulec.extraction.selection.thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
-from rulec.workflow import machines
 
 STEP_S = 0.5
 GERMAN = machines("de")

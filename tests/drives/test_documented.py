@@ -6,9 +6,9 @@ from pathlib import Path
 
 from roads import recording, straight, vehicle
 
-from rulec.drives.extract import Drives
-from rulec.drives.fitting import UNITS
-from rulec.drives.thresholds import USUAL
+from rulec.extraction.drive_projection import UNITS
+from rulec.extraction.drives import Drives
+from rulec.extraction.selection.thresholds import USUAL
 from rulec.rulebook.loader import load_rulebook
 from rulec.vocabulary import Quantity
 

@@ -6,7 +6,7 @@ import pytest
 from judged import violated
 from roads import recording, straight, vehicle
 
-from rulec.workflow import machines
+from rulec.api.workflow import machines
 
 STEP_S = 0.5
 MOTORWAY = {"types": frozenset({"highway"})}

@@ -3,8 +3,8 @@
 from driven_roads import scenes
 from hypothesis import given
 
-from rulec.drives import extract
-from rulec.drives.extract import Drives
+from rulec.extraction import drives
+from rulec.extraction.drives import Drives
 
 
 def told(found):
@@ -14,9 +14,9 @@ def told(found):
 
 @given(scenes())
 def test_a_part_at_a_time(found):
-    usual, most = told(found), extract.MOST_PLACES
-    extract.MOST_PLACES = 0
+    usual, most = told(found), drives.MOST_PLACES
+    drives.MOST_PLACES = 0
     try:
         assert told(found) == usual
     finally:
-        extract.MOST_PLACES = most
+        drives.MOST_PLACES = most

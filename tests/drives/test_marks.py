@@ -3,7 +3,7 @@
 import pytest
 from roads import recording, straight, vehicle
 
-from rulec.drives.extract import Drives
+from rulec.extraction.drives import Drives
 
 
 def state(y, right="broken", left="broken", **more):

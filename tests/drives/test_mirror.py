@@ -6,8 +6,8 @@ import numpy as np
 from driven_roads import scenes
 from hypothesis import given
 
-from rulec.drives.extract import Drive, Drives
-from rulec.drives.mirror import mirrored
+from rulec.extraction.drives import Drive, Drives
+from rulec.extraction.tracks.mirror import mirrored
 
 _MIRRORED = {
     "left_of": "right_of",

@@ -4,8 +4,8 @@ import pytest
 from judged import violated
 from roads import lanelet, recording, straight, vehicle
 
-from rulec.drives.extract import Drives
-from rulec.workflow import machines
+from rulec.api.workflow import machines
+from rulec.extraction.drives import Drives
 
 STEP_S = 0.5
 PAPER = machines("esterle2019")

@@ -5,8 +5,8 @@ import shapely
 from driven_roads import STEP_S, scenes
 from hypothesis import given
 
-from rulec.drives.extract import Drive, Drives
-from rulec.drives.thresholds import USUAL
+from rulec.extraction.drives import Drive, Drives
+from rulec.extraction.selection.thresholds import USUAL
 
 
 def lane_polygons(found):

@@ -8,9 +8,9 @@ are those of the simulation, in s: of the first state by which a rule is violate
 import pytest
 from sumo_files import SUMO
 
-from rulec.drives.judging import JudgedRecording, Wanted
-from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.api.workflow import machines
+from rulec.extraction.recording_verdicts import JudgedRecording, Wanted
+from rulec.scenario.recording_files import read_recording
 
 FILE = SUMO / "fcd.xml.gz"
 if not FILE.exists():

@@ -5,9 +5,9 @@ import re
 import pytest
 from sumo_files import ROAD_NET, body, data, moment, written
 
-from rulec.drives.judging import JudgedRecording, Wanted
-from rulec.scenario.recordings import read_recording
-from rulec.workflow import machines
+from rulec.api.workflow import machines
+from rulec.extraction.recording_verdicts import JudgedRecording, Wanted
+from rulec.scenario.recording_files import read_recording
 
 STEP_S = 0.5
 KERB, FAR = -4.8, -1.6

@@ -4,8 +4,8 @@ import pytest
 from driven_roads import lanes
 from roads import recording, vehicle
 
-from rulec.drives.extract import Drives
-from rulec.drives.thresholds import Thresholds
+from rulec.extraction.drives import Drives
+from rulec.extraction.selection.thresholds import Thresholds
 
 STEP_S = 0.5
 

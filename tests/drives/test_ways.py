@@ -6,11 +6,11 @@ from math import cos, pi, sin
 import pytest
 from roads import lanelet, recording, straight, vehicle
 
-from rulec.drives.everyone import everyone
-from rulec.drives.extract import Drive, Drives, NoDrive
-from rulec.drives.thresholds import USUAL
-from rulec.drives.ways import stretches
-from rulec.drives.whereabouts import whereabouts
+from rulec.extraction.drives import Drive, Drives, NoDrive
+from rulec.extraction.selection.thresholds import USUAL
+from rulec.extraction.tracks.driven_route import stretches
+from rulec.extraction.tracks.map_matching import whereabouts
+from rulec.extraction.tracks.tracks import everyone
 
 
 def ways(found, ego=0):

@@ -10,9 +10,9 @@ from hypothesis import Phase, given, settings
 from random_maneuvers import Given, scene
 from seeds import seeds
 
-from rulec.maneuvers import judged
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.passages import passages
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.planning import judged
+from rulec.planning.product.accepted_edges import passages
 
 MANY = 10**9
 

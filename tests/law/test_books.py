@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from national_books import FOLDER, NATIONAL, compiled, read
 
-from rulec.rulebook.formatting import formatted
+from rulec.book_tests.example_runs import run_all
+from rulec.rulebook.files.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
-from rulec.runtime.examples import run_all
 
 of_every_book = pytest.mark.parametrize("name", NATIONAL)
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from national_books import CASES, NATIONAL, compiled, read, rules_on
 
-from rulec.runtime.verify import verify
+from rulec.monitoring.verify import verify
 from rulec.trace import Trace
 
 JUDGED = [

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from national_books import compiled
 
 from rulec.automata.compiler import compile_rulebook
+from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
 
 MIRRORED = {"left_of": "right_of", "right_of": "left_of", "same_lane": "same_lane"}

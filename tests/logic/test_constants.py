@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from words import formulas, letters, words
 
-from rulec.logic.constants import folded
+from rulec.logic.constant_folding import folded
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import truth_values

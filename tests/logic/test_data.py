@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from timed import CARS, SUMS, comparison, formulas_in, timed_formulas
 
-from rulec.logic.data import DEEPEST, from_data, to_data
+from rulec.logic.codec import DEEPEST, from_data, to_data
 from rulec.logic.formula import Atom, Bound, Comparison, Count, Same, Unary, UnaryOperator
 
 P = Atom("p")

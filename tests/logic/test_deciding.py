@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from timed import letters_of, timed_formulas, timed_words
 from words import formulas, letters, words
 
-from rulec.logic.deciding import deciding_instants
+from rulec.logic.causes import deciding_instants
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import holds, values_of_parts
 

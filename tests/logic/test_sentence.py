@@ -7,6 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from words import ATOMS
 
+from rulec.logic.english.sentence import phrase, sentence
+from rulec.logic.english.sentence_layout import in_one_line, lines
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -20,8 +22,6 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.sentence import phrase, sentence
-from rulec.logic.sentence_lines import in_one_line, lines
 
 NOT, ALWAYS, NEVER = UnaryOperator.NOT, UnaryOperator.ALWAYS, UnaryOperator.NEVER
 EVENTUALLY, NEXT = UnaryOperator.EVENTUALLY, UnaryOperator.NEXT

@@ -7,9 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from timed import formulas_in, timed_formulas
 
-from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
-from rulec.logic.printing import in_words
-from rulec.logic.timing import (
+from rulec.logic.bounds import (
     NotAMultipleError,
     Range,
     in_steps,
@@ -18,6 +16,8 @@ from rulec.logic.timing import (
     reach,
     speaks_of_seconds,
 )
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from rulec.logic.printing import in_words
 
 P, Q = Atom("p"), Atom("q")
 QUARTER = Fraction(1, 4)

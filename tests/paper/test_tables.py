@@ -4,12 +4,12 @@ import json
 
 import pytest
 
+from rulec.api.workflow import compile_rulebook
+from rulec.book_tests.example_runs import example_trace
 from rulec.cli.main import main
+from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import load_rulebook
-from rulec.runtime.examples import example_trace
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
-from rulec.workflow import compile_rulebook
 
 RULES = compile_rulebook("esterle2019")
 SOURCE = load_rulebook("esterle2019")

@@ -4,15 +4,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from random_scenarios import scenarios
 
+from rulec.api.workflow import compile_rulebook, navigation_graph
 from rulec.diagnostics import RulecError
+from rulec.monitoring.verify import verify
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.graph_product import count_paths, explore
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.cheapest import cheapest
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances
-from rulec.runtime.product import count_paths, explore
-from rulec.runtime.verify import verify
-from rulec.trace.paths import all_traces
-from rulec.workflow import compile_rulebook, navigation_graph
+from rulec.trace.graph_paths import all_traces
 
 PAPER = compile_rulebook("esterle2019")
 FINE = compile_rulebook(

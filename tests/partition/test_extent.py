@@ -9,7 +9,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
-from rulec.runtime.product import count_paths
+from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import Box, ConstantAcceleration, Ego, Obstacle, Road, Scenario, Stretch
 
 CYCLIST = Obstacle("c", "cyclist", 2.0, 0.6, ConstantAcceleration(20.0, -1.5))

@@ -11,7 +11,7 @@ from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
-from rulec.partition.occupancy import scene as scene_over_time
+from rulec.partition.cells.occupancy import scene as scene_over_time
 from rulec.scenario import (
     Box,
     ConstantAcceleration,
@@ -22,7 +22,7 @@ from rulec.scenario import (
     Trajectory,
     load_scenario,
 )
-from rulec.scenario.timing import timing
+from rulec.scenario.time_grid import timing
 
 partitions = st.sampled_from(["paper", "fine"])
 

@@ -8,7 +8,7 @@ from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import Layer, navigation_graph
-from rulec.partition.margin import edges
+from rulec.partition.time_margin import edges
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario, load_scenario
 
 

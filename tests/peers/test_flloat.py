@@ -24,13 +24,13 @@ from timed import (
     without_bounds,
 )
 
-from rulec.automata.letters import count_letters, propositions_of, reads_of
-from rulec.automata.sampling import verdict
+from rulec.automata.alphabet import count_letters, propositions_of, reads_of
+from rulec.automata.random_words import verdict
 from rulec.automata.spot_bridge import explore, translate
 from rulec.automata.tables import build_machine
+from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Binary, Constant, Unary
 from rulec.logic.semantics import holds
-from rulec.logic.timing import PAST, operations_of
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

@@ -13,19 +13,20 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from random_scenarios import with_predictions
 
+from rulec.api.workflow import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.maneuvers import judged, lost
-from rulec.maneuvers.chances import chances
-from rulec.maneuvers.otherwise import otherwise
+from rulec.monitoring.verify import verify
 from rulec.partition import navigation_graph
+from rulec.planning import judged
+from rulec.planning.probability import violation_events
+from rulec.planning.probability.alternative_predictions import otherwise
+from rulec.planning.probability.rule_probability import chances
+from rulec.planning.product.graph_product import count_paths
+from rulec.planning.ranking.cheapest import Maneuver
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.cheapest import Maneuver
-from rulec.runtime.product import count_paths
-from rulec.runtime.verify import verify
 from rulec.scenario import Alternative, ConstantAcceleration, Ego, Obstacle, Road, Scenario
 from rulec.trace import Trace
-from rulec.trace.paths import paths
-from rulec.workflow import compile_rulebook
+from rulec.trace.graph_paths import paths
 
 PAPER = compile_rulebook("esterle2019")
 FINE = compile_rulebook(
@@ -351,7 +352,7 @@ def test_of_rules_that_count_too(scenario, data):
 
 
 def test_where_too_many_worlds_make_a_difference_it_is_not_known(monkeypatch):
-    monkeypatch.setattr(lost, "MOST_WORLDS", 3)
+    monkeypatch.setattr(violation_events, "MOST_WORLDS", 3)
     places = [ConstantAcceleration(s, 4.5) for s in (6.0, 20.0)]
     half = Fraction(1, 2)
     others = tuple(

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.compiler import compile_rulebook
+from rulec.book_tests.example_runs import run_all
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.report.diagnostics import render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import read_rulebook
-from rulec.runtime.examples import run_all
 from rulec.syntax import decode, parse, print_file
 
 HERE = Path(__file__).parent

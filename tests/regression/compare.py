@@ -29,7 +29,9 @@ VOLATILE = [
 def jobs(checkout: Path) -> dict[str, list[str]]:
     """Arguments of every call, by the name of the file that its answer is written to."""
     books = sorted(
-        path.stem for path in (checkout / "rulebooks").glob("*/*.rules") if path.stem == path.parent.name
+        path.stem
+        for path in (checkout / "rulebooks").glob("*/*.rules")
+        if path.stem == path.parent.name
     )
     calls: dict[str, list[str]] = {}
     for book in books:
@@ -58,7 +60,15 @@ def jobs(checkout: Path) -> dict[str, list[str]]:
     for scene in ("s1", "s2", "s3"):
         calls[f"traces/{scene}"] = ["traces", scene, "-r", "esterle2019", "-o", "-"]
         calls[f"draw/{scene}"] = ["draw", "scene", scene, "-o", "{out}.svg"]
-        calls[f"draw-graph/{scene}"] = ["draw", "graph", scene, "-r", "esterle2019", "-o", "{out}.svg"]
+        calls[f"draw-graph/{scene}"] = [
+            "draw",
+            "graph",
+            scene,
+            "-r",
+            "esterle2019",
+            "-o",
+            "{out}.svg",
+        ]
     sample = "docs/samples/traces.jsonl"
     calls["verify/text"] = ["verify", sample, "-r", "esterle2019", "--explain", "3"]
     calls["verify/json"] = ["verify", sample, "-r", "esterle2019", "--explain", "3", "--json"]
@@ -82,7 +92,13 @@ def jobs(checkout: Path) -> dict[str, list[str]]:
         for path in files:
             calls[f"recording/{path.stem}-de"] = ["verify", str(path), "-r", "de", "--json"]
             calls[f"recording-text/{path.stem}-gb"] = ["verify", str(path), "-r", "gb"]
-            calls[f"recording-maneuvers/{path.stem}"] = ["maneuvers", str(path), "-r", "de", "--json"]
+            calls[f"recording-maneuvers/{path.stem}"] = [
+                "maneuvers",
+                str(path),
+                "-r",
+                "de",
+                "--json",
+            ]
         for path in files[:4]:
             calls[f"recorded-traces/{path.stem}"] = [
                 *("traces", str(path), "--recorded", "-r", "de", "-o", "-"),

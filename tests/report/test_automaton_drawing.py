@@ -8,11 +8,10 @@ from books import P, Q, book, compile_here, rule
 from hypothesis import given
 from machines import VOCABULARY, machines
 
-from rulec.automata.compiled import CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.report.automaton import Automaton, Transition, automaton_of
-from rulec.report.automaton_dot import as_dot
-from rulec.report.automaton_drawing import (
+from rulec.report.automata.automaton_dot import as_dot
+from rulec.report.automata.automaton_layout import (
     LINE,
     MOST_STATES,
     STATE_HEIGHT,
@@ -20,7 +19,8 @@ from rulec.report.automaton_drawing import (
     is_too_large,
     text_width,
 )
-from rulec.report.automaton_svg import as_svg
+from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
+from rulec.report.automata.automaton_svg import as_svg
 
 
 def box_of(state):

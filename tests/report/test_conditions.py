@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from machines import READS, VOCABULARY, machines
 
-from rulec.automata.compiled import CompiledRule
-from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Threshold
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Threshold
 from rulec.logic.formula import Atom, Comparison, Count, Quantity
-from rulec.report.automaton import automaton_of
-from rulec.report.conditions import Wording
+from rulec.report.automata.automaton_model import automaton_of
+from rulec.report.automata.guard_text import Wording
 
 SPEED = {0: Fraction(2), 1: Fraction(3), 2: Fraction(4), 3: Fraction(7)}
 """A number for each digit of the speed that is read."""

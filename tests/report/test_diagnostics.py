@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.diagnostics.source import Place
-from rulec.report.diagnostics import render_diagnostics
-from rulec.report.excerpt import MAX_WIDTH
+from rulec.diagnostics.source_text import Place
+from rulec.report.findings.diagnostics_text import render_diagnostics
+from rulec.report.findings.source_excerpt import MAX_WIDTH
 
 
 def at(text, part, name="a.rules", occurrence=0):

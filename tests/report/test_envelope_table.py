@@ -9,10 +9,10 @@ import pytest
 from hypothesis import assume, given
 from random_scenarios import scenarios
 
+from rulec.api.workflow import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import envelope, navigation_graph
-from rulec.report.envelope_table import COLUMNS, stretches, write_envelopes
-from rulec.workflow import find_maneuvers
+from rulec.report.maneuvers.envelope_table import COLUMNS, stretches, write_envelopes
 
 
 @given(scenarios())

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.logic.printing import in_words
-from rulec.report.folding import fitting, folded, head, width
-from rulec.runtime.explanation import Part
+from rulec.monitoring.explain.explanation import Part
+from rulec.report.verdicts.table_folding import fitting, folded, head, width
 
 A, B, C = (Atom(f"a_signal_with_a_long_name_{name}") for name in "abc")
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import Diagnostic, Label, Place, Source, Span
 from rulec.diagnostics.codes import CODES
-from rulec.report.concise import as_lines
-from rulec.report.diagnostics_json import as_json
-from rulec.report.formats import FORMATS, render
-from rulec.report.github import as_annotations
-from rulec.report.sarif import as_sarif
+from rulec.report.findings.concise import as_lines
+from rulec.report.findings.diagnostics_json import as_json
+from rulec.report.findings.finding_formats import FORMATS, render
+from rulec.report.findings.github_annotations import as_annotations
+from rulec.report.findings.sarif import as_sarif
 
 TEXT = "one\ntwo 🚗 three\n"
 PLACE = Span(Source("a b.rules", TEXT), 10, 15).place

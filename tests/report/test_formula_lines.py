@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from words import formulas
 
 from rulec.logic.printing import in_words
-from rulec.report.formula_lines import formula_lines
+from rulec.report.text.formula_lines import formula_lines
 
 
 @given(formulas, st.integers(10, 60))

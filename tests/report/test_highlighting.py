@@ -18,7 +18,7 @@ from pygments.token import (
     String,
 )
 
-from rulec.report.pygments_lexer import RulecLexer
+from rulec.report.text.pygments_lexer import RulecLexer
 from rulec.report.textmate import textmate_grammar
 from rulec.syntax.keywords import ITEM_WORDS, OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED, SYMBOLS
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.html_page import as_html
-from rulec.report.markdown import Heading, code, escaped, fenced, table, written
+from rulec.report.text.html_page import as_html
+from rulec.report.text.markdown import Heading, code, escaped, fenced, table, written
 
 VOID = {"meta", "hr", "br"}
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from rulec.logic.one_state import holds
+from rulec.logic.kleene import holds
+from rulec.monitoring.state_view import Moment
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.moment import Moment
 
 BOOK = """rulebook r type car signal near(c: car) default false
 define another_is_near(c: car) = some x: car (x != c and near(x))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.rulebook.descriptions import description
+from rulec.rulebook.names.doc_comments import description
 from rulec.syntax import decode, parse
 
 

@@ -6,7 +6,7 @@ import networkx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.rulebook.priorities import MOST_LEVELS, pre_order
+from rulec.rulebook.overlay.priorities import MOST_LEVELS, pre_order
 from rulec.syntax import tree
 
 names = st.sampled_from("abcdefg")

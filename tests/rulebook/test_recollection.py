@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from rulec.rulebook import checking, loader, recollection
-from rulec.rulebook.recollection import Question, cache_folder, recall, remember
+from rulec.rulebook import loader
+from rulec.rulebook.files import batch_check, check_cache
+from rulec.rulebook.files.check_cache import Question, cache_folder, recall, remember
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require p }\n"
@@ -42,7 +43,7 @@ def made(monkeypatch):
 
 
 def check(reference="book.rules", at="", search_path=(), data=b""):
-    done = checking.check([reference], lambda: data, search_path, at, recalls=True)
+    done = batch_check.check([reference], lambda: data, search_path, at, recalls=True)
     assert not done.unread
     return [(one.code, one.place.file, one.message) for one in done.findings]
 
@@ -68,7 +69,7 @@ def test_a_change_anywhere_counts(folder, made, name):
 def test_a_mistake_is_recalled_in_every_detail(folder, made, formula):
     """Errors; and a warning."""
     (folder / "book.rules").write_text(BOOK.replace("always q", formula))
-    found = [checking.check(["book.rules"], bytes, recalls=True).findings for _ in range(2)]
+    found = [batch_check.check(["book.rules"], bytes, recalls=True).findings for _ in range(2)]
     assert found[0] == found[1] != ()
     assert made == ["book.rules"]
 
@@ -158,7 +159,7 @@ def test_standard_input_is_recalled_by_its_text(folder, made):
 )
 def test_another_rulec_checks_anew(folder, made, monkeypatch, name, value):
     check()
-    monkeypatch.setattr(recollection, name, value)
+    monkeypatch.setattr(check_cache, name, value)
     check()
     check()
     assert len(made) == 2
@@ -207,7 +208,7 @@ def test_mistakes_that_quote_a_long_line_again_and_again_are_not_kept(folder, ma
 def test_mistakes_in_one_line_share_its_text(folder):
     rules = "hard rule r { require q } hard rule s { require t }"
     (folder / "two.rules").write_text(f"rulebook two\n{rules}\n")
-    found = checking.check(["two.rules"], lambda: b"", (), "", recalls=False).findings
+    found = batch_check.check(["two.rules"], lambda: b"", (), "", recalls=False).findings
     first, second = [one.place.excerpt for one in found if one.code == "R0202"]
     assert first is second
     assert first == rules
@@ -225,7 +226,7 @@ def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
 @pytest.mark.parametrize(("used", "left"), [(None, {2, 3}), (0, {0, 3})])
 def test_the_longest_unused_go_first(folder, monkeypatch, used, left):
     """Half of them, once there are too many; recalling is using."""
-    monkeypatch.setattr(recollection, "MOST_FILES", 3)
+    monkeypatch.setattr(check_cache, "MOST_FILES", 3)
     questions = [Question(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
     for age, question in enumerate(questions[:3]):
         remember(question, (), ())

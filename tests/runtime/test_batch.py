@@ -14,24 +14,24 @@ from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 from timed import TIMED_VOCABULARY
 
-from rulec.automata.machine import NumberRead, Threshold
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, Quantity, Same
+from rulec.monitoring.batch import batch_verify, joint_codes
+from rulec.monitoring.batch.batch_verify import judge_chunk, verify_many
+from rulec.monitoring.batch.column_reader import NotGivenError
+from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.engine import judge_cells, judge_columns
+from rulec.monitoring.batch.sum_thresholds import digits_of_sum
+from rulec.monitoring.batch.trace_groups import grouped
+from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.bits.bit_verdicts import judge_on_bits
+from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verify import judge, verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.batch import codes, verifying
-from rulec.runtime.batch.gathering import gathered
-from rulec.runtime.batch.grouping import grouped
-from rulec.runtime.batch.judging import judge_cells, judge_columns
-from rulec.runtime.batch.meaning import OddError
-from rulec.runtime.batch.reading import NotGivenError
-from rulec.runtime.batch.sums import digits_of_sum
-from rulec.runtime.batch.verifying import judge_chunk, verify_many
-from rulec.runtime.bits.judging import judge_on_bits
-from rulec.runtime.letters import present_in
-from rulec.runtime.numbers import exact
-from rulec.runtime.verdict import NotJudged, Verdict
-from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
 
 
@@ -180,7 +180,7 @@ def test_three_hundred_objects():
 
 
 def test_any_number_of_traces_and_what_is_none(monkeypatch):
-    monkeypatch.setattr(verifying, "MOST_STATES", 1000)
+    monkeypatch.setattr(batch_verify, "MOST_STATES", 1000)
     compiled = crowded("stutter")
     broken = RulecError(Diagnostic("R0501", "this is not a trace"))
     states = tuple(state_of(Random(1), ()) for _ in range(3))
@@ -212,7 +212,7 @@ def test_what_can_be_no_trace_is_not_judged():
 @pytest.mark.parametrize("most_cells", [1, 6])
 def test_more_is_read_than_one_number_can_tell_apart(monkeypatch, most_cells):
     """Then rules are judged each by its own numbers, or by the classes of its letters."""
-    monkeypatch.setattr(codes, "MOST_CELLS", most_cells)
+    monkeypatch.setattr(joint_codes, "MOST_CELLS", most_cells)
     chance = Random(most_cells)
     objects = {"a": "car", "b": "thing", "c": "car"}
     traces = [

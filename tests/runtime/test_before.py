@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
-from rulec.runtime.before import only_trace, past_of
-from rulec.runtime.instances import instances
-from rulec.runtime.monitor import Monitor
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.trace_history import only_trace, past_of
 from rulec.trace import Trace
 
 HALF = Fraction(1, 2)

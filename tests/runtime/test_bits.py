@@ -19,9 +19,9 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.logic.semantics import holds
-from rulec.runtime.bits import across, along
-from rulec.runtime.bits.program import program_of
-from rulec.trace.columns import layout_of
+from rulec.monitoring.bits import across, along
+from rulec.monitoring.bits.plane_program import program_of
+from rulec.trace.trace_columns import layout_of
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 P, Q = Atom("p"), Atom("q")

@@ -8,12 +8,12 @@ from graphs import graphs
 from hypothesis import given
 from random_priorities import RULES
 
-from rulec.automata.stuttering import stutter_invariant
-from rulec.runtime.classes import Classes, count_classes, variants
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances
-from rulec.runtime.places import places
-from rulec.runtime.product import explore
+from rulec.automata.stutter_invariance import stutter_invariant
+from rulec.planning.product.cell_tracks import places
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.graph_product import explore
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.homotopy import Classes, count_classes, variants
 from rulec.trace import TraceGraph
 
 STUTTERING = replace(

@@ -4,13 +4,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.strategies import composite
 
+from rulec.api.workflow import compile_rulebook
+from rulec.book_tests.edge_coverage import coverage, percent
+from rulec.book_tests.example_runs import run_all
 from rulec.logic.formula import Atom
 from rulec.logic.printing import in_words
-from rulec.report.examples import missing_example
+from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.coverage import coverage, percent
-from rulec.runtime.examples import run_all
-from rulec.workflow import compile_rulebook
 
 HEAD = """rulebook sample
 type t

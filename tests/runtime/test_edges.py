@@ -9,8 +9,8 @@ from hypothesis import given
 from machines import READS, machines
 from words import formulas
 
-from rulec.automata.machine import IMPOSSIBLE, Machine
-from rulec.runtime.edges import edges, literals
+from rulec.automata.guards import edges, literals
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
 
 
 def letters_of(cubes, sizes):

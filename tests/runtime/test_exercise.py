@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rulec.api.workflow import compile_rulebook
+from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.verdict_coverage import unexercised, verdicts
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.examples import run_all
-from rulec.runtime.exercise import unexercised, verdicts
-from rulec.workflow import compile_rulebook
 
 HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"
 

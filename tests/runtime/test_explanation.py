@@ -12,10 +12,10 @@ from words import formulas, letters, words
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
-from rulec.report import explanation as report
+from rulec.monitoring.explain.explanation import MOST_STATES, explain
+from rulec.monitoring.verify import verify
+from rulec.report.verdicts import violation_table as report
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.explanation import MOST_STATES, explain
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
 
 CARS = {"car1": "car", "car2": "car"}

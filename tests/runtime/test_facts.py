@@ -2,16 +2,16 @@
 
 import pytest
 
-from rulec.automata.compiled_file import from_json, to_json
+from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.compiler import compile_rulebook
+from rulec.book_tests.edge_coverage import coverage
+from rulec.book_tests.example_runs import run_all
 from rulec.diagnostics import RulecError
+from rulec.monitoring.verify import verify
+from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.coverage import coverage
-from rulec.runtime.examples import run_all
-from rulec.runtime.instances import instances
-from rulec.runtime.shortest import shortest_traces
-from rulec.runtime.verify import verify
 from rulec.trace import Trace, TraceGraph
+from rulec.witnesses.shortest_traces import shortest_traces
 
 QUEUE = parse_rulebook(
     """rulebook queue

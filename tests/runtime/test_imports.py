@@ -6,7 +6,7 @@ import sys
 
 from books import Q, always, book, implies, near, rule
 
-from rulec.automata.compiled_file import to_json
+from rulec.automata.bundle.bundle_file import to_json
 from rulec.automata.compiler import compile_rulebook
 
 BLOCKED = """

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rulec.runtime.batch.joint import Joint
-from rulec.runtime.batch.leaping import _lengths, pays, run_leaping
-from rulec.runtime.batch.running import run
-from rulec.runtime.batch.steps import steps_of
-from rulec.trace.columns import layout_of, smallest_unsigned
+from rulec.monitoring.batch.machines.joint_machine import Joint
+from rulec.monitoring.batch.machines.multi_step_tables import _lengths, pays, run_leaping
+from rulec.monitoring.batch.machines.step_order import steps_of
+from rulec.monitoring.batch.machines.table_run import run
+from rulec.trace.trace_columns import layout_of, smallest_unsigned
 
 
 def walked(following, verdicts, words):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import Quantity
-from rulec.runtime.linear import Bounded, solve
+from rulec.witnesses.fourier_motzkin import Bounded, solve
 
 X, Y, Z = (Quantity(name) for name in "xyz")
 

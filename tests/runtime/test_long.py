@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 from timed import TIMED_VOCABULARY
 
+from rulec.monitoring.batch import batch_verify
+from rulec.monitoring.batch.batch_verify import judge_chunk
+from rulec.monitoring.batch.machines import chunked_run
+from rulec.monitoring.batch.machines.chunked_run import visited
+from rulec.monitoring.verify import judge
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.batch import long, verifying
-from rulec.runtime.batch.long import visited
-from rulec.runtime.batch.verifying import judge_chunk
-from rulec.runtime.verify import judge
 from rulec.trace import Trace
 
 
@@ -26,9 +27,9 @@ from rulec.trace import Trace
     st.randoms(use_true_random=False),
 )
 @example(1, 1, 1, Random(0))
-@example(32, 2, long.FEWEST_STEPS, Random(0))
-@example(33, 2, long.FEWEST_STEPS, Random(0))
-@example(2, 2, long.FEWEST_STEPS - 1, Random(0))
+@example(32, 2, chunked_run.FEWEST_STEPS, Random(0))
+@example(33, 2, chunked_run.FEWEST_STEPS, Random(0))
+@example(2, 2, chunked_run.FEWEST_STEPS - 1, Random(0))
 def test_states_are_those_that_are_passed_one_by_one(n_states, n_letters, length, chance):
     following = [[chance.randrange(n_states) for _ in range(n_letters)] for _ in range(n_states)]
     word = [chance.randrange(n_letters) for _ in range(length)]
@@ -44,7 +45,7 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     """As if any trace were long."""
     compiled = compile_here(rulebook)
     alone = [told(judge(trace, compiled)) for trace in traces]
-    with mock.patch.object(long, "FEWEST_STEPS", 1):
+    with mock.patch.object(chunked_run, "FEWEST_STEPS", 1):
         assert [told(one) for one in judge_chunk(traces, compiled, fewest=1)] == alone
 
 
@@ -65,5 +66,7 @@ def test_one_long_trace(semantics, lost, monkeypatch):
     late = [("in time", {"v": "a"}, None)]
     early = [] if lost is None else [("apart", {"v": "a", "w": "b"}, lost)]
     assert found == early + late
-    monkeypatch.setattr(verifying, "judge", lambda *_: pytest.fail("it was judged state by state"))
+    monkeypatch.setattr(
+        batch_verify, "judge", lambda *_: pytest.fail("it was judged state by state")
+    )
     assert judge_chunk([trace], compiled) == [expected]

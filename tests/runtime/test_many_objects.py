@@ -24,11 +24,11 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
+from rulec.monitoring.verify import verify
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.graph_product import explore
+from rulec.planning.product.node_transformers import effects
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances
-from rulec.runtime.product import explore
-from rulec.runtime.verify import verify
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
+from rulec.monitoring.online.breakpoints import floors_of
+from rulec.monitoring.online.rule_group import Learned
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.online.state_shape import Outline
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.online.floors import floors_of
-from rulec.runtime.online.outline import Outline
-from rulec.runtime.online.team import Learned
 
 RULES = compile_rulebook(
     parse_rulebook(
@@ -125,11 +125,13 @@ def test_with_and_without_outlines_and_memory_a_monitor_says_the_same(drive, siz
     for state in drive:
         with pytest.MonkeyPatch.context() as patched:
             for name, value in zip(("MOST", "TRIAL", "REST"), size, strict=True):
-                patched.setattr(f"rulec.runtime.online.memory.{name}", value)
+                patched.setattr(f"rulec.monitoring.online.transition_cache.{name}", value)
             remembering = answer(one, state)
         with pytest.MonkeyPatch.context() as patched:
             # As `verify` reads a state.
-            patched.setattr("rulec.runtime.online.scene.Scene._reading_of", lambda *_: None)
+            patched.setattr(
+                "rulec.monitoring.online.bound_rules.Scene._reading_of", lambda *_: None
+            )
             assert remembering == answer(other, state)
 
 
@@ -166,7 +168,7 @@ def test_an_answer_cannot_be_changed():
 def is_remembered(monitor, state, monkeypatch):
     """Is a state taken without being read?"""
     with monkeypatch.context() as patched:
-        patched.delattr("rulec.runtime.online.scene.Scene.read")
+        patched.delattr("rulec.monitoring.online.bound_rules.Scene.read")
         try:
             monitor.step(state, BOTH)
         except AttributeError:
@@ -199,8 +201,8 @@ def test_one_stranger_does_not_make_it_forget_but_two_do(monkeypatch):
 
 
 def test_where_nothing_comes_again_nothing_is_remembered_for_a_while(monkeypatch):
-    monkeypatch.setattr("rulec.runtime.online.memory.TRIAL", 16)
-    monkeypatch.setattr("rulec.runtime.online.memory.REST", 2)
+    monkeypatch.setattr("rulec.monitoring.online.transition_cache.TRIAL", 16)
+    monkeypatch.setattr("rulec.monitoring.online.transition_cache.REST", 2)
     monitor = Monitor(RULES)
     # In pairs of cars every gap matters.
     states = [{**SLOW, "gap": {"a": 1, "b": number / 10}} for number in range(100)]
@@ -331,8 +333,8 @@ def test_what_has_been_learnt_does_not_grow_for_ever(they, most, monkeypatch):
         made.append(Learned())
         return made[-1]
 
-    monkeypatch.setattr("rulec.runtime.online.team.Learned", learned)
-    monkeypatch.setattr("rulec.runtime.monitor.MOST_LEARNED", most)
+    monkeypatch.setattr("rulec.monitoring.online.rule_group.Learned", learned)
+    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", most)
     monitor = Monitor(AFTER_FOG)
     for state in FOGS:
         for told, objects in they(state):
@@ -343,7 +345,7 @@ def test_what_has_been_learnt_does_not_grow_for_ever(they, most, monkeypatch):
 
 
 def test_objects_stay_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr("rulec.runtime.monitor.MOST_LEARNED", 0)
+    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", 0)
     monitor = Monitor(AFTER_FOG)
     for names in ("ab", "ba"):
         monitor.step({}, dict.fromkeys(names, "car"))

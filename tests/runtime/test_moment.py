@@ -15,8 +15,8 @@ from rulec.logic.formula import (
     Quantity,
     Same,
 )
-from rulec.logic.one_state import Unknown, counted, holds, number_of, total
-from rulec.runtime.moment import Moment
+from rulec.logic.kleene import Unknown, counted, holds, number_of, total
+from rulec.monitoring.state_view import Moment
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem
 

@@ -11,11 +11,11 @@ import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Constant
+from rulec.monitoring.online.monitor_state import SoFar
+from rulec.monitoring.online.replay import replayed
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.verdict import Violation
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.online.replay import replayed
-from rulec.runtime.online.standing import SoFar
-from rulec.runtime.verdict import Violation
 from rulec.trace import Trace
 
 CAR, CARS = {"a": "car"}, {"a": "car", "b": "car"}
@@ -123,7 +123,7 @@ def test_an_interrupted_step_is_none(monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("rulec.runtime.monitor.Violation", interrupted)
+        patched.setattr("rulec.monitoring.online.running_monitor.Violation", interrupted)
         with pytest.raises(KeyboardInterrupt):
             judge.step({"place": {"a": "far"}}, CAR)
     assert judge.snapshot() == before

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rulec.automata.machine import NumberRead, Threshold
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.automata.thresholds import exact, floor_of, scale
 from rulec.logic.formula import Constant, Count, Quantity
-from rulec.runtime.numbers import exact, floor_of, scale
 
 floats = st.floats(allow_nan=False, allow_infinity=False)
 SPEED = Quantity("speed", ("v",))

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Comparison, Count, Same, Unary
 from rulec.logic.formula import UnaryOperator as Operator
 from rulec.rulebook.model import Variable
-from rulec.runtime.objects import MOST_OBJECTS, staged
-from rulec.runtime.witness import Witness
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
+from rulec.witnesses.letter_witness import Witness
+from rulec.witnesses.witness_objects import MOST_OBJECTS, staged
 
 TYPES = {
     "road_user": ObjectType("road_user"),

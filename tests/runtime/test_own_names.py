@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 
+from rulec.monitoring.batch import batch_verify
+from rulec.monitoring.batch.batch_verify import judge_chunk
+from rulec.monitoring.verdict import NotJudged
+from rulec.monitoring.verify import judge
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.batch import verifying
-from rulec.runtime.batch.verifying import judge_chunk
-from rulec.runtime.verdict import NotJudged
-from rulec.runtime.verify import judge
 from rulec.trace import Trace
 
 
@@ -79,7 +79,7 @@ def test_they_are_judged_together(monkeypatch):
     alone = [judge(trace, pairs()) for trace in traces]
     bound = {item for one in alone for each in one.violations for item in each.binding.values()}
     assert len(bound) > 100
-    monkeypatch.setattr(verifying, "judge", lambda *_: pytest.fail("a trace was judged alone"))
+    monkeypatch.setattr(batch_verify, "judge", lambda *_: pytest.fail("a trace was judged alone"))
     assert judge_chunk(traces, pairs()) == alone
 
 

@@ -8,12 +8,12 @@ from graphs import graphs
 from hypothesis import given
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.runtime.cheapest import cheapest
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import instances
-from rulec.runtime.product import count_paths, explore
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.product.graph_product import count_paths, explore
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace import TraceGraph
-from rulec.trace.paths import paths
+from rulec.trace.graph_paths import paths
 
 RULES = compile_rulebook(
     book(

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from random_priorities import LEVELS, RULES, closed, rulebooks
 
-from rulec.maneuvers import judged, partition_for
-from rulec.runtime.penalties import Rank, ranks_of
-from rulec.runtime.verify import verify
-from rulec.trace.paths import paths, trace_of
-from rulec.workflow import compile_rulebook, navigation_graph
+from rulec.api.workflow import compile_rulebook, navigation_graph
+from rulec.monitoring.verify import verify
+from rulec.planning import judged, partition_for
+from rulec.planning.ranking.penalties import Rank, ranks_of
+from rulec.trace.graph_paths import paths, trace_of
 
 
 def penalty(rulebook, graph, path):

@@ -13,11 +13,11 @@ from words import ATOMS, formulas
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
-from rulec.report import explanation as report
+from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.explain.nearest_satisfying import MOST_WAYS, nearest_kept
+from rulec.monitoring.verify import verify
+from rulec.report.verdicts import violation_table as report
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.explanation import explain
-from rulec.runtime.repair import MOST_WAYS, nearest_kept
-from rulec.runtime.verify import verify
 from rulec.trace import Trace
 
 small_formulas = formulas.filter(lambda one: len(set(atoms_of(one))) <= 3)

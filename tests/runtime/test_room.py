@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_priorities import rulebooks
 
+from rulec.api.workflow import navigation_graph
 from rulec.diagnostics import RulecError
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import HARD, SOFT, instances
-from rulec.runtime.penalties import ranks_of
-from rulec.runtime.product import explore
-from rulec.runtime.ranking import front, ranked, with_penalty
-from rulec.runtime.room import room_for
-from rulec.workflow import navigation_graph
+from rulec.planning.product.graph_instances import HARD, SOFT, instances
+from rulec.planning.product.graph_product import explore
+from rulec.planning.product.limits import room_for
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.least_violating import front, ranked, with_penalty
+from rulec.planning.ranking.penalties import ranks_of
 
 GRAPHS = graphs(objects=("car1", "car2"))
 
@@ -24,8 +24,8 @@ REFUSED = ["R0616"]
 def with_room(most, work):
     """What work says where there is room for so many, or the codes of what it is refused for."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("rulec.runtime.room.MOST", most)
-        patched.setattr("rulec.runtime.room.MOST_PER_NODE", 0)
+        patched.setattr("rulec.planning.product.limits.MOST", most)
+        patched.setattr("rulec.planning.product.limits.MOST_PER_NODE", 0)
         try:
             return work()
         except RulecError as refused:
@@ -60,5 +60,5 @@ def test_a_large_graph_has_more_room(monkeypatch):
     graph = navigation_graph("s1").trace_graph()
     n_nodes = sum(map(len, graph.states))
     assert room_for(graph) == 1 << 17
-    monkeypatch.setattr("rulec.runtime.room.MOST", 32 * n_nodes - 1)
+    monkeypatch.setattr("rulec.planning.product.limits.MOST", 32 * n_nodes - 1)
     assert room_for(graph) == 32 * n_nodes

@@ -14,11 +14,11 @@ from words import VOCABULARY, formulas, letters, words
 
 from rulec.diagnostics import RulecError
 from rulec.logic.semantics import holds
+from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.verdict import NotJudged
+from rulec.monitoring.verify import judge
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.letters import Columns
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.verdict import NotJudged
-from rulec.runtime.verify import judge
 from rulec.trace import Trace
 
 CAR1 = {"car1": "car"}
@@ -212,8 +212,8 @@ def test_what_it_has_learnt_can_be_forgotten_at_any_time(rulebook, journey):
     one, other = Monitor(rules), Monitor(rules)
     for state, objects in journey:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr("rulec.runtime.monitor.MOST_LEARNED", 0)
-            patched.setattr("rulec.runtime.online.reading.MOST", 1)
+            patched.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", 0)
+            patched.setattr("rulec.monitoring.online.group_letters.MOST", 1)
             forgetful = answer(one, state, objects)
         assert forgetful == answer(other, state, objects)
     assert one.snapshot() == other.snapshot()

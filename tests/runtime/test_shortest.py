@@ -8,16 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from words import VOCABULARY, formulas
 
-from rulec.automata.compiled import CompiledRule
-from rulec.automata.machine import Machine, NumberRead, Read, Threshold
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.mealy_monitor import Machine, NumberRead, Read, Threshold
+from rulec.book_tests.example_runs import run_all
 from rulec.logic.formula import Atom, Count, Quantity
 from rulec.logic.semantics import holds
+from rulec.monitoring.verify import run
 from rulec.rulebook.model import Example, Variable
-from rulec.runtime.examples import run_all
-from rulec.runtime.shortest import shortest_traces
-from rulec.runtime.verify import run
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
+from rulec.witnesses.shortest_traces import shortest_traces
 
 
 def letters(witnesses):

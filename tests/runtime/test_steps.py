@@ -6,17 +6,17 @@ from fractions import Fraction
 import pytest
 from books import P, Q, always, book, implies, rule
 
-from rulec.automata import any_step
-from rulec.automata.any_step import AnyStep
+from rulec.api.workflow import compile_rulebook, find_maneuvers, machines
+from rulec.automata import step_compilation
+from rulec.automata.step_compilation import AnyStep
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Bound, Unary, UnaryOperator
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verify import judge, verify
+from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.instances import instances
-from rulec.runtime.verdict import NotJudged, Verdict
-from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
-from rulec.workflow import compile_rulebook, find_maneuvers, machines
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 
@@ -111,8 +111,8 @@ def compiled(monkeypatch):
         calls.append(([one.name for one in rulebook.rules], step_s))
         return compile_rulebook_itself(rulebook, step_s=step_s)
 
-    compile_rulebook_itself = any_step.compile_rulebook
-    monkeypatch.setattr(any_step, "compile_rulebook", told)
+    compile_rulebook_itself = step_compilation.compile_rulebook
+    monkeypatch.setattr(step_compilation, "compile_rulebook", told)
     return calls
 
 
@@ -145,7 +145,7 @@ ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
 
 
 def test_not_every_step_is_kept_for_ever(compiled, monkeypatch):
-    monkeypatch.setattr(any_step, "MOST_STEPS", 2)
+    monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
     every = AnyStep(book(ANSWERED))
     for step in (1, HALF, Fraction(1, 4), 1):
         assert every(Fraction(step)).rules[0].step_s == step

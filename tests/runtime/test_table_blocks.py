@@ -16,21 +16,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 
-from rulec.automata.compiled_file import to_json
+from rulec.automata.bundle.bundle_file import to_json
+from rulec.monitoring.batch import table_verdicts
+from rulec.monitoring.batch.table_verdicts import judge_items, rulebook_for
+from rulec.monitoring.verify import judge
 from rulec.rulebook.loader import parse_rulebook
-from rulec.runtime.batch import blocks
-from rulec.runtime.batch.blocks import judge_items, rulebook_for
-from rulec.runtime.verify import judge
-from rulec.trace import Trace, csv_table
-from rulec.trace import blocks as trace_blocks
-from rulec.trace.blocks import Block
-from rulec.trace.formats import read_chunks, write_traces
-from rulec.trace.tables import kinds_in
+from rulec.trace import Trace
+from rulec.trace.arrow import trace_cuts
+from rulec.trace.formats import csv_table
+from rulec.trace.formats import table_blocks as trace_blocks
+from rulec.trace.formats.table_blocks import Block
+from rulec.trace.formats.table_writer import kinds_in
+from rulec.trace.formats.trace_files import read_chunks, write_traces
 
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
-from rulec.trace.arrow import columns, cutting  # noqa: E402 - it needs Arrow
-from rulec.trace.arrow import csv as plain_csv  # noqa: E402
+from rulec.trace.arrow import arrow_columns  # noqa: E402
+from rulec.trace.arrow import arrow_csv as plain_csv  # noqa: E402
 from rulec.trace.arrow import parquet as parquet_table  # noqa: E402
 
 
@@ -47,7 +49,7 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
         mock.patch.object(csv_table, "LARGE_BYTES", 1),
         mock.patch.object(plain_csv, "_BLOCK_BYTES", block_bytes),
         mock.patch.object(parquet_table, "_ROWS_AT_ONCE", 1 + block_bytes // 40),
-        mock.patch.object(blocks, "_FEWEST_ROWS", 0),
+        mock.patch.object(table_verdicts, "_FEWEST_ROWS", 0),
     ):
         return answers(data, form, rules)
 
@@ -187,7 +189,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     bound = {item for one in alone for lost in one.violations for item in lost.binding.values()}
     assert len(bound) > 100
     assert any(one.violations == () for one in alone)
-    for module in (trace_blocks, cutting, csv_table):
+    for module in (trace_blocks, trace_cuts, csv_table):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     assert by_columns(data, form, traffic(), block_bytes) == alone
 
@@ -203,7 +205,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
 )
 def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
-    for module in (trace_blocks, cutting, csv_table):
+    for module in (trace_blocks, trace_cuts, csv_table):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     expected = [judge(trace, traffic()) for trace in drives()[:60]]
     assert by_columns(data, "csv", traffic(), 3_000) == expected
@@ -249,7 +251,9 @@ def test_csv_is_read_by_rows_from_where_it_is_not_plain(odd):
 def test_many_numbers_are_those_that_are_written(numbers):
     """More than are read one by one, in spellings of which Arrow reads some."""
     texts = [numbers.format(n) for n in range(1, 3000)]
-    column = columns._read(columns.coded(pyarrow.array([*texts, "", "12"])), csv_table._value)
+    column = arrow_columns._read(
+        arrow_columns.coded(pyarrow.array([*texts, "", "12"])), csv_table._value
+    )
     assert column.given.tolist() == [True] * 2999 + [False, True]
     if isinstance(column, trace_blocks.Numbers):
         found = column.numbers[:-2].tolist()
@@ -285,12 +289,12 @@ PEAK = """
 import sys
 from pathlib import Path
 import rulec
-from rulec.runtime.batch.blocks import judge_items
-from rulec.trace import csv_table
-from rulec.trace.arrow import csv, parquet
-from rulec.trace.formats import read_chunks
+from rulec.monitoring.batch.table_verdicts import judge_items
+from rulec.trace.formats import csv_table
+from rulec.trace.arrow import arrow_csv, parquet
+from rulec.trace.formats.trace_files import read_chunks
 
-csv_table.LARGE_BYTES, csv._BLOCK_BYTES, parquet._ROWS_AT_ONCE = 1, 1 << 18, 1 << 13
+csv_table.LARGE_BYTES, arrow_csv._BLOCK_BYTES, parquet._ROWS_AT_ONCE = 1, 1 << 18, 1 << 13
 rulebook, file, form = sys.argv[1:]
 rules = rulec.compile_rulebook(rulebook)
 with open(file, "rb") as stream:

@@ -10,9 +10,9 @@ from words import VOCABULARY
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Place, RulecError
 from rulec.logic.formula import Atom, Constant, Quantity, Unary, UnaryOperator
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.verify import judge, verify
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.verdict import NotJudged, Verdict, Violation
-from rulec.runtime.verify import judge, verify
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
 

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from measured import MEASURED, SPEED, closer, gap, number, others_near
 
-from rulec.automata.machine import NumberRead, Threshold
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.book_tests.edge_coverage import coverage
+from rulec.book_tests.example_runs import run_all
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.report.examples import missing_example
+from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.model import Example, Rulebook, Variable
-from rulec.runtime.coverage import coverage
-from rulec.runtime.examples import run_all
-from rulec.runtime.wanted import is_possible
+from rulec.witnesses.coverage_witness import is_possible
 
 
 def covered(formula, *examples):

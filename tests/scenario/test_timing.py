@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.scenario.timing import timing
+from rulec.scenario.time_grid import timing
 
 
 @pytest.mark.parametrize(

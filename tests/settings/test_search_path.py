@@ -2,8 +2,8 @@
 
 import pytest
 
-from rulec.cli.completing import complete_rulebooks
 from rulec.cli.main import main
+from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.diagnostics import RulecError
 from rulec.settings import search_path
 

@@ -3,7 +3,7 @@
 from words import VOCABULARY
 
 from rulec.automata import compiler
-from rulec.automata.compiled import CompiledFact, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRulebook
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Rule, Rulebook, Variable

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from oracle import Refused, Said
 
 from rulec.diagnostics import RulecError
-from rulec.runtime.verdict import NotJudged
+from rulec.monitoring.verdict import NotJudged
 
 STEPS = "the step from which on nothing helps"
 OBJECTS = "the objects for which a rule is violated"

@@ -7,11 +7,11 @@ from engine import each, said
 from present import there
 from reading import number
 
-from rulec.runtime.before import past_of
-from rulec.runtime.effects import effects
-from rulec.runtime.instances import HARD, SOFT, instances, violations
-from rulec.runtime.monitor import Monitor
-from rulec.runtime.rejections import violating
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.planning.product.graph_instances import HARD, SOFT, instances, violations
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.ranking.pruning import violating
+from rulec.planning.trace_history import past_of
 from rulec.trace import Trace, TraceGraph
 
 

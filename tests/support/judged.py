@@ -1,9 +1,9 @@
 """Recordings before a rulebook, as mappings that tests can look into."""
 
-from rulec.drives.extract import NoDrive
-from rulec.drives.judging import JudgedRecording
-from rulec.drives.wanted import Wanted
-from rulec.runtime.verdict import Verdict
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import JudgedRecording
+from rulec.extraction.selection.requested import Wanted
+from rulec.monitoring.verdict import Verdict
 
 
 def violated(found, book, **wanted):

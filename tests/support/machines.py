@@ -5,7 +5,7 @@ from math import prod
 
 from hypothesis import strategies as st
 
-from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
 from rulec.logic.formula import Quantity
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity

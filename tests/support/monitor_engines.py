@@ -6,7 +6,7 @@ from engine import each, said
 from oracle import Said
 from present import there
 
-from rulec.runtime.monitor import Monitor
+from rulec.monitoring.online.running_monitor import Monitor
 
 
 def watched(save_after):

@@ -4,7 +4,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from rulec.automata.compiled import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder

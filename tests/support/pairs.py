@@ -8,7 +8,7 @@ from books import compile_here
 from hypothesis import strategies as st
 from reading import Reading
 
-from rulec.analysis.distinct import Side
+from rulec.analysis.shared_compilation import Side
 from rulec.logic.formula import (
     Atom,
     Binary,

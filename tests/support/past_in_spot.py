@@ -7,11 +7,11 @@ or what the instant before has left; and bounds are unrolled, where the compiler
 import spot
 from timed import without_bounds
 
-from rulec.automata.letters import names_of
-from rulec.automata.spot_bridge.wording import Wording
+from rulec.automata.alphabet import names_of
+from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Atom, Binary, Unary, atoms_of
-from rulec.logic.past import remembered
-from rulec.logic.timing import PAST, operations_of
+from rulec.logic.past_registers import remembered
 
 DEFINITIONS = {
     "previously": "!{p} & G(({a} -> X{p}) & ({a} | X!{p}))",

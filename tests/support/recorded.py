@@ -4,8 +4,8 @@ from books import rule
 from hypothesis import strategies as st
 from timed import TIMED_VOCABULARY, timed_formulas
 
+from rulec.monitoring.verdict import NotJudged
 from rulec.rulebook.model import Rulebook
-from rulec.runtime.verdict import NotJudged
 from rulec.trace import Trace
 
 

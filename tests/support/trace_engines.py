@@ -12,15 +12,15 @@ from oracle import Oracle, Refused, Said
 from present import there
 from reading import below
 
-from rulec.automata.compiled_file import from_json, to_json
+from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
-from rulec.runtime.batch.gathering import gathered
-from rulec.runtime.batch.grouping import grouped
-from rulec.runtime.batch.verifying import verify_many
-from rulec.runtime.bits.judging import judge_on_bits
-from rulec.runtime.verify import judge
-from rulec.trace.formats import read_chunks, write_traces
-from rulec.trace.tables import kinds_in
+from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.trace_groups import grouped
+from rulec.monitoring.bits.bit_verdicts import judge_on_bits
+from rulec.monitoring.verify import judge
+from rulec.trace.formats.table_writer import kinds_in
+from rulec.trace.formats.trace_files import read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 
 

@@ -9,7 +9,7 @@ from reading import Reading, number
 
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
-from rulec.runtime.bits import along
+from rulec.monitoring.bits import along
 
 
 def word_by_word(keeps):

@@ -4,7 +4,7 @@ import pytest
 from constructs import CLAUSES, HEADER, HEADS, ITEMS
 
 from rulec.diagnostics import Source
-from rulec.report.diagnostics import render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.syntax import parse, tree
 
 RULE = "hard rule other {\n  require p\n}"

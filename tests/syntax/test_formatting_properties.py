@@ -15,7 +15,7 @@ from untidy_files import tree_of, untidy_files
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, print_file
-from rulec.syntax.formatting import format_source, safety
+from rulec.syntax.formatting import format_source, safe_format
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]
@@ -97,9 +97,9 @@ def test_mutated_files_are_formatted_or_refused(text, data):
     ],
 )
 def test_nothing_that_is_something_else_is_given_out(spoil, words, monkeypatch):
-    real = safety.arranged
-    monkeypatch.setattr(safety, "arranged", lambda source: spoil(source, real(source)))
-    with pytest.raises(safety.FormattingError, match=words):
+    real = safe_format.arranged
+    monkeypatch.setattr(safe_format, "arranged", lambda source: spoil(source, real(source)))
+    with pytest.raises(safe_format.FormattingError, match=words):
         formatted("rulebook b\nhard rule r { require p and q } # why\n")
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from steps import grows_in_proportion
 
 from rulec.diagnostics import RulecError, Source
-from rulec.report.diagnostics import render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
 from rulec.syntax import decode, parse
 from rulec.syntax.keywords import CONTEXTUAL, RESERVED, SYMBOLS

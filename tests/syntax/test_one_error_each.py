@@ -4,7 +4,7 @@ from breakable import FOOTER, HEADER, broken_rulebooks, rule_parts
 from hypothesis import given
 
 from rulec.diagnostics import RulecError
-from rulec.report.diagnostics import render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
 
 

@@ -11,7 +11,7 @@ from syntax_trees import formulas
 
 from rulec.resources import grammar_file
 from rulec.syntax import grammar as at_work
-from rulec.syntax import parse_formula, tables
+from rulec.syntax import parse_formula, parser_tables
 from rulec.syntax.printer import print_whole
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
@@ -22,14 +22,16 @@ ANEW = at_work._made(GRAMMAR)
 def test_the_tables_are_up_to_date():
     version, _, digest = json.loads(FILE)["made_of"].partition(" ")
     again = "python -m rulec.syntax.generate grammar/rulec.tables.json"
-    assert tables.stamp(GRAMMAR, "").strip() == digest, again
+    assert parser_tables.stamp(GRAMMAR, "").strip() == digest, again
     if version == lark.__version__:
         assert at_work.tables_of(GRAMMAR) == FILE, again
 
 
 def test_the_tables_are_those_in_use():
-    assert tables.from_text(FILE, json.loads(FILE)["made_of"]) is not None
-    assert tables.from_text(FILE, tables.stamp(f"{GRAMMAR}\n", lark.__version__)) is None
+    assert parser_tables.from_text(FILE, json.loads(FILE)["made_of"]) is not None
+    assert (
+        parser_tables.from_text(FILE, parser_tables.stamp(f"{GRAMMAR}\n", lark.__version__)) is None
+    )
 
 
 @given(formulas, st.data())

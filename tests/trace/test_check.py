@@ -6,7 +6,7 @@ import pytest
 
 from rulec.diagnostics import Place, RulecError
 from rulec.trace import Trace
-from rulec.trace.check import check_trace
+from rulec.trace.trace_validation import check_trace
 
 PLACE = Place("t.jsonl", 3)
 OBJECTS = {"v1": "vehicle"}

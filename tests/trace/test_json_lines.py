@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.trace import Trace, json_lines
-from rulec.trace.json_lines import read_traces, write_traces
-from rulec.trace.lines import lines_as_they_come
+from rulec.trace import Trace
+from rulec.trace.formats import json_lines
+from rulec.trace.formats.json_lines import read_traces, write_traces
+from rulec.trace.formats.stream_lines import lines_as_they_come
 
 GOOD = {
     "id": "t1",

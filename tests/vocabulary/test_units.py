@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.vocabulary.measure import ANGLE, ANGLE_IN_RADIANS, NUMBER
+from rulec.vocabulary.dimensions import ANGLE, ANGLE_IN_RADIANS, NUMBER
 from rulec.vocabulary.pint_units import _registry, pint_unit
 from rulec.vocabulary.unit_table import UNITS
 from rulec.vocabulary.units import (

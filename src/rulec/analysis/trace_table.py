@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Set
 from dataclasses import dataclass
 
-from rulec.analysis.situation import keys_of
 from rulec.logic.formula import Atom
-from rulec.runtime.moment import value_in
+from rulec.monitoring.state_view import value_in
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Quantity, Vocabulary
+from rulec.witnesses.state_synthesis import keys_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,17 +13,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 
-from rulec.automata.compiled import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.alphabet import propositions_of, reads_of
+from rulec.automata.axiom_instances import fact_groups, fact_instances
+from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule, CompiledRulebook
 from rulec.automata.compiler_messages import no_machine, no_spot
-from rulec.automata.facts import fact_groups, fact_instances
-from rulec.automata.letters import propositions_of, reads_of
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.bounds import NotAMultipleError, in_steps, speaks_of_seconds
 from rulec.logic.printing import time_in_words
-from rulec.logic.timing import NotAMultipleError, in_steps, speaks_of_seconds
+from rulec.rulebook.elaborate.step_messages import no_multiple
 from rulec.rulebook.model import Rule, Rulebook
-from rulec.rulebook.step_messages import no_multiple
 from rulec.version import __version__
 
 CPU_LIMIT_S = 5

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from rulec.automata.facts import FactInstance
+from rulec.automata.axiom_instances import FactInstance
 from rulec.automata.spot_worker import Failed
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.bounds import operations_of
 from rulec.logic.printing import in_words
-from rulec.logic.timing import operations_of
 from rulec.rulebook.model import Rule
 
 

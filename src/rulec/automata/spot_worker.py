@@ -13,10 +13,10 @@ import traceback
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.automata.facts import FactGroup, FactInstance, possible_letters
-from rulec.automata.letters import count_letters, propositions_of
-from rulec.automata.machine import Machine, NumberRead, Read
-from rulec.automata.sampling import agrees
+from rulec.automata.alphabet import count_letters, propositions_of
+from rulec.automata.axiom_instances import FactGroup, FactInstance, possible_letters
+from rulec.automata.mealy_monitor import Machine, NumberRead, Read
+from rulec.automata.random_words import agrees
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Constant, Formula
 from rulec.logic.semantics import Semantics

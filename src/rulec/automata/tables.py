@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from rulec.automata.machine import IMPOSSIBLE, Machine, NumberRead, Read, trap
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, trap
 
 Output = TypeVar("Output")
 

@@ -47,7 +47,7 @@ class _Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(f"rulec.cli.{cmd_name}").command
+        command: click.Command = import_module(f"rulec.cli.commands.{cmd_name}").command
         command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
         command.name = cmd_name  # in the files all of them are called `command`
         return command
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
         return ExitStatus.NOT_ANSWERED
     except RulecError as error:
-        from rulec.report.console import print_diagnostics
+        from rulec.report.text.console import print_diagnostics
 
         print_diagnostics(error.diagnostics)
         return ExitStatus.NOT_ANSWERED

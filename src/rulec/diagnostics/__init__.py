@@ -5,8 +5,8 @@ Nothing here prints. ``rulec.report`` turns diagnostics into text.
 
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
 from rulec.diagnostics.nearest import nearest_name
-from rulec.diagnostics.source import Place, Source, Span
-from rulec.diagnostics.wording import any_of, did_you_mean, named
+from rulec.diagnostics.phrases import any_of, did_you_mean, named
+from rulec.diagnostics.source_text import Place, Source, Span
 
 __all__ = [
     "Diagnostic",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.diagnostics.codes import CODES
-from rulec.diagnostics.source import Place, Span
+from rulec.diagnostics.source_text import Place, Span
 
 
 @dataclass(frozen=True, slots=True)

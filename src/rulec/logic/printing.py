@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from rulec.logic.bounds import DISTANCE
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -19,7 +20,6 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.timing import DISTANCE
 
 # As in the grammar: a larger number binds tighter.
 _BINDING = {

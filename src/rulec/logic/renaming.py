@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rulec.logic.comparing import comparison
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -19,6 +18,7 @@ from rulec.logic.formula import (
     Term,
     Unary,
 )
+from rulec.logic.linear_comparison import comparison
 
 
 def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:

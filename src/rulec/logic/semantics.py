@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 from typing import Literal
 
+from rulec.logic.bounds import PAST, Range, range_of
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -26,7 +27,6 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.timing import PAST, Range, range_of
 
 Semantics = Literal["stutter", "finite"]
 """How a word ends: its last letter goes on for ever, or nothing comes after it."""

@@ -3,11 +3,11 @@
 scenario -> occupancy -> regions -> cells -> adjacency, continuation -> edges and margins
 """
 
-from rulec.partition.adjacency import AdjacencyName
+from rulec.partition.cells.adjacency import AdjacencyName
+from rulec.partition.cells.cell_model import Cell, Layer
+from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.envelope import Envelope, envelope
-from rulec.partition.graph import GraphOptions, NavigationGraph, navigation_graph
-from rulec.partition.model import Cell, Layer
-from rulec.partition.regions import ExtentName, PartitionName
+from rulec.partition.navigation_graph import GraphOptions, NavigationGraph, navigation_graph
 
 __all__ = [
     "AdjacencyName",

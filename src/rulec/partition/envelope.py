@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.partition.graph import NavigationGraph
-from rulec.partition.model import Cell
+from rulec.partition.cells.cell_model import Cell
+from rulec.partition.navigation_graph import NavigationGraph
 
 Profile = tuple[tuple[float, float], ...]
 """Breakpoints (s, d): from each s on the bound is d, until the next one."""

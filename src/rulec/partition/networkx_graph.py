@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rulec.partition.graph import NavigationGraph
+from rulec.partition.navigation_graph import NavigationGraph
 
 if TYPE_CHECKING:
     import networkx

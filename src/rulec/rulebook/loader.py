@@ -8,16 +8,16 @@ from datetime import date
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.rulebook.bases import Book, read_bases, source_file
-from rulec.rulebook.finding import (
+from rulec.rulebook.files.extends import Book, read_bases, source_file
+from rulec.rulebook.files.search_path import (
     Dependency,
     available_rulebooks,
     find_rulebook,
     read_bytes,
 )
+from rulec.rulebook.files.vocabulary_files import Vocabularies
 from rulec.rulebook.model import Rulebook, Traffic
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
-from rulec.rulebook.vocabularies import Vocabularies
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rulec.diagnostics import Diagnostic, Place
-from rulec.rulebook import rule_messages
-from rulec.rulebook.declared import declare
-from rulec.rulebook.fact_checks import contradicted
-from rulec.rulebook.facts import fact_of
+from rulec.rulebook.elaborate import rule_messages
+from rulec.rulebook.elaborate.axioms import fact_of
+from rulec.rulebook.elaborate.rule_elaboration import translate_rule
+from rulec.rulebook.examples.axiom_checks import contradicted
 from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile, Traffic
-from rulec.rulebook.overlay import Overlay, overlay
-from rulec.rulebook.priorities import pre_order
-from rulec.rulebook.provision_checks import check_provisions
-from rulec.rulebook.provisions import Provisions, in_force
-from rulec.rulebook.translate import translate_rule
-from rulec.rulebook.uses import names_used
+from rulec.rulebook.names.referenced_names import names_used
+from rulec.rulebook.names.symbol_table import declare
+from rulec.rulebook.overlay.constant_checks import check_provisions
+from rulec.rulebook.overlay.constants_and_macros import Provisions, in_force
+from rulec.rulebook.overlay.priorities import pre_order
+from rulec.rulebook.overlay.rulebook_overlay import Overlay, overlay
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
 

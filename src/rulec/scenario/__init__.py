@@ -21,8 +21,8 @@ from rulec.scenario.model import (
     Stretch,
     Trajectory,
 )
-from rulec.scenario.read import available_scenarios, load_scenario
-from rulec.scenario.recorded.choice import Choice
+from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.scenario_files import available_scenarios, load_scenario
 
 __all__ = [
     "Account",

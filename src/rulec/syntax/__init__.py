@@ -16,6 +16,6 @@ writes them, and a test says when they are out of date.
 
 from rulec.syntax.parser import parse, parse_formula
 from rulec.syntax.printer import print_file, print_formula
-from rulec.syntax.text import decode
+from rulec.syntax.source_decoding import decode
 
 __all__ = ["decode", "parse", "parse_formula", "print_file", "print_formula"]

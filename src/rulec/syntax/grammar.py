@@ -13,7 +13,7 @@ from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
 from rulec.resources import grammar_file
-from rulec.syntax import tables
+from rulec.syntax import parser_tables
 
 Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
 
@@ -83,7 +83,7 @@ def _lark() -> Lark:
     grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
     try:
         text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
-        ready = tables.from_text(text, tables.stamp(grammar, lark.__version__))
+        ready = parser_tables.from_text(text, parser_tables.stamp(grammar, lark.__version__))
     except (OSError, ValueError):
         ready = None
     return _made(grammar) if ready is None else Lark.load(ready)
@@ -104,7 +104,7 @@ def tables_of(grammar: str) -> str:
     """The text of ``grammar/rulec.tables.json``."""
     data, memo = _made(grammar).memo_serialize([TerminalDef, Rule])
     serialized = {"data": data, "memo": memo}
-    return tables.to_text(tables.stamp(grammar, lark.__version__), serialized)
+    return parser_tables.to_text(parser_tables.stamp(grammar, lark.__version__), serialized)
 
 
 def _position(error: UnexpectedInput, end: int) -> int:

@@ -9,14 +9,14 @@ from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import building, tree
-from rulec.syntax.assemble import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
+from rulec.syntax.assembly import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
 from rulec.syntax.building import Clause, Values
+from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
-from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.scanner import Token, scan
+from rulec.syntax.source_decoding import checked
 from rulec.syntax.split_file import FileSplitter
-from rulec.syntax.text import checked
 
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source
+from rulec.syntax.file_pieces import Piece, RulePieces
+from rulec.syntax.item_boundaries import Landmarks
 from rulec.syntax.keywords import CLAUSE_WORDS
-from rulec.syntax.landmarks import Landmarks
 from rulec.syntax.messages.structure import StructureMessages
-from rulec.syntax.pieces import Piece, RulePieces
 from rulec.syntax.scanner import Token
 from rulec.syntax.split_rule import RuleSplitter
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic
+from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
+from rulec.syntax.item_boundaries import Landmarks
 from rulec.syntax.keywords import CLAUSE_WORDS
-from rulec.syntax.landmarks import Landmarks
 from rulec.syntax.messages.structure import StructureMessages
-from rulec.syntax.pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.scanner import Token
 
 

@@ -1,5 +1,5 @@
 """Traces: states over a vocabulary, one after the other, and graphs whose paths are traces."""
 
-from rulec.trace.model import State, Trace, TraceGraph, Value
+from rulec.trace.trace_model import State, Trace, TraceGraph, Value
 
 __all__ = ["State", "Trace", "TraceGraph", "Value"]

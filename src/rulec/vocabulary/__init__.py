@@ -1,6 +1,6 @@
 """What a rule can speak of: object types, enumerated state, signals, quantities."""
 
-from rulec.vocabulary.model import (
+from rulec.vocabulary.vocabulary_model import (
     Declaration,
     Enumeration,
     ObjectType,

@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from rulec.vocabulary.measure import Dimension, Refusal, Unit
+from rulec.vocabulary.dimensions import Dimension, Refusal, Unit
 from rulec.vocabulary.unit_table import REFUSED
 
 if TYPE_CHECKING:

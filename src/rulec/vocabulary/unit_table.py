@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from types import MappingProxyType
 
-from rulec.vocabulary.measure import (
+from rulec.vocabulary.dimensions import (
     ANGLE,
     ANGLE_IN_RADIANS,
     FREQUENCY,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from rulec.vocabulary.measure import DIMENSIONS, NUMBER, Dimension, Refusal, Unit
+from rulec.vocabulary.dimensions import DIMENSIONS, NUMBER, Dimension, Refusal, Unit
 from rulec.vocabulary.pint_units import pint_unit
 from rulec.vocabulary.unit_table import COMPOSITE, REFUSED, UNITS
 

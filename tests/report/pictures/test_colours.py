@@ -7,7 +7,7 @@ differences in CIELAB (1976), contrast as in WCAG 2.
 import numpy as np
 import pytest
 
-from rulec.report.pictures.styles import DARK, LIGHT, STYLES
+from rulec.report.pictures.drawing.styles import DARK, LIGHT, STYLES
 
 SEEN = {
     "all colours": np.eye(3),

@@ -8,8 +8,8 @@ from html.parser import HTMLParser
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.report.pictures.files import Drawing, as_bytes, format_of
-from rulec.report.pictures.marks import Area, Line, Picture, Words, rectangle
+from rulec.report.pictures.drawing.marks import Area, Line, Picture, Words, rectangle
+from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes, format_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 

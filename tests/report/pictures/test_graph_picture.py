@@ -4,11 +4,11 @@ from collections import Counter
 
 import pytest
 
-from rulec.report.pictures.graph import graph_picture
-from rulec.report.pictures.marks import Area, Line, Words
-from rulec.runtime.passages import passages
-from rulec.trace.paths import paths
-from rulec.workflow import find_maneuvers
+from rulec.api.workflow import find_maneuvers
+from rulec.planning.product.accepted_edges import passages
+from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.graph_picture import graph_picture
+from rulec.trace.graph_paths import paths
 
 
 def drawn(scenario, maneuver=None, **options):

@@ -5,8 +5,8 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.pictures.marks import Words
-from rulec.report.pictures.placing import Placing
+from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.marks import Words
 
 lengths = st.integers(0, 120)
 rooms = st.builds(

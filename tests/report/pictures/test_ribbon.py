@@ -2,12 +2,12 @@
 
 import pytest
 
-from rulec.report.pictures.marks import Area, Line, Words
-from rulec.report.pictures.ribbon import Run, ribbon
-from rulec.report.pictures.ribbon_picture import ribbon_picture
-from rulec.runtime.verify import verify
+from rulec.api.workflow import compile_rulebook
+from rulec.monitoring.verify import verify
+from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.trace_picture import ribbon_picture
+from rulec.report.pictures.trace_ribbon import Run, ribbon
 from rulec.trace import Trace
-from rulec.workflow import compile_rulebook
 
 
 @pytest.fixture(scope="module")

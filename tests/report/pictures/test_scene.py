@@ -7,13 +7,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from random_scenarios import scenarios
 
+from rulec.api.workflow import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
-from rulec.report.pictures.marks import Area, Line, Words
-from rulec.report.pictures.scene import scene_legend, scene_pictures
-from rulec.report.pictures.signatures import in_letters
+from rulec.report.pictures.cell_signatures import in_letters
+from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
-from rulec.workflow import find_maneuvers
 
 CELLS = ("cell", "crossing", "chosen")
 

@@ -5,13 +5,13 @@ import time
 import pytest
 from roads import RECORDINGS
 
+from rulec.api.workflow import compile_rulebook, find_maneuvers, navigation_graph
 from rulec.diagnostics import RulecError
-from rulec.runtime.product import count_paths
+from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario
-from rulec.scenario.recorded.choice import Choice
-from rulec.scenario.recorded.convert import to_scenario
-from rulec.scenario.recordings import read_recording
-from rulec.workflow import compile_rulebook, find_maneuvers, navigation_graph
+from rulec.scenario.recorded.recorded_scene import to_scenario
+from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.recording_files import read_recording
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))

@@ -9,7 +9,7 @@ from roads import ROAD_XML
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
-from rulec.scenario.commonroad import form
+from rulec.scenario.commonroad import required_elements
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 BOUND = "<leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>"
@@ -114,8 +114,8 @@ def test_where_ego_is_not(written):
 
 
 def test_too_much_is_not_read(written, monkeypatch):
-    small = replace(form.COMMONROAD, largest_bytes=1000)
-    monkeypatch.setattr(form, "COMMONROAD", small)
+    small = replace(required_elements.COMMONROAD, largest_bytes=1000)
+    monkeypatch.setattr(required_elements, "COMMONROAD", small)
     assert "too large" in problem_with(written(ROAD_XML)).message
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from roads import lanelet, recording, straight
 
 from rulec.scenario.model import MissingLane
-from rulec.scenario.recorded.lanes import NARROWEST_LANE_M, lanes_along
+from rulec.scenario.recorded.lane_coordinates import NARROWEST_LANE_M, lanes_along
 from rulec.scenario.recorded.reference_line import reference_line
 
 

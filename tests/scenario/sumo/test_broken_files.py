@@ -10,7 +10,7 @@ from sumo_files import ROAD_NET, TYPES, body, data, moment, written
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, load_scenario, safe_xml
-from rulec.scenario.recordings import read_recording
+from rulec.scenario.recording_files import read_recording
 
 GOOD = data(moment(0, body(lane="in_1")), moment(0.1, body(x=21, lane="in_1")))
 

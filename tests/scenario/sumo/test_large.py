@@ -4,7 +4,7 @@ import tracemalloc
 
 from sumo_files import body, data, moment, written
 
-from rulec.scenario.recordings import read_recording
+from rulec.scenario.recording_files import read_recording
 
 STEPS, VEHICLES = 400, 50
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sumo_files import body, data, moment, written
 
 from rulec.scenario.recorded.track import rectangles
-from rulec.scenario.recordings import read_recording
+from rulec.scenario.recording_files import read_recording
 from rulec.scenario.sumo.vehicle_types import CLASSES
 
 
@@ -68,7 +68,7 @@ def test_kinds_and_sizes(tmp_path, kind, element, expected):
 
 
 def test_every_class_has_a_kind_that_rulebooks_can_have_a_word_for():
-    from rulec.scenario.recorded.kinds import WORDS
+    from rulec.scenario.recorded.obstacle_types import WORDS
 
     assert {one.kind for one in CLASSES.values()} <= set(WORDS)
 

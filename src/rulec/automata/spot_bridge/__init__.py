@@ -10,8 +10,8 @@ formula, ``checks`` compares automata with formulas, ``hoa`` and ``exploring`` t
 and into what tables are made of.
 """
 
-from rulec.automata.spot_bridge.checks import CheckError
-from rulec.automata.spot_bridge.exploring import explore
+from rulec.automata.spot_bridge.equivalence_check import CheckError
+from rulec.automata.spot_bridge.exploration import explore
 from rulec.automata.spot_bridge.hoa import VERSION, in_hoa
 from rulec.automata.spot_bridge.projection import projected
 from rulec.automata.spot_bridge.translation import Translation, translate

@@ -15,8 +15,9 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.letters import fresh_name
-from rulec.automata.spot_bridge.wording import Wording
+from rulec.automata.alphabet import fresh_name
+from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.logic.bounds import Range, range_of
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -30,7 +31,6 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.timing import Range, range_of
 
 _NOT, _OR, _AND = UnaryOperator.NOT, BinaryOperator.OR, BinaryOperator.AND
 _FALSE, _TRUE = Constant(False), Constant(True)

@@ -15,7 +15,7 @@ import spot
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.spot_bridge.obligations import Obligations
-from rulec.automata.spot_bridge.wording import Wording
+from rulec.automata.spot_bridge.spot_formulas import Wording
 from rulec.logic.formula import Formula
 
 

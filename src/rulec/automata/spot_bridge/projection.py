@@ -9,8 +9,8 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.letters import AND, NOT, OR, joined, names_of, propositions_of
-from rulec.automata.spot_bridge.wording import Wording
+from rulec.automata.alphabet import AND, NOT, OR, joined, names_of, propositions_of
+from rulec.automata.spot_bridge.spot_formulas import Wording
 from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 

@@ -9,9 +9,9 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.spot_bridge.wording import Wording
+from rulec.automata.spot_bridge.spot_formulas import Wording
 from rulec.logic.formula import Formula, atoms_of
-from rulec.logic.past import Register
+from rulec.logic.past_registers import Register
 
 _Values = tuple[int, ...]
 

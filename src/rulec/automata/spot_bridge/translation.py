@@ -8,12 +8,13 @@ from typing import Any
 
 import spot
 
-from rulec.automata.letters import fresh_name, knowledge, names_of, propositions_of
-from rulec.automata.machine import NumberRead, Read
-from rulec.automata.spot_bridge.checks import check, tried
+from rulec.automata.alphabet import fresh_name, knowledge, names_of, propositions_of
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.spot_bridge.equivalence_check import check, tried
 from rulec.automata.spot_bridge.progression import Progression
 from rulec.automata.spot_bridge.registers import with_registers
-from rulec.automata.spot_bridge.wording import F, Wording
+from rulec.automata.spot_bridge.spot_formulas import F, Wording
+from rulec.logic.bounds import reach
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
@@ -23,9 +24,8 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.past import Memory, definition, remembered
+from rulec.logic.past_registers import Memory, definition, remembered
 from rulec.logic.semantics import Semantics
-from rulec.logic.timing import reach
 
 _SHAPE = ("parity", "det", "complete")
 _NOT, _AND, _OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR

@@ -6,9 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
-from rulec.report.automaton_drawing import CHARACTER, text_width
-from rulec.report.pictures.marks import LINE_HEIGHT, Area, Line, Mark, Picture, Words, rectangle
-from rulec.report.pictures.styles import STYLES
+from rulec.report.automata.automaton_layout import CHARACTER, text_width
+from rulec.report.pictures.drawing.marks import (
+    LINE_HEIGHT,
+    Area,
+    Line,
+    Mark,
+    Picture,
+    Words,
+    rectangle,
+)
+from rulec.report.pictures.drawing.styles import STYLES
 
 _SWATCH = 26.0
 _GAP = 22.0

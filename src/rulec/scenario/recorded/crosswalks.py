@@ -6,7 +6,7 @@ import numpy as np
 
 from rulec.scenario.model import Stretch
 from rulec.scenario.recorded.reference_line import dense
-from rulec.scenario.recorded.traffic import View
+from rulec.scenario.recorded.traffic_obstacles import View
 
 _NARROWEST_M = 0.1
 _EVERY_M = 0.5

@@ -15,8 +15,8 @@ from xml.parsers.expat import XMLParserType
 from rulec.diagnostics import RulecError
 from rulec.scenario.recorded.recording import FARTHEST_M
 from rulec.scenario.safe_xml import XmlFormat, scan, short
-from rulec.scenario.sumo.attributes import Element
-from rulec.scenario.sumo.beside import Head, head_of
+from rulec.scenario.sumo.companion_files import Head, head_of
+from rulec.scenario.sumo.xml_element import Element
 
 FCD = XmlFormat(
     "SUMO's floating-car data",

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.scenario.recorded.recording import Lanelet, Points
-from rulec.scenario.sumo.borders import beside, without_repeats
-from rulec.scenario.sumo.lights import lights_of
+from rulec.scenario.sumo.lane_borders import beside, without_repeats
 from rulec.scenario.sumo.net import Connection, Lane, Net
+from rulec.scenario.sumo.traffic_lights import lights_of
 
 _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}

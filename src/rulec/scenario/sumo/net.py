@@ -11,7 +11,7 @@ import numpy as np
 
 from rulec.scenario.recorded.recording import LONGEST_M, Points, Side
 from rulec.scenario.safe_xml import XmlFormat, scan
-from rulec.scenario.sumo.attributes import Element
+from rulec.scenario.sumo.xml_element import Element
 
 NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from xml.parsers.expat import XMLParserType
 
 from rulec.scenario.safe_xml import XmlFormat, root_of, scan
-from rulec.scenario.sumo.attributes import Element
+from rulec.scenario.sumo.xml_element import Element
 
 DEMAND = XmlFormat(
     "SUMO's vehicle types",

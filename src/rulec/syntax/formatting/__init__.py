@@ -8,6 +8,6 @@
 Nothing is given out before ``safety`` has compared it with what it was made from.
 """
 
-from rulec.syntax.formatting.safety import FormattingError, format_source
+from rulec.syntax.formatting.safe_format import FormattingError, format_source
 
 __all__ = ["FormattingError", "format_source"]

@@ -12,7 +12,7 @@ from rulec.syntax.messages.in_bounds import advise_on_bound
 from rulec.syntax.messages.in_formulas import advise_on_aggregate, advise_on_formula
 from rulec.syntax.messages.in_items import FORMS, advise_on_item
 from rulec.syntax.messages.in_rules import advise_on_clause, advise_on_rule_head, advise_on_state
-from rulec.syntax.messages.scene import Scene
+from rulec.syntax.messages.parse_context import Scene
 
 _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS
-from rulec.syntax.messages.scene import Scene
+from rulec.syntax.messages.parse_context import Scene
 
 _BOOLEAN: Final = frozenset(
     (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import RESERVED
-from rulec.syntax.messages.scene import Scene
+from rulec.syntax.messages.parse_context import Scene
 
 RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 """The signs of comparisons."""

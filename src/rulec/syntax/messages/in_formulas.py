@@ -14,7 +14,7 @@ from rulec.syntax.keywords import (
 )
 from rulec.syntax.messages.expectations import COMPARISONS
 from rulec.syntax.messages.in_chains import RELATIONS, advise_on_chain
-from rulec.syntax.messages.scene import Scene
+from rulec.syntax.messages.parse_context import Scene
 
 _OTHER_SPELLINGS: Final = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.syntax.messages.scene import Scene
+from rulec.syntax.messages.parse_context import Scene
 
 FORMS: Final = {
     "law": 'the line is written `law "…"` or `law "…" as of 2006-03-28`',

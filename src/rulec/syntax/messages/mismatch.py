@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
+from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
 from rulec.syntax.keywords import (
     CLAUSE_WORDS,
@@ -17,8 +18,7 @@ from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.expectations import in_words
 from rulec.syntax.messages.in_items import other_word
 from rulec.syntax.messages.in_rules import other_clause
-from rulec.syntax.messages.scene import Scene
-from rulec.syntax.pieces import Piece, span_of
+from rulec.syntax.messages.parse_context import Scene
 from rulec.syntax.scanner import Token
 
 _WHAT = {

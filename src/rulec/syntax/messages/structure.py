@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.diagnostics.source import Place
+from rulec.diagnostics.source_text import Place
 from rulec.syntax.scanner import Token
 
 

@@ -8,13 +8,13 @@ from itertools import islice
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import Place, RulecError
-from rulec.trace.arrow.library import arrow, unavailable
-from rulec.trace.foreign import packed
-from rulec.trace.model import Trace, Value
-from rulec.trace.rows import Table, check_columns, problem
+from rulec.trace.arrow.arrow_library import arrow, unavailable
+from rulec.trace.formats.foreign_files import packed
+from rulec.trace.formats.table_reader import Table, check_columns, problem
+from rulec.trace.trace_model import Trace, Value
 
 if TYPE_CHECKING:
-    from rulec.trace.arrow.cutting import Piece
+    from rulec.trace.arrow.trace_cuts import Piece
 
 _ROWS_AT_ONCE = 1 << 16
 
@@ -49,7 +49,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except (pyarrow.ArrowException, OSError) as reason:
         yield [_unreadable("the file", reason, file)]
         return
-    from rulec.trace.arrow.cutting import cut
+    from rulec.trace.arrow.trace_cuts import cut
 
     table = Table(tuple(schema.names), lambda value: value, lambda row: Place(file, row))
     problems = (pyarrow.ArrowException, OSError)

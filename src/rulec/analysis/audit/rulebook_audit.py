@@ -1,0 +1,228 @@
+"""What a rulebook rests on: rules without a source or examples, what was left out, what is covered.
+
+Nothing of this is a mistake. It is what a lawyer or a safety engineer wants to know before they
+rely on a rulebook.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.analysis.audit.audit_kinds import KINDS
+from rulec.analysis.lineage.book_lineage import HARDNESS
+from rulec.analysis.lineage.rule_lineage import Inheritance, ProvisionHistory
+from rulec.analysis.vocabulary_use import words_used
+from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.syntax import tree
+from rulec.syntax.printer import print_in_force
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something to know about a rule, an article, a topic, a parameter or a word, by its name."""
+
+    kind: str
+    name: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Article:
+    """A provision as rules cite it, and the rules that do.
+
+    ``book`` is the rulebook whose law it is in: that of the chain which cites it.
+    """
+
+    book: str
+    cite: str
+    rules: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How much there is of everything; rules are those in force."""
+
+    rules: int = 0
+    hard: int = 0
+    soft: int = 0
+    cited: int = 0
+    tested: int = 0
+    verified: int = 0
+    examples: int = 0
+    articles: int = 0
+    words: int = 0
+    words_used: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """All that was found about a rulebook by the law of the day ``at``."""
+
+    rulebook: str
+    title: str
+    law: str
+    as_of: str
+    at: str
+    counts: Counts
+    articles: tuple[Article, ...]
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What an audit finds that an older one did not, and the other way around."""
+
+    appeared: tuple[Finding, ...] = ()
+    vanished: tuple[Finding, ...] = ()
+
+
+def audit(
+    rulebook: Rulebook, inherited: Inheritance, failing: Sequence[tuple[str, str]] = ()
+) -> Audit:
+    """The audit of a rulebook.
+
+    Args:
+        rulebook: as meant.
+        inherited: what became of everything in its chain, for the same day.
+        failing: the examples that fail, if they were run: rule and label or number.
+    """
+    articles = articles_of(rulebook.rules, inherited)
+    used = words_used(rulebook)
+    words = tuple(rulebook.vocabulary.declarations)
+    findings = [
+        *(one for rule in rulebook.rules for one in _of_rule(rule)),
+        *(Finding("failing", rule, f"example {name}") for rule, name in failing),
+        *_soft_only(articles, rulebook),
+        *_history(inherited, rulebook.at),
+        *(one for item in inherited.provisions for one in _of_provision(item)),
+        *(Finding("unused", name) for name in words if name not in used),
+    ]
+    order = list(KINDS)
+    return Audit(
+        rulebook.name,
+        rulebook.title,
+        rulebook.law,
+        rulebook.as_of,
+        rulebook.at,
+        _counts(rulebook, articles, sum(name in used for name in words)),
+        articles,
+        tuple(sorted(findings, key=lambda one: order.index(one.kind))),
+    )
+
+
+def changes(now: Audit, before: Audit) -> Changes:
+    """What has come and gone between two audits; notes do not count."""
+    known = {(one.kind, one.name) for one in before.findings}
+    still = {(one.kind, one.name) for one in now.findings}
+    return Changes(
+        tuple(one for one in now.findings if (one.kind, one.name) not in known),
+        tuple(one for one in before.findings if (one.kind, one.name) not in still),
+    )
+
+
+def compared(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, Changes]:
+    """Rulebook -> what has changed, against its own older audit or the only one that there is.
+
+    To a rulebook that has no older audit everything is new.
+    """
+    by_name = {one.rulebook: one for one in older}
+    only = older[0] if len(older) == 1 and len(audits) == 1 else None
+    pairs = ((one, by_name.get(one.rulebook, only)) for one in audits)
+    return {
+        now.rulebook: Changes(now.findings) if before is None else changes(now, before)
+        for now, before in pairs
+    }
+
+
+def articles_of(rules: Sequence[Rule], inherited: Inheritance) -> tuple[Article, ...]:
+    """The provisions that rules cite: the rulebook's own law first, then that of each base.
+
+    Numbers in them are in the order of numbers.
+    """
+    citing = {one.name: one.cited_by for one in inherited.rules}
+    nearest = [one.name for one in reversed(inherited.books)]
+    found: dict[tuple[str, str], list[str]] = {}
+    for rule in rules:
+        if rule.cite:
+            found.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
+    ordered = sorted(found, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
+    return tuple(Article(*one, tuple(found[one])) for one in ordered)
+
+
+def _natural(text: str) -> list[tuple[bool, int, str]]:
+    """Something to sort by, in which 9 comes before 11."""
+    parts = re.findall(r"[0-9]+|[^0-9]+", text)
+    return [(one.isdigit(), int(one), "") if one.isdigit() else (False, 0, one) for one in parts]
+
+
+def _counts(rulebook: Rulebook, articles: Sequence[Article], n_used: int) -> Counts:
+    rules = rulebook.rules
+    n_hard = sum(rule.strength == "hard" for rule in rules)
+    return Counts(
+        len(rules),
+        n_hard,
+        len(rules) - n_hard,
+        sum(bool(rule.cite) for rule in rules),
+        sum(not _lacks(rule) for rule in rules),
+        sum(rule.certainty == "verified" for rule in rules),
+        sum(len(rule.examples) for rule in rules),
+        len(articles),
+        len(rulebook.vocabulary.declarations),
+        n_used,
+    )
+
+
+def _lacks(rule: Rule) -> str:
+    """Which examples a rule lacks."""
+    missing = [
+        word
+        for word, accepts in (("accepts", True), ("rejects", False))
+        if all(one.accepts is not accepts for one in rule.examples)
+    ]
+    return f"no example that it {' or '.join(missing)}" if missing else ""
+
+
+def _of_rule(rule: Rule) -> Iterator[Finding]:
+    if not rule.cite:
+        yield Finding("uncited", rule.name, rule.says)
+    if _lacks(rule):
+        yield Finding("untested", rule.name, _lacks(rule))
+    if rule.certainty != "verified":
+        yield Finding(rule.certainty or "unstated", rule.name, rule.source)
+    if rule.in_force_from or rule.in_force_until:
+        dates = tree.InForce(rule.in_force_from, rule.in_force_until)
+        yield Finding("dated", rule.name, print_in_force(dates))
+
+
+def _soft_only(articles: Sequence[Article], rulebook: Rulebook) -> Iterator[Finding]:
+    hard = {rule.name for rule in rulebook.rules if rule.strength == "hard"}
+    for article in articles:
+        if hard.isdisjoint(article.rules):
+            yield Finding("soft-only", article.cite, ", ".join(article.rules))
+
+
+def _history(inherited: Inheritance, at: str) -> Iterator[Finding]:
+    for one in inherited.rules:
+        last = one.last
+        if last.deed in ("dropped", "silent"):
+            yield Finding(last.deed, one.name, last.because)
+        if one.rule is None:
+            continue
+        softened = [
+            step for step in one.steps if step.deed == "softened" and HARDNESS in step.clauses
+        ]
+        if softened and one.rule.strength == "soft":
+            yield Finding("softened", one.name, softened[-1].because)
+        if one.rule.in_force is not None and not in_force(one.rule.in_force, at):
+            yield Finding("out-of-force", one.name, print_in_force(one.rule.in_force))
+
+
+def _of_provision(item: ProvisionHistory) -> Iterator[Finding]:
+    """Of a parameter the value that counts, if it counts for a time only."""
+    for one in item.settings:
+        if one.current and (one.since or one.until):
+            dates = print_in_force(tree.InForce(one.since, one.until))
+            yield Finding("dated", item.name, f"{one.text} {dates}")

@@ -1,0 +1,44 @@
+"""Audits that were written as JSON some time ago, to compare new ones with."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+
+import msgspec
+
+from rulec.analysis.audit.rulebook_audit import Audit
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics.json_problems import json_words
+from rulec.files import opened
+
+
+class _File(msgspec.Struct):
+    audits: list[Audit]
+
+
+def read_audits(path: Path) -> tuple[Audit, ...]:
+    """What ``rulec audit --output-format json`` has written.
+
+    Raises:
+        RulecError: R0701, or R0705 if it is something else.
+    """
+    with opened(path) as stream:
+        data = stream.read().removeprefix(codecs.BOM_UTF8)
+    try:
+        return tuple(msgspec.json.decode(data, type=_File).audits)
+    except msgspec.MsgspecError as problem:
+        raise _no_audit(path, f": {json_words(problem)}") from None
+    except (RecursionError, UnicodeDecodeError):
+        raise _no_audit(path, "") from None
+
+
+def _no_audit(path: Path, reason: str) -> RulecError:
+    return RulecError(
+        Diagnostic(
+            "R0705",
+            f"this is not an audit{reason}",
+            Place(str(path)),
+            help="write one with `rulec audit RULEBOOK --output-format json`",
+        )
+    )

@@ -1,0 +1,86 @@
+"""A shortest trace that one rule forbids and others allow.
+
+A rule forbids a trace if it is violated for some objects. If it is, it is by the trace of these
+objects alone, on the stretch on which they are there together; so traces of just the objects that a
+rule speaks of tell whether another rule forbids all that it does. The other rule is asked about
+these objects in all ways in which they fit its variables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rulec.analysis.diff.shared_vocabulary import shared_words
+from rulec.analysis.shared_compilation import Side
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.mealy_monitor import NumberRead
+from rulec.logic.free_names import names_in
+from rulec.monitoring.verify import verify
+from rulec.rulebook.model import Fact
+from rulec.trace import Trace
+from rulec.witnesses.joint_alphabet import Alphabet
+from rulec.witnesses.letter_functions import machine_column
+from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.shortest_word import shortest
+from rulec.witnesses.trace_synthesis import alone, staged
+from rulec.witnesses.undecided import UndecidedError
+
+
+def violation(side: Side, others: Sequence[Side], given: Sequence[Fact] = ()) -> Trace | None:
+    """A shortest trace that a rule forbids and all others allow; None if there is none.
+
+    ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
+    """
+    scene = _scene(side, others, given)
+    own = {variable.name: variable.name for variable in side.rule.variables}
+    machines, wanted = [side.rule.machine], [False]
+    columns = [machine_column(side.rule.machine, own, scene)]
+    for other in others:
+        for binding in scene.bindings(other.rule.variables):
+            machines.append(other.rule.machine)
+            columns.append(machine_column(other.rule.machine, binding, scene))
+            wanted.append(True)
+    alphabet = Alphabet(scene, columns)
+    word = shortest(machines, wanted, alphabet.symbols)
+    if word is None:
+        return None
+    forbidding = alone(side.rulebook, side.rule, scene)
+    allowing = [alone(other.rulebook, other.rule, scene) for other in others]
+
+    def shows(trace: Trace) -> bool:
+        forbids = bool(verify(trace, forbidding).violations)
+        return forbids and not any(verify(trace, one).violations for one in allowing)
+
+    situations = [alphabet.situations[symbol] for symbol in word]
+    steps = [one.rule.step_s for one in (side, *others) if one.rule.step_s is not None]
+    return staged(situations, scene, (*steps, Fraction(1))[0], shows)
+
+
+def _scene(side: Side, others: Sequence[Side], given: Sequence[Fact]) -> Scene:
+    """The objects that a rule speaks of, in the words of all the rulebooks."""
+    sides = (side, *others)
+    read = {name for one in sides for name in read_by(one.rule)}
+    facts = tuple(dict.fromkeys((*(fact for one in sides for fact in one.facts), *given)))
+    asked = read | {name for fact in facts for name in names_in(fact.formula)}
+    vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
+    for other in others:
+        if other.rulebook.vocabulary == vocabulary:
+            continue
+        words = shared_words(vocabulary, other.rulebook.vocabulary)
+        for name in sorted(words.unlike & asked):
+            raise UndecidedError(f"`{name}` is not declared alike in both")
+        vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
+    objects = {variable.name: variable.type for variable in side.rule.variables}
+    return Scene(objects, vocabulary, facts, unsaid - read)
+
+
+def read_by(rule: CompiledRule) -> frozenset[str]:
+    """The declarations that a rule reads."""
+    names: set[str] = set()
+    for read in rule.machine.reads:
+        if isinstance(read, NumberRead):
+            names.update(name for _, term in read.terms for name in names_in(term))
+        else:
+            names.add(read.name)
+    return frozenset(names)

@@ -1,0 +1,187 @@
+"""Many rulebooks side by side: for every rule, who has the same law, and who is stricter."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import permutations
+from string import ascii_uppercase
+
+from rulec.analysis.diff.rule_comparison import Relation, compare
+from rulec.analysis.diff.rulebook_comparison import chosen
+from rulec.analysis.shared_compilation import Distinct, Side, at_one_step
+from rulec.rulebook.model import Remark, Rule, Rulebook
+
+TURNED: Mapping[Relation, Relation] = {
+    "equal": "equal",
+    "stricter": "laxer",
+    "laxer": "stricter",
+    "incomparable": "incomparable",
+    "undecided": "undecided",
+}
+"""What the second rule is to the first one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """A rule as all rulebooks that have it say it.
+
+    ``laws`` has for each rulebook that has the rule which law it is, ``rules`` the rule itself;
+    rulebooks of one law forbid the same traces. ``relations`` are between laws, both ways.
+    ``remarks`` are of rulebooks that say why they do not have it.
+    """
+
+    name: str
+    laws: Mapping[str, int]
+    rules: Mapping[str, Rule]
+    relations: Mapping[tuple[int, int], Relation]
+    remarks: Mapping[str, Remark]
+
+    def letter(self, book: str) -> str:
+        """``A`` for the law of the first rulebook that has the rule, and so on; else empty."""
+        law = self.laws.get(book)
+        if law is None:
+            return ""
+        turns, rest = divmod(law, len(ascii_uppercase))
+        return ascii_uppercase[rest] + (str(turns) if turns else "")
+
+    def relation(self, first: str, second: str) -> Relation | None:
+        """What the first rulebook's rule is to the second one's; None if one of them has none."""
+        if first not in self.laws or second not in self.laws:
+            return None
+        return self.relations[self.laws[first], self.laws[second]]
+
+
+@dataclass(frozen=True, slots=True)
+class Matrix:
+    """Rulebooks, and all of their rules in the order in which they first come up."""
+
+    books: tuple[Rulebook, ...]
+    rules: tuple[Shared, ...]
+
+    @property
+    def shared(self) -> tuple[Shared, ...]:
+        """The rules that two or more of the rulebooks have."""
+        return tuple(rule for rule in self.rules if len(rule.laws) > 1)
+
+    def counts(self, first: str, second: str) -> Counter[str]:
+        """How many of the first one's rules are what to the second one's.
+
+        ``only`` are those that the second one does not have, ``silent`` those of them of which it
+        says why.
+        """
+        found: Counter[str] = Counter()
+        for rule in self.rules:
+            relation = rule.relation(first, second)
+            if relation is not None:
+                found[relation] += 1
+            elif first in rule.laws:
+                found["only"] += 1
+                found["silent"] += second in rule.remarks
+        return found
+
+    @property
+    def is_complete(self) -> bool:
+        """Has every question been answered?"""
+        return all("undecided" not in rule.relations.values() for rule in self.rules)
+
+    @property
+    def is_uniform(self) -> bool:
+        """Do all rulebooks that have a rule have the same one?"""
+        return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
+
+
+def matrix(
+    books: Sequence[Rulebook],
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    tell: Callable[[float], object] = lambda _: None,
+) -> Matrix:
+    """Compare every two of the rulebooks, rule by rule; the arguments are as for ``difference``.
+
+    ``tell`` is told how much is done of ``steps``. Raises RulecError.
+    """
+    ours = [chosen(book, patterns) for book in books]
+    names = list(dict.fromkeys(name for rules in ours for name in rules))
+    has = Counter(name for rules in ours for name in rules)
+    stepped: list[dict[str, Rule]] = [{} for _ in books]
+    for name in names:
+        having = [number for number, rules in enumerate(ours) if name in rules]
+        rules = at_one_step([ours[number][name] for number in having], step_s)
+        for number, rule in zip(having, rules, strict=True):
+            if has[name] > 1:
+                stepped[number][name] = rule
+    sides = Distinct(tell).sides(books, stepped)
+    found = []
+    for number, name in enumerate(names, 1):
+        of_each = {
+            book.name: side[name] for book, side in zip(books, sides, strict=True) if name in side
+        }
+        laws, relations = _classified(of_each)
+        # What only one of them has is its own law, whatever it is.
+        laws = laws or {book.name: 0 for book, one in zip(books, ours, strict=True) if name in one}
+        found.append(
+            Shared(
+                name,
+                laws,
+                {
+                    book.name: one[name]
+                    for book, one in zip(books, ours, strict=True)
+                    if name in one
+                },
+                relations,
+                {
+                    book.name: remark
+                    for book in books
+                    for remark in book.remarks
+                    if remark.name == name and remark.kind != "softened"
+                },
+            )
+        )
+        tell(len(books) + number)
+    return Matrix(tuple(books), tuple(found))
+
+
+def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
+    """How much there is to do, at most."""
+    return len(books) + len({name for book in books for name in chosen(book, patterns)})
+
+
+def _classified(
+    sides: Mapping[str, Side],
+) -> tuple[dict[str, int], dict[tuple[int, int], Relation]]:
+    """Which law each rulebook's rule is, and how the laws stand to each other."""
+    known: dict[int, int] = {}
+    representatives: list[Side] = []
+    relations: dict[tuple[int, int], Relation] = {}
+    laws: dict[str, int] = {}
+    for book, side in sides.items():
+        if side.law not in known:
+            known[side.law] = _law(side, representatives, relations)
+        laws[book] = known[side.law]
+    return laws, relations
+
+
+def _law(
+    side: Side, representatives: list[Side], relations: dict[tuple[int, int], Relation]
+) -> int:
+    """The law among those known that is the same, or a new one, compared to all of them."""
+    found = {}
+    for number, other in enumerate(representatives):
+        found[number] = compare(side, other).relation
+        if found[number] == "equal":
+            return number
+    own = len(representatives)
+    representatives.append(side)
+    relations[own, own] = "equal"
+    for number, relation in found.items():
+        relations[own, number] = relation
+        relations[number, own] = TURNED[relation]
+    return own
+
+
+def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:
+    """Every two rulebooks, in both orders."""
+    return [(one.name, other.name) for one, other in permutations(books, 2)]

@@ -1,0 +1,102 @@
+"""Why one rule forbids what another allows: not one trace, but one for every reason.
+
+A trace says of most things that they are as usual; what it says otherwise is its reason. A further
+trace shows another reason if it does without something that each of those before it needs, so it is
+looked for among the traces in which that is always as usual. Which things to do without is chosen
+as for hitting sets (Reiter 1987), few first, so that plain reasons come first.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from fractions import Fraction
+
+from rulec.analysis.counterexample import violation
+from rulec.analysis.shared_compilation import Side
+from rulec.automata.thresholds import exact
+from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Unary, UnaryOperator
+from rulec.monitoring.state_view import value_in
+from rulec.rulebook.model import Fact, Variable
+from rulec.trace import Trace
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.witnesses.state_synthesis import keys_of
+from rulec.witnesses.undecided import UndecidedError
+
+MOST_SEARCHES = 12
+"""So many times it is looked for another reason."""
+
+
+def reasons(one: Side, other: Side, first: Trace, most: int) -> tuple[Trace, ...]:
+    """Traces that the first rule forbids and the second one allows, each for another reason.
+
+    Args:
+        one: the rule that forbids them.
+        other: the rule that allows them.
+        first: one of them, the first of the answer.
+        most: how many to look for.
+    """
+    vocabulary = one.rulebook.vocabulary
+    found = [first]
+    shown = [unusual(first, vocabulary)]
+    waiting = deque(frozenset([name]) for name in sorted(shown[0]))
+    asked: set[frozenset[str]] = set()
+    while waiting and len(found) < most and len(asked) < MOST_SEARCHES:
+        usual = waiting.popleft()
+        if usual in asked:
+            continue
+        known = next((names for names in shown if not names & usual), None)
+        if known is None:
+            asked.add(usual)
+            trace = _without(usual, one, other)
+            if trace is None:
+                continue
+            known = unusual(trace, vocabulary)
+            found.append(trace)
+            shown.append(known)
+        waiting.extend(usual | {name} for name in sorted(known))
+    return tuple(found)
+
+
+def unusual(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
+    """The declarations with a default that the trace says something else of in some state."""
+    return frozenset(
+        name
+        for (name, items), declaration in keys_of(vocabulary, trace.objects)
+        if declaration.default is not None
+        if any(
+            value_in(state, name, items, declaration) != declaration.default
+            for state in trace.states
+        )
+    )
+
+
+def _without(names: frozenset[str], one: Side, other: Side) -> Trace | None:
+    try:
+        return violation(one, [other], tuple(_as_usual(names, one.rulebook.vocabulary)))
+    except UndecidedError:
+        return None
+
+
+def _as_usual(names: frozenset[str], vocabulary: Vocabulary) -> Iterator[Fact]:
+    """That these declarations have their defaults, for all objects."""
+    for name in sorted(names):
+        declaration = vocabulary.declarations[name]
+        variables = tuple(
+            Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
+        )
+        arguments = tuple(variable.name for variable in variables)
+        yield Fact(variables, _has_default(name, arguments, declaration))
+
+
+def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> Formula:
+    match declaration:
+        case Enumeration(default=str(value)):
+            return Atom(name, arguments, value)
+        case Signal(default=True):
+            return Atom(name, arguments)
+        case Signal():
+            return Unary(UnaryOperator.NOT, Atom(name, arguments))
+    assert declaration.default is not None, "only what has a default can be as usual"
+    number = exact(float(declaration.default))
+    return Comparison(((Fraction(1), Quantity(name, arguments)),), "=", number)

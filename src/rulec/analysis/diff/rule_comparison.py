@@ -1,0 +1,110 @@
+"""Two rules side by side: which traces does one of them forbid, and the other allow?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations
+from typing import Literal
+
+from rulec.analysis.counterexample import violation
+from rulec.analysis.diff.diverse_witnesses import reasons
+from rulec.analysis.shared_compilation import Side
+from rulec.rulebook.model import Variable
+from rulec.trace import Trace
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.undecided import UndecidedError
+
+Relation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
+"""What the first rule is to the second one: stricter forbids all that the other does, and more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How two rules stand to each other.
+
+    ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
+    one first, then shortest ones for other reasons; ``second_forbids`` those the other way around.
+    Both are empty where there are none. ``on_common`` is how they
+    stand for objects that both of them speak of, given as ``common`` types, if one of them speaks
+    of more. ``undecided`` says why a question was left open.
+    """
+
+    relation: Relation
+    first_forbids: tuple[Trace, ...] = ()
+    second_forbids: tuple[Trace, ...] = ()
+    undecided: str = ""
+    common: tuple[str, ...] = ()
+    on_common: Relation | None = None
+
+
+def compare(one: Side, other: Side, most: int = 1) -> Comparison:
+    """Compare two rules, both compiled for the same step if they have bounds in seconds.
+
+    Either way ``most`` traces are looked for, each for a reason of its own.
+    """
+    if one.law == other.law:
+        return Comparison("equal")
+    found = _compare(one, other, most)
+    common = common_types(one.rule.variables, other.rule.variables, one.rulebook.vocabulary)
+    if common is None or found.undecided:
+        return found
+    narrow, narrower = (_narrowed(side, common) for side in (one, other))
+    return replace(found, common=common, on_common=_compare(narrow, narrower, 1).relation)
+
+
+def _compare(one: Side, other: Side, most: int) -> Comparison:
+    try:
+        first, second = violation(one, [other]), violation(other, [one])
+    except UndecidedError as problem:
+        return Comparison("undecided", undecided=str(problem))
+    return Comparison(
+        relation_of(first, second),
+        () if first is None else reasons(one, other, first, most),
+        () if second is None else reasons(other, one, second, most),
+    )
+
+
+def relation_of(first_forbids: object, second_forbids: object) -> Relation:
+    """What the first rule is to the second, given what just one of them forbids, or None."""
+    if first_forbids is None:
+        return "equal" if second_forbids is None else "laxer"
+    return "stricter" if second_forbids is None else "incomparable"
+
+
+def common_types(
+    one: Sequence[Variable], other: Sequence[Variable], vocabulary: Vocabulary
+) -> tuple[str, ...] | None:
+    """The types of objects that both rules speak of, in the order of the first one's variables.
+
+    None if the two speak of the same types, or share no objects at all.
+    """
+    types = [variable.type for variable in one]
+    others = [variable.type for variable in other]
+    if len(types) != len(others) or sorted(types) == sorted(others):
+        return None
+    for order in permutations(others):
+        pairs = list(zip(types, order, strict=True))
+        narrow = tuple(
+            a if vocabulary.is_subtype(a, b) else b if vocabulary.is_subtype(b, a) else ""
+            for a, b in pairs
+        )
+        if all(narrow):
+            return narrow
+    return None
+
+
+def _narrowed(side: Side, common: tuple[str, ...]) -> Side:
+    """The rule for objects of these types alone."""
+    variables = side.rule.variables
+    for order in permutations(common):
+        if all(
+            side.rulebook.vocabulary.is_subtype(kind, variable.type)
+            for kind, variable in zip(order, variables, strict=True)
+        ):
+            own = tuple(
+                Variable(variable.name, kind)
+                for kind, variable in zip(order, variables, strict=True)
+            )
+            return replace(side, rule=replace(side.rule, variables=own))
+    raise AssertionError("the common types are those of both rules")

@@ -1,0 +1,218 @@
+"""Two rulebooks side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from fractions import Fraction
+
+from rulec.analysis.counterexample import read_by
+from rulec.analysis.diff.rule_comparison import Comparison, Relation, compare
+from rulec.analysis.diff.shared_vocabulary import shared_words
+from rulec.analysis.lineage.rule_lineage import Inheritance, ProvisionHistory, ProvisionKind
+from rulec.analysis.shared_compilation import Distinct, at_one_step
+from rulec.analysis.trace_table import TraceTable, trace_table
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.rulebook.model import Remark, Rule, Rulebook
+from rulec.trace import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class RulePair:
+    """A rule that both rulebooks have, as each of them says it, and how the two compare.
+
+    ``machines`` are the rules compiled.
+    """
+
+    first: Rule
+    second: Rule
+    machines: tuple[CompiledRule, CompiledRule]
+    comparison: Comparison
+
+    @property
+    def name(self) -> str:
+        """The name that both go by."""
+        return self.first.name
+
+    @property
+    def relation(self) -> Relation:
+        """What the first one is to the second one."""
+        return self.comparison.relation
+
+    @property
+    def notes(self) -> tuple[tuple[str, str, str], ...]:
+        """What else is not the same: what it is, and how each rulebook has it."""
+        pairs = (
+            ("strength", self.first.strength, self.second.strength),
+            ("level", self.first.level or "none", self.second.level or "none"),
+            ("weight", str(self.first.weight), str(self.second.weight)),
+            ("cite", self.first.cite or "none", self.second.cite or "none"),
+            ("certainty", self.first.certainty or "none", self.second.certainty or "none"),
+        )
+        return tuple(pair for pair in pairs if pair[1] != pair[2])
+
+
+@dataclass(frozen=True, slots=True)
+class OneSided:
+    """A rule that only one of two rulebooks has; ``remark`` is what the other says of that."""
+
+    rule: Rule
+    remark: Remark | None
+
+
+@dataclass(frozen=True, slots=True)
+class SettingPair:
+    """An option or a parameter of both, with two values, as written and in force on the day."""
+
+    kind: ProvisionKind
+    name: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """How a rulebook differs from another one."""
+
+    first: Rulebook
+    second: Rulebook
+    pairs: tuple[RulePair, ...]
+    only_first: tuple[OneSided, ...]
+    only_second: tuple[OneSided, ...]
+    settings: tuple[SettingPair, ...] = ()
+
+    @property
+    def is_none(self) -> bool:
+        """Do the two forbid the same, as strictly?"""
+        alike = all(
+            pair.relation == "equal" and pair.first.strength == pair.second.strength
+            for pair in self.pairs
+        )
+        return alike and not self.only_first and not self.only_second
+
+    @property
+    def is_complete(self) -> bool:
+        """Has every question been answered?"""
+        return not any(pair.comparison.undecided for pair in self.pairs)
+
+    @property
+    def witnesses(self) -> Iterator[Trace]:
+        """The traces that one of them forbids and the other one allows."""
+        for pair in self.pairs:
+            yield from pair.comparison.first_forbids
+            yield from pair.comparison.second_forbids
+
+    def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
+        """What one rulebook's rule forbids and the other's allows: both names, and the states."""
+        words = shared_words(self.first.vocabulary, self.second.vocabulary)
+        names = read_by(pair.machines[0]) | read_by(pair.machines[1])
+        one, other = self.first.name, self.second.name
+        for traces, forbids, allows in (
+            (pair.comparison.first_forbids, one, other),
+            (pair.comparison.second_forbids, other, one),
+        ):
+            for trace in traces:
+                yield forbids, allows, trace_table(trace, names, words.vocabulary)
+
+
+def setting_pairs(one: Inheritance, other: Inheritance) -> tuple[SettingPair, ...]:
+    """The options and parameters that both have with different values."""
+    theirs = {each.name: each for each in other.provisions if each.kind != "definition"}
+    found = []
+    for ours in one.provisions:
+        if ours.name in theirs and theirs[ours.name].kind == ours.kind:
+            values = [_value(ours), _value(theirs[ours.name])]
+            if values[0] != values[1]:
+                found.append(SettingPair(ours.kind, ours.name, *values))
+    return tuple(found)
+
+
+def _value(provision: ProvisionHistory) -> str:
+    return next((one.text for one in provision.settings if one.current), "")
+
+
+def difference(
+    first: Rulebook,
+    second: Rulebook,
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    tell: Callable[[float], object] = lambda _: None,
+    most: int = 1,
+) -> Difference:
+    """Compare the rules that two rulebooks share by name.
+
+    Args:
+        first: a rulebook.
+        second: the one that it is compared to.
+        patterns: only rules whose name one of them matches, ``*`` and ``?`` being wild.
+        step_s: the step of the traces that rules with bounds in seconds are compared on; else one
+            that divides the steps of their examples.
+        tell: is told how many rules have been compared.
+        most: how many traces to look for, each for another reason, that one rule forbids and the
+            other allows.
+
+    Raises:
+        RulecError: if a rule cannot be compiled.
+    """
+    ours, theirs = (chosen(book, patterns) for book in (first, second))
+    shared = [name for name in ours if name in theirs]
+    pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
+    sides = Distinct().sides(
+        (first, second),
+        [{name: pairs[name][which] for name in shared} for which in (0, 1)],
+    )
+    compared = []
+    for number, name in enumerate(shared, 1):
+        one, other = sides[0][name], sides[1][name]
+        compared.append(
+            RulePair(
+                ours[name],
+                theirs[name],
+                (one.rule, other.rule),
+                _labelled(compare(one, other, most), first.name, second.name, name),
+            )
+        )
+        tell(number)
+    return Difference(
+        first,
+        second,
+        tuple(compared),
+        _only(ours, theirs, second.remarks),
+        _only(theirs, ours, first.remarks),
+    )
+
+
+def chosen(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
+    """The rules of a rulebook by name; with patterns, those that one of them matches."""
+    return {
+        rule.name: rule
+        for rule in book.rules
+        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
+    }
+
+
+def _only(
+    ours: dict[str, Rule], theirs: dict[str, Rule], remarks: Sequence[Remark]
+) -> tuple[OneSided, ...]:
+    said = {one.name: one for one in remarks if one.kind != "softened"}
+    return tuple(
+        OneSided(rule, said.get(name)) for name, rule in ours.items() if name not in theirs
+    )
+
+
+def _labelled(found: Comparison, first: str, second: str, rule: str) -> Comparison:
+    """The comparison with traces that are named for what they show."""
+
+    def named(traces: Sequence[Trace], forbids: str, allows: str) -> tuple[Trace, ...]:
+        title = f"{rule}: {forbids} forbids, {allows} allows"
+        return tuple(
+            replace(trace, id=title if number == 1 else f"{title} ({number})")
+            for number, trace in enumerate(traces, 1)
+        )
+
+    return replace(
+        found,
+        first_forbids=named(found.first_forbids, first, second),
+        second_forbids=named(found.second_forbids, second, first),
+    )

@@ -1,0 +1,40 @@
+"""The words that two rulebooks share, and those that only one of them knows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from rulec.vocabulary import Declaration, ObjectType, Vocabulary
+from rulec.witnesses.undecided import UndecidedError
+
+
+@dataclass(frozen=True, slots=True)
+class SharedWords:
+    """The words of both; the declarations that one lacks; names for what is not alike in both."""
+
+    vocabulary: Vocabulary
+    not_shared: frozenset[str]
+    unlike: frozenset[str]
+
+
+def shared_words(one: Vocabulary, other: Vocabulary) -> SharedWords:
+    """The words of two vocabularies together.
+
+    Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
+    type is not the same in both.
+    """
+    types: dict[str, ObjectType] = dict(one.types)
+    for name, kind in other.types.items():
+        if types.setdefault(name, kind).parent != kind.parent:
+            raise UndecidedError(f"`{name}` is not the same type in both")
+    declarations: dict[str, Declaration] = dict(one.declarations)
+    unlike = set()
+    for name, item in other.declarations.items():
+        known = declarations.setdefault(name, item)
+        if replace(known, default=None) != replace(item, default=None):
+            unlike.add(name)
+        elif known.default != item.default:
+            declarations[name] = replace(known, default=None)
+    not_shared = frozenset(one.declarations.keys() ^ other.declarations.keys())
+    words = Vocabulary(one.name, types, declarations)
+    return SharedWords(words, not_shared, frozenset(unlike))

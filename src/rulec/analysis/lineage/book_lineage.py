@@ -1,0 +1,200 @@
+"""Where everything in a rulebook comes from: which book of its chain said, changed or dropped it.
+
+``rulebook.overlay`` says what a chain comes to; here is the way there. Both read the same trees,
+and this one expects that the overlay has found no mistake in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
+
+from rulec.analysis.lineage.rule_lineage import (
+    Inheritance,
+    Member,
+    ProvisionHistory,
+    RuleHistory,
+    Setting,
+    Step,
+)
+from rulec.rulebook.loader import Loaded, read_rulebook
+from rulec.rulebook.names.doc_comments import description
+from rulec.rulebook.names.referenced_names import names_used
+from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.overlay.rulebook_overlay import merged
+from rulec.syntax import tree
+from rulec.syntax.printer import print_formula
+
+
+def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
+    """What a chain of rulebooks without mistakes did with each rule and provision.
+
+    Args:
+        chain: their trees, the most general first.
+        at: the day (ISO) whose law it is; it decides which value of a parameter counts.
+    """
+    told = _Tale()
+    for level, file in enumerate(chain):
+        book = member_of(file).name
+        for item in file.items:
+            told.take(item, book, level)
+    used = _used(told)
+    return Inheritance(
+        tuple(map(member_of, chain)),
+        tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
+        tuple(
+            replace(_provision(name, one, at), used=name in used)
+            for name, one in told.provisions.items()
+        ),
+    )
+
+
+def read_with_inheritance(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> tuple[Loaded, Inheritance]:
+    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
+    loaded = read_rulebook(reference, search_path, at)
+    return loaded, inheritance(loaded.books, loaded.rulebook.at)
+
+
+def _used(told: _Tale) -> set[str]:
+    """The provisions that the rules speak of, those included that provisions speak of in turn."""
+    found: set[str] = set()
+    open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
+    while open_:
+        names = set(names_used(open_.pop())) & told.provisions.keys()
+        open_ += [item for name in names - found for item, _, _ in told.provisions[name]]
+        found |= names
+    return found
+
+
+def member_of(file: tree.File) -> Member:
+    """What a rulebook says of itself."""
+    return Member(
+        file.name.text if file.name else "",
+        file.title.text.value if file.title else "",
+        file.law.text.value if file.law else "",
+        file.law.as_of if file.law else "",
+        PurePath(file.span.source.name).name,
+        file.extends.name.text if file.extends else "",
+    )
+
+
+_Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
+
+
+@dataclass(slots=True)
+class _Tale:
+    """What has happened so far; of a provision with the book and its number in the chain."""
+
+    rules: dict[str, list[Step]] = field(default_factory=dict)
+    provisions: dict[str, list[tuple[_Given, str, int]]] = field(default_factory=dict)
+
+    def take(self, item: tree.Item, book: str, level: int) -> None:
+        match item:
+            case tree.RuleItem(override=False):
+                self._note(item.name, Step(book, "declared", item))
+            case tree.RuleItem():
+                before = self._rule(item.name)
+                after = merged(before, item)
+                changed = tuple(changed_clauses(before, after))
+                self._note(item.name, Step(book, "overridden", after, changed))
+            case tree.SoftenItem(name, level_name, weight, because):
+                before = self._rule(name)
+                after = replace(
+                    before,
+                    strength="soft",
+                    level=level_name or before.level,
+                    weight=weight or before.weight,
+                )
+                changed = tuple(changed_clauses(before, after))
+                why = because.value if because else ""
+                self._note(name, Step(book, "softened", after, changed, why))
+            case tree.DropItem(name, because):
+                self._note(name, Step(book, "dropped", None, (), because.value))
+            case tree.SilentItem(name, because):
+                self._note(name, Step(book, "silent", None, (), because.value))
+            case tree.OptionItem() | tree.ParamItem() | tree.SetItem() | tree.DefineItem():
+                self.provisions.setdefault(item.name.text, []).append((item, book, level))
+            case _:
+                return
+
+    def _note(self, name: tree.Name, step: Step) -> None:
+        self.rules.setdefault(name.text, []).append(step)
+
+    def _rule(self, name: tree.Name) -> tree.RuleItem:
+        rule = self.rules[name.text][-1].rule
+        assert rule is not None, "nobody changes a rule that is gone"
+        return rule
+
+
+HARDNESS = "hard or soft"
+"""What the word before ``rule`` is called among the clauses."""
+
+_CLAUSES = {
+    "strength": HARDNESS,
+    "variables": "variables",
+    "level": "level",
+    "weight": "weight",
+    "cite": "cite",
+    "says": "says",
+    "source": "source",
+    "certainty": "certainty",
+    "in_force": "in force",
+    "require": "require",
+    "when": "when",
+    "unless": "unless",
+    "examples": "examples",
+}
+"""Field of a rule's tree -> what it is called."""
+
+
+def changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> Iterator[str]:
+    """The kinds of clauses in which two rules differ, whatever their spelling."""
+    for name, spoken in _CLAUSES.items():
+        if getattr(before, name) != getattr(after, name):
+            yield spoken
+
+
+def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> ProvisionHistory:
+    first = given[0][0]
+    current = _current(given, at)
+    settings = tuple(
+        Setting(book, _text(item), *_dates(item), index == current, description(item.span))
+        for index, (item, book, _) in enumerate(given)
+    )
+    match first:
+        case tree.OptionItem():
+            return ProvisionHistory("option", name, name, settings)
+        case tree.DefineItem(parameters=parameters):
+            shown = (
+                f"{one.name.text}: {one.type.text}" if one.type else one.name.text
+                for one in parameters
+            )
+            head = f"{name}({', '.join(shown)})" if parameters else name
+            return ProvisionHistory("definition", name, head, settings)
+        case _:
+            return ProvisionHistory("parameter", name, name, settings)
+
+
+def _current(given: Sequence[tuple[_Given, str, int]], at: str) -> int | None:
+    """The one of the nearest book that is in force; None if there is none."""
+    good = [index for index, (item, _, _) in enumerate(given) if in_force(_when(item), at)]
+    return max(good, key=lambda index: (given[index][2], index), default=None)
+
+
+def _when(item: _Given) -> tree.InForce | None:
+    return item.in_force if isinstance(item, tree.ParamItem | tree.SetItem) else None
+
+
+def _dates(item: _Given) -> tuple[str, str]:
+    dates = _when(item)
+    return ("", "") if dates is None else (dates.since, dates.until)
+
+
+def _text(item: _Given) -> str:
+    body = item.body if isinstance(item, tree.DefineItem) else item.value
+    if isinstance(body, bool):
+        return "on" if body else "off"
+    return print_formula(body, "written")

@@ -1,0 +1,53 @@
+"""Rulebooks that build upon one another, as a forest: below each one those that extend it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.analysis.lineage.rule_lineage import Member
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """A rulebook and those that extend it directly, in alphabetical order."""
+
+    book: Member
+    children: tuple[Branch, ...] = ()
+
+
+def forest(members: Iterable[Member]) -> tuple[Branch, ...]:
+    """Every rulebook once, by its name; the roots extend none, or one that is not among them.
+
+    Rulebooks that go round in a circle hang below the first of them by name.
+    """
+    by_name = {one.name: one for one in members}
+    children: dict[str, list[str]] = {}
+    roots = []
+    for name in sorted(by_name):
+        base = by_name[name].extends
+        if base in by_name:
+            children.setdefault(base, []).append(name)
+        else:
+            roots.append(name)
+    placed: set[str] = set()
+    found = [_branch(name, by_name, children, placed) for name in roots]
+    found += [
+        _branch(name, by_name, children, placed) for name in sorted(by_name) if name not in placed
+    ]
+    return tuple(sorted(found, key=lambda one: one.book.name))
+
+
+def _branch(
+    name: str,
+    by_name: Mapping[str, Member],
+    children: Mapping[str, Sequence[str]],
+    placed: set[str],
+) -> Branch:
+    placed.add(name)
+    below = [
+        _branch(one, by_name, children, placed)
+        for one in children.get(name, ())
+        if one not in placed
+    ]
+    return Branch(by_name[name], tuple(below))

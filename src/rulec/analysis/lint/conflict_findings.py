@@ -1,0 +1,91 @@
+"""Findings about hard rules that cannot all be kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from rulec.analysis.lint.conflict_search import Conflict, conflict, share_words
+from rulec.analysis.lint.finding_notes import shown, undecided
+from rulec.analysis.lint.redundancy import walkable
+from rulec.analysis.shared_compilation import Side
+from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.diagnostic import at
+from rulec.rulebook.model import Rule
+from rulec.witnesses.undecided import UndecidedError
+
+
+def conflicts(
+    names: Sequence[str], sides: dict[str, Side], rules: dict[str, Rule]
+) -> Iterator[Diagnostic]:
+    """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
+    found: list[frozenset[str]] = []
+    for pair in combinations(names, 2):
+        if not share_words(sides[pair[0]], sides[pair[1]]):
+            continue
+        try:
+            clash = conflict([sides[name] for name in pair])
+        except UndecidedError as problem:
+            what = f"it can always be kept together with `{pair[0]}`"
+            yield undecided(rules[pair[1]], what, problem)
+            continue
+        if clash is not None:
+            found.append(frozenset(pair))
+            yield _cannot_be_kept(pair, clash, sides, rules)
+    for name in names:
+        related = [sides[one] for one in names if share_words(sides[name], sides[one])]
+        others = [one for one in related if one.rule.name != name]
+        group = [sides[name], *walkable(sides[name], others)]
+        clash = None if _holds_one(found, group) else _clash(group)
+        if clash is not None:
+            smaller = _smallest(group)
+            chosen = tuple(one for one in names if one in {side.rule.name for side in smaller})
+            found.append(frozenset(chosen))
+            yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
+
+
+def _holds_one(found: Sequence[frozenset[str]], group: Sequence[Side]) -> bool:
+    names = {one.rule.name for one in group}
+    return any(one <= names for one in found)
+
+
+def _clash(group: Sequence[Side]) -> Conflict | None:
+    """A conflict in a group, as far as it is small enough to look at."""
+    if len(group) < 3:
+        return None
+    try:
+        return conflict(group)
+    except UndecidedError:
+        return None
+
+
+def _smallest(group: Sequence[Side]) -> Sequence[Side]:
+    """The group without those that its conflict does not need."""
+    for one in group:
+        fewer = [other for other in group if other is not one]
+        if _clash(fewer) is not None:
+            return _smallest(fewer)
+    return group
+
+
+def _cannot_be_kept(
+    names: Sequence[str], clash: Conflict, sides: dict[str, Side], rules: dict[str, Rule]
+) -> Diagnostic:
+    *firsts, last = names
+    whole = [sides[name] for name in names]
+    when = "at all" if clash.trace is None else "any more"
+    notes = () if clash.trace is None else shown("after the trace", clash.trace, whole)
+    both = "both" if len(names) == 2 else "all"
+    return Diagnostic(
+        "R0804",
+        f"rules {', '.join(f'`{name}`' for name in firsts)} and `{last}` cannot {both} be kept "
+        f"{when}, though each alone could",
+        at(rules[last].span),
+        help="except from one of them what another one asks for, or make it soft",
+        labels=tuple(
+            Label(place, f"`{name}` is here")
+            for name in firsts
+            if (place := at(rules[name].span)) is not None
+        ),
+        notes=notes,
+    )

@@ -1,0 +1,219 @@
+"""Rules that cannot hold together from some state on, though each of them alone could."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from rulec.analysis.counterexample import read_by
+from rulec.analysis.shared_compilation import Side
+from rulec.automata.mealy_monitor import Machine
+from rulec.logic.free_names import names_in
+from rulec.monitoring.verify import verify
+from rulec.rulebook.model import Variable
+from rulec.trace import Trace
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.joint_alphabet import Alphabet, Symbol
+from rulec.witnesses.letter_functions import machine_column
+from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, Node
+from rulec.witnesses.trace_synthesis import alone, staged
+from rulec.witnesses.undecided import UndecidedError
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """After ``trace`` every rule could be kept, but not all; None: they never hold together."""
+
+    trace: Trace | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """The steps of a node that lead to one target and satisfy the same rules if the trace ends."""
+
+    target: Node
+    satisfied: frozenset[int]
+    symbol: Symbol
+
+
+def conflict(sides: Sequence[Side]) -> Conflict | None:
+    """A shortest trace after which the rules cannot all be kept any more, if there is one.
+
+    Its objects are as few as the rules can speak of, each of one for its variables. The rules are
+    of one rulebook. Raises UndecidedError where there is too much to search.
+    """
+    vocabulary = sides[0].rulebook.vocabulary
+    scene = Scene(common_objects([one.rule.variables for one in sides], vocabulary), vocabulary)
+    scene = replace(scene, facts=sides[0].facts)
+    bound = [
+        (number, side.rule.machine, binding)
+        for number, side in enumerate(sides)
+        for binding in scene.bindings(side.rule.variables)
+    ]
+    columns = [machine_column(machine, binding, scene) for _, machine, binding in bound]
+    alphabet = Alphabet(scene, columns)
+    if not alphabet.symbols:
+        return None
+    owners = [number for number, _, _ in bound]
+    machines = [machine for _, machine, _ in bound]
+    alone_ok = [
+        _alone(
+            [machine for owner, machine in zip(owners, machines, strict=True) if owner == number],
+            [place for place, owner in enumerate(owners) if owner == number],
+            alphabet.symbols,
+        )
+        for number in range(len(sides))
+    ]
+    graph = _explored(machines, owners, alphabet.symbols)
+    everyone = frozenset(range(len(sides)))
+    together = _hopeful(graph, everyone)
+    places = [
+        [place for place, owner in enumerate(owners) if owner == number]
+        for number in range(len(sides))
+    ]
+    word = _shortest(graph, together, alone_ok, places, everyone)
+    if word is None:
+        return None
+    if not word:
+        return Conflict(None)
+    steps = [one.rule.step_s for one in sides if one.rule.step_s is not None]
+    judged = [alone(side.rulebook, side.rule, scene) for side in sides]
+
+    def is_open(trace: Trace) -> bool:
+        found = [one for book in judged for one in verify(trace, book).violations]
+        return all(one.step is None for one in found)
+
+    situations = [alphabet.situations[symbol] for symbol in word]
+    return Conflict(staged(situations, scene, (*steps, Fraction(1))[0], is_open))
+
+
+def share_words(one: Side, other: Side) -> bool:
+    """Do two rules read something in common, or something that facts connect?"""
+    reached = set(read_by(one.rule))
+    groups = [set(names_in(fact.formula)) for fact in one.facts]
+    while joined := [group for group in groups if group & reached and not group <= reached]:
+        reached.update(*joined)
+    return bool(reached & read_by(other.rule))
+
+
+def common_objects(
+    heads: Sequence[Sequence[Variable]], vocabulary: Vocabulary
+) -> Mapping[str, str]:
+    """As few objects as every one of these rules has some to speak of."""
+    objects: dict[str, str] = {}
+    for variables in heads:
+        free = list(objects)
+        for variable in variables:
+            found = next(
+                (name for name in free if _fits(objects[name], variable, vocabulary)), None
+            )
+            if found is None:
+                found = variable.name
+                while found in objects:
+                    found += "_"
+                objects[found] = variable.type
+            else:
+                free.remove(found)
+                if vocabulary.is_subtype(variable.type, objects[found]):
+                    objects[found] = variable.type
+    return objects
+
+
+def _fits(kind: str, variable: Variable, vocabulary: Vocabulary) -> bool:
+    return vocabulary.is_subtype(kind, variable.type) or vocabulary.is_subtype(variable.type, kind)
+
+
+Graph = Mapping[Node, Sequence[_Step]]
+
+
+def _explored(
+    machines: Sequence[Machine], owners: Sequence[int], symbols: Sequence[Symbol]
+) -> Graph:
+    """The joint states that can be reached, in breadth-first order; those beyond saving end it."""
+    start: Node = (0,) * len(machines)
+    graph: dict[Node, list[_Step]] = {}
+    waiting = [start]
+    seen = {start}
+    for node in waiting:
+        steps: dict[tuple[Node, frozenset[int]], _Step] = {}
+        lost = any(a == one.dead for a, one in zip(node, machines, strict=True))
+        for symbol in () if lost else symbols:
+            unsatisfied = {
+                owner
+                for owner, one, state, which in zip(owners, machines, node, symbol, strict=True)
+                if not one.accepting[state][which]
+            }
+            target = tuple(
+                one.following[state][which]
+                for one, state, which in zip(machines, node, symbol, strict=True)
+            )
+            key = (target, frozenset(owners) - unsatisfied)
+            steps.setdefault(key, _Step(*key, symbol))
+            if target not in seen:
+                seen.add(target)
+                waiting.append(target)
+        graph[node] = list(steps.values())
+        if len(seen) > MOST_STATES or len(graph) * len(symbols) > MOST_STEPS:
+            raise UndecidedError("their automata together are too large")
+    return graph
+
+
+def _alone(
+    machines: Sequence[Machine], places: Sequence[int], symbols: Sequence[Symbol]
+) -> frozenset[Node]:
+    """The states of one rule's machines from which it can still be kept."""
+    own = list(dict.fromkeys(tuple(symbol[place] for place in places) for symbol in symbols))
+    graph = _explored(machines, [0] * len(machines), own)
+    return _hopeful(graph, frozenset([0]))
+
+
+def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[Node]:
+    """The states from which some way on, of one step or more, satisfies everyone."""
+    before: dict[Node, list[Node]] = {}
+    for node, steps in graph.items():
+        for step in steps:
+            before.setdefault(step.target, []).append(node)
+    waiting = [
+        node for node, steps in graph.items() if any(step.satisfied >= everyone for step in steps)
+    ]
+    found = set(waiting)
+    for node in waiting:
+        for earlier in before.get(node, ()):
+            if earlier not in found:
+                found.add(earlier)
+                waiting.append(earlier)
+    return frozenset(found)
+
+
+def _shortest(
+    graph: Graph,
+    together: frozenset[Node],
+    alone_ok: Sequence[frozenset[Node]],
+    places: Sequence[Sequence[int]],
+    everyone: frozenset[int],
+) -> tuple[Symbol, ...] | None:
+    """A shortest word, empty perhaps, after which each rule could be kept but not all."""
+
+    def each_could(node: Node, satisfied: frozenset[int]) -> bool:
+        return all(
+            number in satisfied or tuple(node[place] for place in own) in hopeful
+            for number, (own, hopeful) in enumerate(zip(places, alone_ok, strict=True))
+        )
+
+    start = next(iter(graph))
+    if start not in together:
+        return () if each_could(start, frozenset()) else None
+    came: dict[Node, tuple[Symbol, ...]] = {start: ()}
+    waiting = [start]
+    for node in waiting:
+        for step in graph[node]:
+            word = (*came[node], step.symbol)
+            stuck = step.satisfied < everyone and step.target not in together
+            if stuck and each_could(step.target, step.satisfied):
+                return word
+            if step.target not in came:
+                came[step.target] = word
+                waiting.append(step.target)
+    return None

@@ -1,0 +1,30 @@
+"""What findings say of traces, and of questions that were left open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.analysis.shared_compilation import Side
+from rulec.analysis.trace_literals import in_words_of
+from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.diagnostic import at
+from rulec.rulebook.model import Rule
+from rulec.trace import Trace
+from rulec.witnesses.undecided import UndecidedError
+
+
+def shown(what: str, trace: Trace, sides: Sequence[Side]) -> tuple[str, ...]:
+    """The note on a trace, in the words of these rules."""
+    rules = [one.rule for one in sides]
+    return (f"{what}: {in_words_of(trace, rules, sides[0].rulebook.vocabulary)}",)
+
+
+def undecided(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
+    """The warning (R0807) that a question about a rule was left open."""
+    return Diagnostic(
+        "R0807",
+        f"not decided of rule `{rule.name}` whether {what}: {problem}",
+        at(rule.span),
+        help="say less in one rule; rules beside each other are looked at one by one",
+        severity="warning",
+    )

@@ -1,0 +1,70 @@
+"""What a rule adds to others: can it be violated, can it be kept, do others imply it?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import prod
+
+from rulec.analysis.counterexample import violation
+from rulec.analysis.lint.conflict_search import share_words
+from rulec.analysis.shared_compilation import Side
+from rulec.witnesses.joint_alphabet import Alphabet
+from rulec.witnesses.letter_functions import machine_column
+from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.shortest_word import shortest
+
+MOST_PREMISES = 6
+MOST_JOINT_STATES = 5_000
+"""Others are taken together as long as their automata have no more states than these."""
+
+
+def can_be_violated(side: Side) -> bool:
+    """Is there a trace that violates the rule? Raises UndecidedError."""
+    return violation(side, []) is not None
+
+
+def can_be_kept(side: Side) -> bool:
+    """Is there a trace, with objects for the rule to speak of, that keeps it?
+
+    Raises UndecidedError.
+    """
+    objects = {variable.name: variable.type for variable in side.rule.variables}
+    scene = Scene(objects, side.rulebook.vocabulary, side.facts)
+    bindings = scene.bindings(side.rule.variables)
+    columns = [machine_column(side.rule.machine, binding, scene) for binding in bindings]
+    machines = [side.rule.machine] * len(bindings)
+    symbols = Alphabet(scene, columns).symbols
+    return shortest(machines, [True] * len(bindings), symbols) is not None
+
+
+def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
+    """One of the others, or few of them together, that forbid all that a rule forbids; else none.
+
+    The others are taken together as far as their automata stay small; so more of them together may
+    imply it without being found. Raises UndecidedError.
+    """
+    related = [other for other in others if share_words(side, other)]
+    for other in related:
+        if violation(side, [other]) is None:
+            return (other,)
+    premises = walkable(side, related)
+    if len(premises) < 2 or violation(side, premises) is not None:
+        return ()
+    for other in premises:
+        fewer = [one for one in premises if one is not other]
+        if violation(side, fewer) is None:
+            premises = fewer
+    return tuple(premises)
+
+
+def walkable(side: Side, related: Sequence[Side]) -> list[Side]:
+    """Those of the others whose automata stay small together with that of the rule."""
+    types = sorted(variable.type for variable in side.rule.variables)
+    chosen: list[Side] = []
+    for other in sorted(related, key=lambda one: len(one.rule.machine.following)):
+        if sorted(variable.type for variable in other.rule.variables) not in (types, []):
+            continue
+        sizes = [len(one.rule.machine.following) for one in (side, *chosen, other)]
+        if prod(sizes) <= MOST_JOINT_STATES and len(chosen) < MOST_PREMISES:
+            chosen.append(other)
+    return chosen

@@ -1,0 +1,191 @@
+"""What is odd in a rulebook, found out by its rules' automata: diagnostics with traces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from rulec.analysis.diff.rule_comparison import compare
+from rulec.analysis.lint.antecedents import Trigger, has_constant, occurrence, triggers
+from rulec.analysis.lint.conflict_findings import conflicts
+from rulec.analysis.lint.finding_notes import shown, undecided
+from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.analysis.shared_compilation import Distinct, Side
+from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.diagnostics.diagnostic import at
+from rulec.logic.printing import in_words
+from rulec.rulebook.model import Rule, Rulebook
+from rulec.witnesses.undecided import UndecidedError
+
+
+def findings(
+    book: Rulebook,
+    bases: Sequence[Rulebook],
+    tell: Callable[[float], object] = lambda _: None,
+    extends: Span | None = None,
+) -> tuple[Diagnostic, ...]:
+    """All findings about a rulebook, those of each rule together, then those of several.
+
+    Args:
+        book: the rulebook.
+        bases: the rulebooks that it extends.
+        extends: where it says so.
+        tell: is told how many rules have been looked at.
+
+    Raises:
+        RulecError: if a rule cannot be compiled.
+    """
+    by_name = {rule.name: rule for rule in book.rules}
+    whens = {
+        f"{rule.name} {number}": (rule, trigger)
+        for rule in book.rules
+        for number, trigger in enumerate(triggers(rule))
+    }
+    asked = {name: occurrence(*one, name) for name, one in whens.items()}
+    inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
+    found = Distinct().sides([book, *bases], [{**by_name, **asked}, *inherited])
+    own = {name: found[0][name] for name in by_name}
+    occurring = {name: (*one, found[0][name]) for name, one in whens.items()}
+    diagnostics: list[Diagnostic] = []
+    hopeless: set[str] = set()
+    for number, (name, rule) in enumerate(by_name.items(), 1):
+        alone = [*_idle(rule, [one[1:] for one in occurring.values() if one[0] is rule])]
+        alone = alone or [*_alone(rule, own[name])]
+        if alone:
+            hopeless.add(name)
+        diagnostics += alone
+        tell(number)
+    good = [name for name in by_name if name not in hopeless]
+    diagnostics += _needless(good, by_name, own)
+    hard = [name for name in good if by_name[name].strength == "hard"]
+    diagnostics += conflicts(hard, own, by_name)
+    for base, sides in zip(bases, found[1:], strict=True):
+        for name, side in sides.items():
+            for one in _weaker(by_name[name], own[name], side, base):
+                diagnostics.append(one if by_name[name].book == book.name else _ours(one, extends))
+    return tuple(diagnostics)
+
+
+def _idle(rule: Rule, occurring: Sequence[tuple[Trigger, Side]]) -> Iterator[Diagnostic]:
+    what = {
+        "implies": "what stands before `implies`",
+        "phase": "the first phase",
+        "when": "the condition `when`",
+        "unless": "the exception",
+    }
+    for trigger, side in occurring:
+        try:
+            occurs = can_be_kept(side)
+        except UndecidedError as problem:
+            yield undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
+            continue
+        if not occurs:
+            yield Diagnostic(
+                "R0805",
+                f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
+                f"`{in_words(trigger.formula)}`",
+                at(rule.span),
+                help="no state of the world can be like that; say what is meant, or leave it out",
+                severity="warning",
+            )
+
+
+def _alone(rule: Rule, side: Side) -> Iterator[Diagnostic]:
+    try:
+        if not can_be_violated(side):
+            if has_constant(rule.formula):
+                return  # an option has switched it off
+            yield Diagnostic(
+                "R0801",
+                f"nothing can violate rule `{rule.name}`",
+                at(rule.span),
+                help="it holds in every trace that can be; say what it is to forbid",
+                severity="warning",
+            )
+        elif not can_be_kept(side):
+            yield Diagnostic(
+                "R0802",
+                f"nothing can keep rule `{rule.name}`",
+                at(rule.span),
+                help="every trace violates it; say what it is to allow",
+            )
+    except UndecidedError as problem:
+        yield undecided(rule, "it can be kept and violated", problem)
+
+
+def _needless(
+    names: Sequence[str], rules: dict[str, Rule], sides: dict[str, Side]
+) -> Iterator[Diagnostic]:
+    """Rules that add nothing to the others that are left when they are all left out."""
+    left = list(names)
+    found: list[Diagnostic] = []
+    for name in reversed(names):
+        found += _implied(rules[name], [one for one in left if one != name], rules, sides)
+        if found and found[-1].code == "R0803" and f"`{name}` adds" in found[-1].message:
+            left.remove(name)
+    yield from reversed(found)
+
+
+def _implied(
+    rule: Rule, names: Sequence[str], rules: dict[str, Rule], sides: dict[str, Side]
+) -> Iterator[Diagnostic]:
+    """A rule that adds nothing to others that are as hard."""
+    others = [
+        sides[one] for one in names if rules[one].strength == "hard" or rule.strength == "soft"
+    ]
+    try:
+        premises = implied_by(sides[rule.name], others)
+    except UndecidedError as problem:
+        yield undecided(rule, "others imply it", problem)
+        return
+    if premises:
+        listed = [one.rule.name for one in premises]
+        verb = "forbids" if len(listed) == 1 else "together forbid"
+        who = " and ".join(f"`{one}`" for one in listed)
+        yield Diagnostic(
+            "R0803",
+            f"rule `{rule.name}` adds nothing: {who} {verb} all that it forbids",
+            at(rule.span),
+            help="leave it out, unless its own provision is worth a rule",
+            labels=tuple(
+                Label(where, "this is enough" if len(listed) == 1 else "this is part of it")
+                for name in listed
+                if (where := at(rules[name].span)) is not None
+            ),
+            severity="warning",
+        )
+
+
+def _ours(found: Diagnostic, extends: Span | None) -> Diagnostic:
+    """What is found of an inherited rule, at the line by which a rulebook inherits it."""
+    if extends is None or found.place is None:
+        return found
+    rule = Label(found.place, "the rule is inherited from here")
+    return replace(found, place=extends.place, labels=(rule, *found.labels))
+
+
+def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[Diagnostic]:
+    found = compare(own, inherited)
+    if found.undecided:
+        problem = UndecidedError(found.undecided)
+        yield undecided(rule, f"it is as strict as in `{base.name}`", problem)
+        return
+    softer = inherited.rule.strength == "hard" and rule.strength == "soft"
+    if not found.second_forbids and not softer:
+        return
+    how = "laxer" if found.second_forbids else "softer"
+    if found.relation == "incomparable":
+        how = "neither stricter nor laxer"
+    notes = [
+        note
+        for trace in found.second_forbids
+        for note in shown(f"`{base.name}` forbids", trace, (own, inherited))
+    ]
+    yield Diagnostic(
+        "R0806",
+        f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
+        at(rule.span),
+        help="if the law has it so, nothing is to be done",
+        notes=tuple(notes),
+        severity="warning",
+    )

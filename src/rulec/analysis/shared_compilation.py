@@ -1,0 +1,105 @@
+"""The rules of several rulebooks, compiled so that what is the same law is compiled once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd, lcm
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.compiler import compile_rulebook
+from rulec.logic.bounds import speaks_of_seconds
+from rulec.logic.free_names import names_in
+from rulec.rulebook.model import Fact, Rule, Rulebook
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """A compiled rule, the rulebook that it is part of and the facts known there.
+
+    Sides with the same ``law`` have rules that mean the same by their very words.
+    """
+
+    rulebook: CompiledRulebook
+    facts: tuple[Fact, ...]
+    rule: CompiledRule
+    law: int
+
+
+Key = tuple[object, ...]
+
+
+class Distinct:
+    """Compiles rules, each law once."""
+
+    def __init__(self, tell: Callable[[float], object] = lambda _: None) -> None:
+        self._tell = tell
+        self._machines: dict[Key, CompiledRule] = {}
+        self._laws: dict[Key, int] = {}
+        self._headers: dict[int, CompiledRulebook] = {}
+
+    def sides(
+        self, rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
+    ) -> list[dict[str, Side]]:
+        """For each rulebook the chosen ones of its rules by name, each for the step it names.
+
+        Raises RulecError if one cannot be compiled.
+        """
+        found = []
+        for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True)):
+            keys = {name: _key(rule, book) for name, rule in chosen.items()}
+            missing = {key: chosen[name] for name, key in keys.items() if key not in self._machines}
+            header = compile_rulebook(replace(book, rules=tuple(missing.values())))
+            self._machines.update(zip(missing, header.rules, strict=True))
+            self._tell(number + 1)
+            found.append(
+                {
+                    name: Side(
+                        replace(header, rules=()),
+                        book.facts,
+                        _named(self._machines[key], chosen[name]),
+                        self._laws.setdefault((key, book.facts), len(self._laws)),
+                    )
+                    for name, key in keys.items()
+                }
+            )
+        return found
+
+
+def _key(rule: Rule, book: Rulebook) -> Key:
+    """What a rule's machine depends on."""
+    read = dict.fromkeys(names_in(rule.formula))
+    return (
+        rule.formula,
+        rule.variables,
+        rule.step_s if speaks_of_seconds(rule.formula) else None,
+        tuple(book.vocabulary.declarations[name] for name in read),
+        book.semantics,
+        book.facts,
+    )
+
+
+def _named(compiled: CompiledRule, rule: Rule) -> CompiledRule:
+    return replace(
+        compiled,
+        name=rule.name,
+        strength=rule.strength,
+        cite=rule.cite,
+        says=rule.says,
+        level=rule.level,
+        weight=rule.weight,
+        source=rule.source,
+        certainty=rule.certainty,
+        book=rule.book,
+    )
+
+
+def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
+    """The rules for traces of one step: the given one, else one that divides those of all."""
+    listed = list(rules)
+    steps = [rule.step_s for rule in listed if speaks_of_seconds(rule.formula)]
+    if step_s is None and steps:
+        whole = lcm(*(step.denominator for step in steps))
+        step_s = Fraction(gcd(*(int(step * whole) for step in steps)), whole)
+    return [rule if step_s is None else replace(rule, step_s=step_s) for rule in listed]

@@ -1,0 +1,40 @@
+"""A trace as an example writes it, as far as rules read it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rulec.analysis.counterexample import read_by
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.logic.formula import Atom
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.state_view import value_in
+from rulec.trace import State, Trace
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.witnesses.state_synthesis import keys_of
+
+
+def in_words_of(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> str:
+    """``{ behind(v); beside(v) and fog }``: what is not said has its default."""
+    names = frozenset(name for rule in rules for name in read_by(rule))
+    states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
+    return f"{{ {states} }}"
+
+
+def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
+    facts = []
+    for (name, items), declaration in keys_of(vocabulary, trace.objects):
+        value = value_in(state, name, items, declaration)
+        if name not in names or value is None or value == declaration.default:
+            continue
+        if len(set(items)) < len(items):
+            continue
+        if isinstance(declaration, Enumeration):
+            facts.append(str(Atom(name, items, str(value))))
+        elif isinstance(declaration, Quantity):
+            number = number_in_words(Fraction(str(value)))
+            facts.append(f"{Atom(name, items)} = {number} {declaration.unit}")
+        else:
+            facts.append(f"{'' if value else 'not '}{Atom(name, items)}")
+    return " and ".join(facts) or "true"

@@ -1,0 +1,98 @@
+"""Questions about rulebooks that are given by name or by their sources' paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from rulec.analysis.audit.rulebook_audit import Audit, audit
+from rulec.analysis.diff.rulebook_comparison import Difference, difference, setting_pairs
+from rulec.analysis.lineage.book_lineage import read_with_inheritance
+from rulec.analysis.lint.rulebook_findings import findings
+from rulec.automata.step_compilation import AnyStep
+from rulec.book_tests.example_runs import ExampleRun, run_all
+from rulec.diagnostics import Diagnostic
+from rulec.rulebook.loader import read_rulebook
+
+
+def run_examples(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    pattern: str | None = None,
+    at: str = "",
+) -> ExampleRun:
+    """Compile a rulebook, given by name or by its source's path, and run its examples.
+
+    ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
+    wild. ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    loaded = read_rulebook(reference, search_path, at)
+    compiled = AnyStep(loaded.rulebook).at_own_steps()
+    return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+
+
+def audit_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    *,
+    run: bool = False,
+) -> Audit:
+    """What a rulebook, given by name or by its source's path, rests on.
+
+    ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
+    ``at``: as for ``load_rulebook``. Raises RulecError.
+    """
+    loaded, inherited = read_with_inheritance(reference, search_path, at)
+    warn(loaded.warnings)
+    outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
+    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    return audit(loaded.rulebook, inherited, failing)
+
+
+def compare_rulebooks(
+    first: str | Path,
+    second: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    patterns: Sequence[str] = (),
+    step_s: Fraction | None = None,
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    tell: Callable[[float], object] = lambda _: None,
+    most: int = 1,
+) -> Difference:
+    """Compare the rules of two rulebooks, given by name or by their sources' paths.
+
+    ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
+    as for ``rulec.analysis.diff.rulebook_comparison.difference``. Raises RulecError.
+    """
+    (one, ours), (other, theirs) = (
+        read_with_inheritance(each, search_path, at) for each in (first, second)
+    )
+    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
+    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
+    # What rules that were not asked for depend on is not asked for either.
+    return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
+
+
+def analyze_rulebook(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    tell: Callable[[float], object] = lambda _: None,
+) -> tuple[Diagnostic, ...]:
+    """What the automata of its rules tell about a rulebook, given by name or by its source's path.
+
+    ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
+    RulecError.
+    """
+    loaded = read_rulebook(reference, search_path, at)
+    book = loaded.rulebook
+    above = [one.span.source.name for one in loaded.books[-2:-1]]
+    # On the same side of the road: a treaty's near side is that of the party's traffic.
+    bases = [read_rulebook(Path(one), search_path, book.at, book.traffic) for one in above]
+    extends = loaded.books[-1].extends
+    return findings(book, [one.rulebook for one in bases], tell, extends.span if extends else None)

@@ -1,0 +1,142 @@
+"""The whole of rulec on one page.
+
+    source text -> syntax -> rulebook -> logic -> automata -> runtime -> verdicts
+    scenario -> partition -> graph of traces ----------------^
+
+The command line and ``import rulec`` are thin layers over these functions, of which each raises
+RulecError for what is wrong with its input. Nothing is imported before it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from rulec.automata.step_compilation import AnyStep
+    from rulec.extraction.recording_verdicts import JudgedRecording
+    from rulec.extraction.selection.requested import Wanted
+    from rulec.partition import GraphOptions, NavigationGraph
+    from rulec.planning import Maneuvers
+    from rulec.planning.trace_history import Before
+    from rulec.rulebook.model import Rulebook
+    from rulec.scenario import Scenario
+    from rulec.scenario.recorded.recording import Recording
+
+    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook | AnyStep
+    """A name, a path of a source or of a compiled file (.json), or what these lead to."""
+
+
+def machines(
+    rules: Rules,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    at: str = "",
+) -> CompiledRulebook | AnyStep:
+    """Rules as automata; if the step of traces makes a difference, for those of any step.
+
+    ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
+    than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
+    `law` line or else today.
+    """
+    if isinstance(rules, CompiledRulebook):
+        return rules
+    if isinstance(rules, str | Path) and Path(rules).suffix == ".json":
+        from rulec.automata.bundle.bundle_file import read_compiled
+
+        return read_compiled(Path(rules))
+    from rulec.automata.step_compilation import AnyStep
+
+    if isinstance(rules, AnyStep):
+        return rules
+    if not isinstance(rules, str | Path):
+        return AnyStep(rules).simplest()
+    from rulec.book_tests.example_runs import surprises
+    from rulec.rulebook.loader import read_rulebook
+
+    loaded = read_rulebook(rules, search_path, at)
+    compiled = AnyStep(loaded.rulebook)
+    warn([*loaded.warnings, *surprises(loaded.rulebook, compiled.at_own_steps)])
+    return compiled.simplest()
+
+
+def compile_rulebook(
+    reference: Rules,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    step_s: Fraction | float | None = None,
+    at: str = "",
+) -> CompiledRulebook:
+    """As ``machines``, for traces of one step.
+
+    ``step_s`` (above 0, a float meaning the decimal that is written) is that step; without it rules
+    with bounds in seconds are compiled for the step of their own examples. R0407 for a bound that
+    is no multiple of the step, R0507 if the rules have been compiled for another one.
+    """
+    from rulec.automata.thresholds import exact
+    from rulec.monitoring.verify import check_step
+
+    found = machines(reference, search_path, warn, at)
+    if not isinstance(found, CompiledRulebook):
+        return found.at_own_steps() if step_s is None else found(exact(step_s))
+    if step_s is not None:
+        for rule in found.rules:
+            check_step(rule, exact(step_s))
+    return found
+
+
+def navigation_graph(
+    scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
+) -> NavigationGraph:
+    """A scenario, given by name, by path or itself, as cells over time and what leads to what."""
+    from rulec.partition import navigation_graph as partitioned
+    from rulec.scenario import Scenario, load_scenario
+
+    scene = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
+    return partitioned(scene, **options)
+
+
+def find_maneuvers(
+    scenario: str | Path | Scenario,
+    rulebook: Rules,
+    *,
+    after: Before | None = None,
+    **options: Unpack[GraphOptions],
+) -> Maneuvers:
+    """Algorithm 1 of the paper, counting instead of enumerating.
+
+    ``after``: what was before, up to one step before the scenario begins: a trace, a ``Monitor``
+    that has taken one, or its snapshot. Without a ``partition`` it is the one whose relations the
+    rulebook reads.
+    """
+    from rulec.planning import judged, partition_for
+
+    rules = machines(rulebook)
+    source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+    options["partition"] = partition_for(source, options.get("partition"))
+    graph = navigation_graph(scenario, **options)
+    return judged(graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step), after)
+
+
+def judge_recording(
+    recording: str | Path | Recording,
+    rulebook: Rules,
+    wanted: Wanted | None = None,
+    net: str | Path | None = None,
+) -> JudgedRecording:
+    """What the vehicles of recorded traffic did, judged; ``net`` is for SUMO's data."""
+    from rulec.extraction.recording_verdicts import JudgedRecording
+    from rulec.extraction.selection.requested import Wanted
+    from rulec.scenario.recording_files import read_recording
+
+    file = recording if isinstance(recording, str | Path) else recording.name
+    if isinstance(recording, str | Path):
+        recording = read_recording(Path(recording), None if net is None else Path(net))
+    return JudgedRecording(recording, machines(rulebook), wanted or Wanted(), str(file))

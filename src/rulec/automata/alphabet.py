@@ -1,0 +1,234 @@
+"""Which letters a rule meets: the values of what it reads.
+
+An enumeration has exactly one value, a number is on one side of each threshold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Sequence
+from fractions import Fraction
+from itertools import combinations, count, pairwise
+from math import ceil, floor, prod
+
+from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Proposition,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.vocabulary import Enumeration, Vocabulary
+
+NOT, AND, OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+
+
+def propositions_of(formula: Formula) -> tuple[Proposition, ...]:
+    """The formula's atoms and comparisons, each once, in the order of their first mention."""
+    return tuple(dict.fromkeys(atoms_of(formula)))
+
+
+def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
+    """What the formula reads, in the order in which it first mentions it.
+
+    Comparisons of the same terms read one number.
+    """
+    used: dict[tuple[object, ...], list[Proposition]] = {}
+    for one in propositions_of(formula):
+        key = one.terms if isinstance(one, Comparison) else (one.name, one.arguments)
+        used.setdefault(key, []).append(one)
+    return tuple(_read(together, vocabulary) for together in used.values())
+
+
+def _read(together: Sequence[Proposition], vocabulary: Vocabulary) -> Read | NumberRead:
+    """What propositions about the same thing read."""
+    first = together[0]
+    if isinstance(first, Comparison):
+        passed = {
+            threshold
+            for one in together
+            if isinstance(one, Comparison)
+            for threshold in _sides(one)
+            if threshold is not None
+        }
+        return NumberRead(first.terms, tuple(sorted(passed, key=_position)))
+    declaration = vocabulary.declarations[first.name]
+    if not isinstance(declaration, Enumeration):
+        return Read(first.name, first.arguments)
+    mentioned = {one.value for one in together if isinstance(one, Atom)}
+    values = tuple(value for value in declaration.values if value in mentioned)
+    return Read(first.name, first.arguments, values, others=len(values) < len(declaration.values))
+
+
+def _position(threshold: Threshold) -> tuple[object, bool]:
+    return threshold.limit, not threshold.inclusive
+
+
+def _sides(comparison: Comparison) -> tuple[Threshold | None, ...]:
+    """The thresholds that decide it: for ``=`` and ``!=`` the one below its limit, then above.
+
+    A count is a whole number, 0 or more: its thresholds are whole numbers above 0 that are passed
+    by themselves; None is a threshold that every count passes.
+    """
+    limit = comparison.limit
+    at, above = Threshold(limit, inclusive=True), Threshold(limit, inclusive=False)
+    both: list[Threshold | None] = [at, above]
+    if len(comparison.terms) == 1 and isinstance(comparison.terms[0][1], Count):
+        whole = (ceil(limit), floor(limit) + 1)
+        both = [Threshold(Fraction(n), inclusive=True) if n > 0 else None for n in whole]
+    match comparison.relation:
+        case "<" | ">=":
+            return (both[0],)
+        case "<=" | ">":
+            return (both[1],)
+        case "=" | "!=":
+            return tuple(both)
+
+
+def _digits(comparison: Comparison, read: NumberRead) -> Iterator[int]:
+    """The digits of numbers for which the comparison holds."""
+    # A number has passed as many thresholds as its digit says.
+    needed = [0 if side is None else read.thresholds.index(side) + 1 for side in _sides(comparison)]
+    for digit in range(read.size):
+        passed = [digit >= least for least in needed]
+        match comparison.relation:
+            case ">=" | ">":
+                holds = passed[0]
+            case "<" | "<=":
+                holds = not passed[0]
+            case "=":
+                holds = passed[0] and not passed[1]
+            case "!=":
+                holds = not passed[0] or passed[1]
+        if holds:
+            yield digit
+
+
+def count_letters(reads: Iterable[Read | NumberRead]) -> int:
+    """How many letters these reads make."""
+    return prod(read.size for read in reads)
+
+
+def letters_with(
+    reads: Sequence[Read | NumberRead], propositions: Iterable[Proposition]
+) -> dict[Proposition, int]:
+    """For every proposition the set of letters in which it is true, as the bits of an integer.
+
+    ``reads`` are what a formula of these propositions reads.
+    """
+    total = count_letters(reads)
+    about: dict[object, tuple[Read | NumberRead, int]] = {}
+    stride = 1
+    for read in reads:
+        key = read.terms if isinstance(read, NumberRead) else (read.name, read.variables)
+        about[key] = read, stride
+        stride *= read.size
+    sets: dict[Proposition, int] = {}
+    for one in propositions:
+        key = one.terms if isinstance(one, Comparison) else (one.name, one.arguments)
+        read, stride = about[key]
+        repeated = _repeat((1 << stride) - 1, stride * read.size, total)
+        sets[one] = sum(repeated << (digit * stride) for digit in _digits_with(one, read))
+    return sets
+
+
+def _digits_with(proposition: Proposition, read: Read | NumberRead) -> tuple[int, ...]:
+    match proposition, read:
+        case Comparison(), NumberRead():
+            return tuple(_digits(proposition, read))
+        case Atom(value=str(value)), Read():
+            return (read.values.index(value),)
+    return (1,)
+
+
+def _repeat(pattern: int, period: int, total: int) -> int:
+    """``pattern`` once every ``period`` bits, up to ``total`` bits, a multiple of the period."""
+    return pattern * (((1 << total) - 1) // ((1 << period) - 1))
+
+
+def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposition]) -> Formula:
+    """What is known of these propositions at any instant, whatever the trace.
+
+    Of an enumeration's values exactly one is true; of comparisons of one number those that it
+    passes.
+    """
+    facts: list[Formula] = []
+    for read in reads:
+        if isinstance(read, NumberRead):
+            about = [one for one in propositions if isinstance(one, Comparison)]
+            facts += _number_facts(read, [one for one in about if one.terms == read.terms])
+            continue
+        atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
+        facts += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
+        if atoms and not read.others:
+            facts.append(joined(OR, atoms))
+    return joined(AND, facts) if facts else Constant(True)
+
+
+def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
+    if any(one.relation in ("=", "!=") for one in comparisons):
+        yield from _each_digit(read, comparisons)
+        return
+    # Comparisons with one threshold form a chain: who passes a later one has passed the earlier.
+    passing: list[tuple[int, Formula]] = []
+    for one in comparisons:
+        (side,) = _sides(one)
+        passed = one if one.relation in (">=", ">") else Unary(NOT, one)
+        passing.append((-1 if side is None else read.thresholds.index(side), passed))
+    passing.sort(key=lambda each: each[0])
+    yield from (passed for place, passed in passing if place < 0)
+    for (place, earlier), (next_place, later) in pairwise(passing):
+        if place >= 0:
+            same = BinaryOperator.IFF if place == next_place else BinaryOperator.IMPLIES
+            yield Binary(same, later, earlier)
+
+
+def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
+    """One of the digits, with all that holds there."""
+    true_at = [set(_digits(one, read)) for one in comparisons]
+    cases: dict[tuple[bool, ...], Formula] = {}
+    for digit in range(read.size):
+        values = tuple(digit in digits for digits in true_at)
+        cases[values] = joined(
+            AND,
+            [
+                one if value else Unary(NOT, one)
+                for one, value in zip(comparisons, values, strict=True)
+            ],
+        )
+    if len(cases) < 1 << len(comparisons):
+        yield joined(OR, list(cases.values()))
+
+
+def joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
+    """The formulas, one at least, under one operator, as a tree no deeper than it has to be."""
+    if len(formulas) == 1:
+        return formulas[0]
+    half = len(formulas) // 2
+    left, right = joined(operator, formulas[:half]), joined(operator, formulas[half:])
+    return Binary(operator, left, right)
+
+
+def names_of(propositions: Iterable[Proposition]) -> dict[Proposition, str]:
+    """A name for each: its text, told apart from earlier ones."""
+    names: dict[Proposition, str] = {}
+    taken: set[str] = set()
+    for one in dict.fromkeys(propositions):
+        names[one] = fresh_name(str(one) or "comparison", taken)
+        taken.add(names[one])
+    return names
+
+
+def fresh_name(text: str, taken: Container[str]) -> str:
+    """The text itself, or with the first number, from 2 on, that makes a new name of it."""
+    name = text
+    numbers = count(2)
+    while name in taken:
+        name = f"{text} ({next(numbers)})"
+    return name

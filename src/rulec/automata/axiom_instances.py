@@ -1,0 +1,168 @@
+"""What the facts of a rulebook say of the objects that a rule speaks of.
+
+A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
+that they fit. Facts that count are no part of this: how many objects there are, and which, is
+another matter in every state, so traces alone can tell (``rulec.monitoring.axioms``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.alphabet import (
+    AND,
+    OR,
+    count_letters,
+    joined,
+    knowledge,
+    letters_with,
+    propositions_of,
+    reads_of,
+)
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Proposition,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.logic.renaming import renamed
+from rulec.rulebook.model import Fact, Variable
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.object_choices import choices
+
+
+@dataclass(frozen=True, slots=True)
+class FactInstance:
+    """A fact, said of a rule's variables: ``variables`` are those in the places of its own."""
+
+    fact: Fact
+    variables: tuple[str, ...]
+    formula: Formula
+
+
+def fact_instances(
+    variables: Sequence[Variable], facts: Iterable[Fact], vocabulary: Vocabulary
+) -> tuple[FactInstance, ...]:
+    """Every fact in every way to say it of distinct variables of its types, or of subtypes.
+
+    Facts without variables are said once, facts that count are left out.
+    """
+    types = {variable.name: variable.type for variable in variables}
+    return tuple(
+        FactInstance(fact, chosen, renamed(fact.formula, dict(zip(own, chosen, strict=True))))
+        for fact in facts
+        if not counts(fact.formula)
+        for own in [[variable.name for variable in fact.variables]]
+        for chosen in choices([variable.type for variable in fact.variables], types, vocabulary)
+    )
+
+
+def counts(formula: Formula) -> bool:
+    """Does it speak of how many objects there are, or whether there are some?"""
+    return any(
+        isinstance(term, Count)
+        for one in atoms_of(formula)
+        if isinstance(one, Comparison)
+        for _, term in one.terms
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FactGroup:
+    """Instances of facts that have to do with each other.
+
+    ``natural`` is what is known, besides, of all that they speak of, in their propositions and
+    those of a rule.
+    """
+
+    natural: Formula
+    instances: tuple[FactInstance, ...]
+
+    @property
+    def known(self) -> Formula:
+        """All of it."""
+        return joined(AND, [self.natural, *(one.formula for one in self.instances)])
+
+
+def fact_groups(
+    propositions: Iterable[Proposition], instances: Iterable[FactInstance], vocabulary: Vocabulary
+) -> tuple[FactGroup, ...]:
+    """The facts in groups that do not bear on each other, for a rule of these propositions."""
+    every = tuple(propositions)
+    groups = []
+    for group in linked(instances):
+        about = _subjects(group)
+        touched = [one for one in every if _subject(one) in about]
+        natural = _natural([*touched, *(one.formula for one in group)], vocabulary)
+        groups.append(FactGroup(natural, group))
+    return tuple(groups)
+
+
+def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
+    """What is known of all propositions of some formulas without any facts."""
+    if not formulas:
+        return Constant(True)
+    spoken = joined(AND, formulas)
+    return knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
+
+
+def linked(instances: Iterable[FactInstance]) -> Iterator[tuple[FactInstance, ...]]:
+    """The instances in groups that have nothing to do with each other."""
+    groups: list[tuple[set[object], list[FactInstance]]] = []
+    for one in instances:
+        about, members = _subjects([one]), [one]
+        for group in [group for group in groups if group[0] & about]:
+            groups.remove(group)
+            about |= group[0]
+            members = [*group[1], *members]
+        groups.append((about, members))
+    for _, members in groups:
+        yield tuple(members)
+
+
+def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[Formula]) -> int:
+    """The letters of these reads in which all that is known holds, as the bits of an integer.
+
+    ``known`` speaks of what is read and of one state, without temporal operators.
+    """
+    everything = (1 << count_letters(reads)) - 1
+    sets = letters_with(reads, {atom for one in known for atom in atoms_of(one)})
+    letters = everything
+    for one in known:
+        letters &= _letters_where(one, sets, everything)
+    return letters
+
+
+def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything: int) -> int:
+    match formula:
+        case Atom() | Comparison():
+            return sets[formula]
+        case Constant(value):
+            return everything if value else 0
+        case Unary(UnaryOperator.NOT, operand):
+            return everything & ~_letters_where(operand, sets, everything)
+        case Binary(operator, left, right):
+            first = _letters_where(left, sets, everything)
+            second = _letters_where(right, sets, everything)
+            if operator is AND:
+                return first & second
+            if operator is OR:
+                return first | second
+    raise TypeError("what is known is said by `not`, `and` and `or`")
+
+
+def _subjects(instances: Iterable[FactInstance]) -> set[object]:
+    return {_subject(atom) for one in instances for atom in atoms_of(one.formula)}
+
+
+def _subject(one: Proposition) -> object:
+    """What has a value by which a proposition is true or false."""
+    return one.terms if isinstance(one, Comparison) else (one.name, one.arguments)

@@ -1,0 +1,98 @@
+"""Does a compiled rule's formula speak of what its vocabulary and its variables supply?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+
+from rulec.logic.bounds import BOOLEAN
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Quantity,
+    Same,
+    Term,
+    Unary,
+)
+from rulec.logic.printing import term_in_words
+from rulec.vocabulary import Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Quantity as DeclaredQuantity
+
+
+def problem_in(formula: Formula, vocabulary: Vocabulary, variables: Set[str]) -> str | None:
+    """What is wrong first, as a clause that goes on from the rule's name; None if nothing is."""
+    return next(_problems(formula, vocabulary, variables, counted=False), None)
+
+
+def _problems(
+    formula: Formula, vocabulary: Vocabulary, variables: Set[str], *, counted: bool
+) -> Iterator[str]:
+    """Of a formula, in the body of a count if ``counted``."""
+    waiting = [formula]
+    while waiting:
+        match waiting.pop():
+            case Atom() as atom:
+                if not _is_known(atom, vocabulary, variables):
+                    yield f"speaks of `{atom}`, which its vocabulary lacks"
+            case Comparison(terms) as comparison:
+                if not _is_normal(comparison):
+                    yield "compares numbers that are not in their normal form"
+                for _, term in terms:
+                    yield from _problems_of_term(term, vocabulary, variables)
+            case Same(left, right):
+                if not counted or not {left, right} <= variables:
+                    yield "asks for the same object where there is none to compare"
+            case Unary(operator, operand):
+                if counted and operator not in BOOLEAN:
+                    yield "counts objects by what they do at other instants"
+                waiting.append(operand)
+            case Binary(operator, left, right):
+                if counted and operator not in BOOLEAN:
+                    yield "counts objects by what they do at other instants"
+                waiting += [right, left]
+            case Constant():
+                pass
+
+
+def _is_known(atom: Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
+    declaration = vocabulary.declarations.get(atom.name)
+    match declaration:
+        case Enumeration(values=values):
+            known = atom.value in values
+        case Signal():
+            known = atom.value is None
+        case _:
+            return False
+    about = len(declaration.parameters) == len(atom.arguments)
+    return known and about and set(atom.arguments) <= variables
+
+
+def _is_normal(comparison: Comparison) -> bool:
+    coefficients = [coefficient for coefficient, _ in comparison.terms]
+    texts = [term_in_words(term) for _, term in comparison.terms]
+    return (
+        len(texts) > 0
+        and coefficients[0] == 1
+        and 0 not in coefficients
+        and texts == sorted(texts)
+        and len({term for _, term in comparison.terms}) == len(texts)
+    )
+
+
+def _problems_of_term(term: Term, vocabulary: Vocabulary, variables: Set[str]) -> Iterator[str]:
+    match term:
+        case Quantity(name, arguments):
+            declaration = vocabulary.declarations.get(name)
+            if (
+                not isinstance(declaration, DeclaredQuantity)
+                or len(declaration.parameters) != len(arguments)
+                or not set(arguments) <= variables
+            ):
+                yield f"speaks of the quantity `{term_in_words(term)}`, which its vocabulary lacks"
+        case Count(variable, type_name, body):
+            if type_name not in vocabulary.types:
+                yield f"counts objects of the unknown type `{type_name}`"
+            yield from _problems(body, vocabulary, variables | {variable}, counted=True)

@@ -1,0 +1,164 @@
+"""What leads from each state of a machine to each, in few conditions.
+
+A machine's letters are many; those that lead one way are covered by few cubes. A cube allows some
+digits of every read and is all letters whose digits it allows: the two-level minimisation of
+multiple-valued logic, as in Rudell, Sangiovanni-Vincentelli, "Multiple-valued minimization for PLA
+optimization" (1987), greedily.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+
+Cube = tuple[frozenset[int], ...]
+"""For each of a machine's reads the digits that are allowed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """The steps from ``source`` to ``target`` after which an ending trace gets one verdict.
+
+    They are the letters of ``cubes`` together, but for those that no state can have. Of the edges
+    that leave a state one may be ``otherwise``: the one that is described best as what the others
+    are not.
+    """
+
+    source: int
+    target: int
+    accepted: bool
+    cubes: tuple[Cube, ...]
+    otherwise: bool = False
+
+
+def edges(machine: Machine) -> tuple[Edge, ...]:
+    """All edges but those of the states in which the verdict is final, state by state."""
+    cover = _Covers(machine)
+    found: list[Edge] = []
+    for source, row in enumerate(machine.following):
+        if source in (machine.dead, machine.safe):
+            continue
+        onsets: dict[tuple[int, bool], int] = {}
+        for symbol, target in enumerate(row):
+            key = (target, machine.accepting[source][symbol])
+            onsets[key] = onsets.get(key, 0) | cover.of_class[symbol]
+        leaving = [
+            Edge(source, target, accepted, cover.cubes(onset))
+            for (target, accepted), onset in sorted(onsets.items())
+        ]
+        found += _with_otherwise(leaving, cover.sizes)
+    return tuple(found)
+
+
+def literals(cubes: Sequence[Cube], sizes: Sequence[int]) -> int:
+    """How many reads the cubes restrict, together: how long they are to say."""
+    return sum(
+        len(allowed) < size for cube in cubes for allowed, size in zip(cube, sizes, strict=True)
+    )
+
+
+def _with_otherwise(leaving: Sequence[Edge], sizes: Sequence[int]) -> Iterator[Edge]:
+    lengths = [literals(edge.cubes, sizes) for edge in leaving]
+    longest = lengths.index(max(lengths))
+    for number, edge in enumerate(leaving):
+        last_resort = number == longest and len(leaving) > 1 and lengths[number] > 1
+        yield Edge(edge.source, edge.target, edge.accepted, edge.cubes, last_resort)
+
+
+class _Covers:
+    """Sets of a machine's letters as the bits of integers, and their smallest covers."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.sizes = [read.size for read in machine.reads]
+        total = len(machine.letters)
+        self._everything = (1 << total) - 1
+        self._digits: list[list[int]] = []
+        stride = 1
+        for size in self.sizes:
+            ones = ((1 << stride) - 1) * (self._everything // ((1 << (stride * size)) - 1))
+            self._digits.append([ones << (digit * stride) for digit in range(size)])
+            stride *= size
+        n_classes = len(machine.following[0])
+        members: list[list[int]] = [[] for _ in range(n_classes)]
+        impossible: list[int] = []
+        for letter, symbol in enumerate(machine.letters):
+            (impossible if symbol == IMPOSSIBLE else members[symbol]).append(letter)
+        self.of_class = [_bits(letters, total) for letters in members]
+        self._free = _bits(impossible, total)
+        """No matter whether these are covered."""
+        self._known: dict[int, tuple[Cube, ...]] = {}
+        places = list(range(len(self.sizes)))
+        turns = [places[n:] + places[:n] for n in places] or [places]
+        self._orders = [*turns, *(turn[::-1] for turn in turns)]
+
+    def cubes(self, onset: int) -> tuple[Cube, ...]:
+        """Cubes whose union is ``onset`` and impossible letters at most, none of them needless."""
+        if onset not in self._known:
+            chosen: dict[Cube, int] = {}
+            remaining = onset
+            while remaining:
+                letter = (remaining & -remaining).bit_length() - 1
+                primes = {self._prime(letter, onset | self._free, order) for order in self._orders}
+                best = max(primes, key=lambda cube: self._worth(cube, remaining))
+                chosen[best] = self._letters(best)
+                remaining &= ~chosen[best]
+            self._known[onset] = tuple(_needed(chosen, onset))
+        return self._known[onset]
+
+    def _worth(self, cube: Cube, remaining: int) -> tuple[int, int, list[list[int]]]:
+        covered = (self._letters(cube) & remaining).bit_count()
+        return covered, -literals([cube], self.sizes), [sorted(allowed) for allowed in cube]
+
+    def _letters(self, cube: Cube) -> int:
+        letters = self._everything
+        for place in range(len(cube)):
+            letters &= self._allowed(cube, place)
+        return letters
+
+    def _allowed(self, cube: Sequence[frozenset[int]], place: int) -> int:
+        if len(cube[place]) == self.sizes[place]:
+            return self._everything
+        letters = 0
+        for digit in cube[place]:
+            letters |= self._digits[place][digit]
+        return letters
+
+    def _prime(self, letter: int, onset: int, order: Sequence[int]) -> Cube:
+        """A largest cube within ``onset`` around a letter, widened read by read in this order."""
+        cube: list[frozenset[int]] = []
+        for size in self.sizes:
+            letter, digit = divmod(letter, size)
+            cube.append(frozenset([digit]))
+        for place in order:
+            others = self._everything
+            for other in range(len(cube)):
+                if other != place:
+                    others &= self._allowed(cube, other)
+            cube[place] = frozenset(
+                digit
+                for digit, letters in enumerate(self._digits[place])
+                if not others & letters & ~onset
+            )
+        return tuple(cube)
+
+
+def _bits(letters: Sequence[int], total: int) -> int:
+    row = bytearray(total // 8 + 1)
+    for letter in letters:
+        row[letter // 8] |= 1 << (letter % 8)
+    return int.from_bytes(row, "little")
+
+
+def _needed(chosen: dict[Cube, int], onset: int) -> Iterator[Cube]:
+    """The cubes without those that the others cover, the last chosen tried first."""
+    kept = dict(chosen)
+    for cube in reversed(chosen):
+        others = 0
+        for other, letters in kept.items():
+            if other != cube:
+                others |= letters
+        if not chosen[cube] & onset & ~others:
+            del kept[cube]
+    yield from kept

@@ -1,0 +1,81 @@
+"""Numbers as they are written, and which of a rule's thresholds they pass."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import inf, nextafter
+
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.logic.formula import Quantity
+from rulec.logic.free_names import names_in, variables_of
+from rulec.trace import Value
+
+EXACT_IN_FLOATS = 1 << 53
+"""Whole numbers up to this size are floats, too, and their decimals are themselves."""
+
+
+def exact(value: Fraction | float) -> Fraction:
+    """The number that is written: 0.1 is a tenth, not the binary fraction next to it."""
+    return _decimal(value) if isinstance(value, float) else Fraction(value)
+
+
+@lru_cache(maxsize=1 << 14)
+def _decimal(value: float) -> Fraction:
+    # A subclass, such as numpy's, may have its own idea of repr.
+    return Fraction(float.__repr__(value))
+
+
+def floor_of(threshold: Threshold) -> float:
+    """The smallest float whose decimal passes a threshold; infinity if no finite one does.
+
+    Decimals of floats are in the order of the floats, so these and no others are at least it.
+    """
+    try:
+        found = float(threshold.limit)
+    except OverflowError:
+        return inf if threshold.limit > 0 else -inf
+    # The nearest float. The decimals of the others are nearest to those, so they are beyond the
+    # limit on their side of it; that of this one may be on either.
+    number = _decimal(found)
+    passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
+    return found if passes else nextafter(found, inf)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scale:
+    """A number that a rule reads, made ready for many states.
+
+    ``variables`` and ``names`` are those that it depends on. ``quantity`` is the quantity that it
+    is, None if it is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
+    """
+
+    read: NumberRead
+    variables: tuple[str, ...]
+    names: tuple[str, ...]
+    quantity: Quantity | None
+    floors: tuple[float, ...]
+
+    def digit(self, value: Value) -> int:
+        """The digit of the quantity's value."""
+        assert not isinstance(value, str), "check_state has refused it"
+        if isinstance(value, float) or -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS:
+            return bisect_right(self.floors, value)
+        return self.read.digit(Fraction(value))
+
+
+@lru_cache(maxsize=1 << 12)
+def scale(read: NumberRead) -> Scale:
+    """What ``Scale`` says of a read."""
+    variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
+    names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
+    quantity = None
+    if len(read.terms) == 1:
+        ((coefficient, term),) = read.terms
+        if coefficient == 1 and isinstance(term, Quantity):
+            quantity = term
+    return Scale(
+        read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))
+    )

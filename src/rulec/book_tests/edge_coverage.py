@@ -1,0 +1,180 @@
+"""How much of a rule its examples show: which edges they take, which atoms they see both ways."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.alphabet import letters_with
+from rulec.automata.axiom_instances import fact_instances
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+from rulec.book_tests.example_runs import ExampleRun, Outcome, example_trace, own_names
+from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
+from rulec.logic.kleene import holds
+from rulec.monitoring.state_view import Moment
+from rulec.monitoring.verify import columns_of
+from rulec.rulebook.model import Rule
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.witnesses.coverage_witness import Wanted, possible_letters, truths, wanted
+
+
+@dataclass(frozen=True, slots=True)
+class MissingEdge:
+    """An edge of a rule's machine that no example takes, with a shortest example that would.
+
+    The edge leads from state ``source`` to ``target``; ``accepted`` is what the rule does with the
+    example.
+    """
+
+    source: int
+    target: int
+    states: tuple[Wanted, ...]
+    accepted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class RuleCoverage:
+    """What a rule's examples take and see.
+
+    An edge is a state of its machine and a class of letters; the edges of the two states in which
+    the verdict is settled for good do not count, nor does what no state of the world can be. The
+    values of an atom or a comparison are true and false, as far as it can have them.
+    """
+
+    rule: str
+    n_edges: int
+    missing_edges: tuple[MissingEdge, ...]
+    n_values: int
+    missing_values: tuple[tuple[Proposition, bool], ...]
+
+    @property
+    def total(self) -> int:
+        """Edges and values of atoms, together."""
+        return self.n_edges + self.n_values
+
+    @property
+    def covered(self) -> int:
+        """Those of them that are taken or seen."""
+        return self.total - len(self.missing_edges) - len(self.missing_values)
+
+
+def percent(rules: Iterable[RuleCoverage]) -> float:
+    """The part of all edges and values that is covered, from 0 to 100; 100 if there are none."""
+    rules = list(rules)
+    total = sum(one.total for one in rules)
+    return 100.0 * sum(one.covered for one in rules) / total if total else 100.0
+
+
+def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
+    """The coverage of every rule by the examples that were run.
+
+    Where a pattern chose among the examples, rules without a chosen one are left out.
+    """
+    found = []
+    for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
+        outcomes = [one for one in run.outcomes if one.rule is rule]
+        if outcomes or run.pattern is None:
+            known = fact_instances(rule.variables, run.rulebook.facts, run.rulebook.vocabulary)
+            facts = [one.formula for one in known]
+            found.append(_coverage(rule, compiled, outcomes, run.compiled, facts))
+    return tuple(found)
+
+
+def _coverage(
+    rule: Rule,
+    compiled: CompiledRule,
+    outcomes: Sequence[Outcome],
+    rulebook: CompiledRulebook,
+    facts: Sequence[Formula],
+) -> RuleCoverage:
+    machine, vocabulary = compiled.machine, rulebook.vocabulary
+    letters = possible_letters(machine)
+    paths = _shortest_paths(machine, letters)
+    edges = list(_edges(machine, paths, letters))
+    taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
+    states = {
+        symbol: wanted(letter, machine, rule.formula, vocabulary, facts)
+        for symbol, letter in letters.items()
+    }
+    missing_edges = tuple(
+        MissingEdge(
+            source,
+            machine.following[source][symbol],
+            tuple(states[one] for one in (*paths[source], symbol)),
+            machine.accepting[source][symbol],
+        )
+        for source, symbol in edges
+        if (source, symbol) not in taken
+    )
+    values = [
+        (one, value)
+        for one in dict.fromkeys(atoms_of(rule.formula))
+        for value in _possible(one, machine, vocabulary)
+    ]
+    seen = {
+        (one, holds(one, own_names(rule), moment))
+        for moment in _moments(rule, outcomes, rulebook)
+        for one, _ in values
+    }
+    missing_values = tuple(value for value in values if value not in seen)
+    return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
+
+
+def _moments(
+    rule: Rule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+) -> Iterator[Moment]:
+    for one in outcomes:
+        trace = example_trace(rule, one.example)
+        columns = columns_of(trace, rulebook)
+        yield from (columns.moment(number) for number in range(len(trace.states)))
+
+
+def _edges(
+    machine: Machine, reachable: Container[int], symbols: Iterable[int]
+) -> Iterator[tuple[int, int]]:
+    for state in range(len(machine.following)):
+        if state not in (machine.dead, machine.safe) and state in reachable:
+            for symbol in sorted(symbols):
+                yield state, symbol
+
+
+def _taken(machine: Machine, word: Sequence[int]) -> Iterator[tuple[int, int]]:
+    state = 0
+    for symbol in word:
+        yield state, symbol
+        state = machine.following[state][symbol]
+
+
+def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
+    """For every state that can be reached a shortest word of letter classes that leads to it."""
+    paths: dict[int, tuple[int, ...]] = {0: ()}
+    waiting = [0]
+    for state in waiting:
+        for symbol in sorted(symbols):
+            target = machine.following[state][symbol]
+            if target not in paths:
+                paths[target] = (*paths[state], symbol)
+                waiting.append(target)
+    return paths
+
+
+def _possible(
+    proposition: Proposition, machine: Machine, vocabulary: Vocabulary
+) -> tuple[bool, ...]:
+    """The values that a proposition can have, true first."""
+    if isinstance(proposition, Comparison):
+        values = tuple(sorted(truths(proposition, machine), reverse=True))
+    else:
+        declaration = vocabulary.declarations[proposition.name]
+        only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
+        values = (True,) if only else (True, False)
+    if IMPOSSIBLE not in machine.letters:
+        return values
+    true = letters_with(machine.reads, [proposition])[proposition]
+    met = {
+        bool(true >> letter & 1)
+        for letter, symbol in enumerate(machine.letters)
+        if symbol != IMPOSSIBLE
+    }
+    return tuple(value for value in values if value in met)

@@ -1,0 +1,177 @@
+"""A rulebook's own examples, judged by its machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.diagnostics import Diagnostic, Label, RulecError
+from rulec.diagnostics.diagnostic import at
+from rulec.logic.bounds import speaks_of_seconds
+from rulec.monitoring.axioms import ImpossibleStateError, check_counting_facts
+from rulec.monitoring.verify import columns_of, run
+from rulec.rulebook.model import Example, Rule, Rulebook
+from rulec.trace import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How an example came out.
+
+    ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
+    the rule's machine. ``lost_after`` is the first state, from 0, after which no continuation could
+    save the rule; None if there is none. ``ends``: nothing comes after an example's last state,
+    rather than that state again and again.
+    """
+
+    rule: Rule
+    example: Example
+    number: int
+    word: tuple[int, ...]
+    accepted: bool
+    lost_after: int | None
+    ends: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """Does the rule do what the example says?"""
+        return self.accepted == self.example.accepts
+
+    @property
+    def name(self) -> str:
+        """The example's label, or its number."""
+        return self.example.label or str(self.number)
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleRun:
+    """A rulebook with its machines, the warnings about it, and how its examples came out.
+
+    ``pattern`` is what chose among them; None if all were run.
+    """
+
+    rulebook: Rulebook
+    compiled: CompiledRulebook
+    outcomes: tuple[Outcome, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    pattern: str | None = None
+
+
+def run_all(
+    rulebook: Rulebook,
+    compiled: CompiledRulebook,
+    warnings: tuple[Diagnostic, ...] = (),
+    pattern: str | None = None,
+) -> ExampleRun:
+    """Run the examples of all rules, or those whose ``RULE`` or ``RULE/LABEL`` is like a pattern.
+
+    An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
+    warnings are passed on.
+
+    Raises:
+        RulecError: R0306 if a state of an example cannot be, because of facts.
+    """
+    outcomes = tuple(
+        _outcome(rule, machine, compiled, example, number)
+        for rule, machine in zip(rulebook.rules, compiled.rules, strict=True)
+        for number, example in enumerate(rule.examples, 1)
+        if pattern is None or _is_like(pattern, rule.name, example.label or str(number))
+    )
+    return ExampleRun(rulebook, compiled, outcomes, warnings, pattern)
+
+
+def _is_like(pattern: str, rule: str, example: str) -> bool:
+    return fnmatchcase(rule, pattern) or fnmatchcase(f"{rule}/{example}", pattern)
+
+
+def _outcome(
+    rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
+) -> Outcome:
+    """The verdict for the binding that gives every variable its own name."""
+    trace = example_trace(rule, example)
+    where = "this state".format
+    columns = columns_of(trace, compiled, where)
+    last = len(trace.states) - 1
+    try:
+        check_counting_facts(compiled, last + 1, columns.moment, where, trace.place)
+        word = columns.word(machine, own_names(rule), 0, last)
+    except ImpossibleStateError as error:
+        raise _no_state(rule, example, error) from None
+    ends = compiled.semantics == "finite"
+    return Outcome(rule, example, number, word, *run(machine.machine, word), ends)
+
+
+def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:
+    (found,) = error.diagnostics
+    spans = example.state_spans
+    place = spans[error.number].place if spans else at(example.span)
+    note = f"in an example of rule `{rule.name}`"
+    return RulecError(replace(found, code="R0306", place=place, notes=(*found.notes[:1], note)))
+
+
+def example_trace(rule: Rule, example: Example) -> Trace:
+    """The example as a trace whose objects are the rule's variables and those that it adds."""
+    states = []
+    for mentioned in example.states:
+        state: dict[str, Any] = {}
+        for (name, variables), value in mentioned.items():
+            *outer, last = (name, *variables)
+            inside = state
+            for key in outer:
+                inside = inside.setdefault(key, {})
+            inside[last] = value
+        states.append(state)
+    objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
+    name, place = example.label or rule.name, at(example.span)
+    return Trace(name, float(rule.step_s), objects, tuple(states), place=place)
+
+
+def own_names(rule: Rule) -> dict[str, str]:
+    """The binding of its examples: every variable stands for the object of its own name."""
+    return {variable.name: variable.name for variable in rule.variables}
+
+
+def surprises(
+    rulebook: Rulebook, compiled: Callable[[Sequence[Rule]], CompiledRulebook]
+) -> list[Diagnostic]:
+    """The warnings about all such examples; ``compiled`` compiles rules for their examples' steps.
+
+    Raises RulecError.
+    """
+    # A rule with bounds in seconds but no examples need not fit the step that those would have.
+    rules = tuple(
+        [one for one in rulebook.rules if one.examples or not speaks_of_seconds(one.formula)]
+    )
+    outcomes = run_all(replace(rulebook, rules=rules), compiled(rules)).outcomes
+    return [surprise(one) for one in outcomes if not one.passed]
+
+
+def surprise(outcome: Outcome) -> Diagnostic:
+    """The warning (R0406) about an example that comes out otherwise than it says."""
+    rule, example = outcome.rule, outcome.example
+    name = f"`{example.label}`" if example.label else f"number {outcome.number}"
+    claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")
+    labels: tuple[Label, ...] = ()
+    notes: tuple[str, ...] = ()
+    if outcome.lost_after is not None:
+        notes = (f"the rule is beyond saving after state {outcome.lost_after}, counted from 0",)
+        if example.state_spans:
+            place = example.state_spans[outcome.lost_after].place
+            labels = (Label(place, "beyond saving after this state"),)
+    elif not outcome.accepted:
+        end = "the example did not end here"
+        if not outcome.ends:
+            end = "the last state did not go on for ever"
+        notes = (f"the rule could still be kept, if {end}",)
+    return Diagnostic(
+        "R0406",
+        f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
+        at(example.span),
+        help="either the formula or the example does not say what is meant",
+        labels=labels,
+        notes=notes,
+        severity="warning",
+    )

@@ -1,0 +1,71 @@
+"""Do the examples of a rule exercise it: is it seen to be kept, and seen to be broken?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rulec.automata.mealy_monitor import Machine
+from rulec.book_tests.example_runs import ExampleRun, Outcome
+from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.diagnostic import at
+from rulec.rulebook.model import Rule
+from rulec.witnesses.coverage_witness import possible_letters
+
+
+def unexercised(run: ExampleRun) -> Iterator[Diagnostic]:
+    """A warning (R0408) for each rule whose examples show one verdict only, though it has both.
+
+    Rules with an example that fails are left out, for that has to be mended first. So is every rule
+    where a pattern chose among the examples.
+    """
+    if run.pattern is not None:
+        return
+    of_rule: dict[int, list[Outcome]] = {id(rule): [] for rule in run.rulebook.rules}
+    for one in run.outcomes:
+        of_rule[id(one.rule)].append(one)
+    for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
+        outcomes = of_rule[id(rule)]
+        if not all(one.passed for one in outcomes):
+            continue
+        shown = {one.accepted for one in outcomes}
+        if len(shown) < 2 and (missing := verdicts(compiled.machine) - shown):
+            yield _unexercised(rule, missing, any_examples=bool(outcomes))
+
+
+def verdicts(machine: Machine) -> set[bool]:
+    """The verdicts that a rule has for some trace: accepted (True), rejected (False), or both."""
+    symbols = sorted(possible_letters(machine))
+    found: set[bool] = set()
+    waiting = [0]
+    seen = {0}
+    for state in waiting:
+        found.update(machine.accepting[state][symbol] for symbol in symbols)
+        if len(found) == 2:
+            break
+        new = {machine.following[state][symbol] for symbol in symbols} - seen
+        seen |= new
+        waiting += sorted(new)
+    return found
+
+
+def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
+    kept, broken = True in missing, False in missing
+    if not any_examples:
+        message = f"rule `{rule.name}` has no example"
+        notes: tuple[str, ...] = ()
+    else:
+        message = f"no example {'keeps' if kept else 'breaks'} rule `{rule.name}`"
+        less = "forbade everything" if kept else "required nothing"
+        notes = (f"all of its examples would also pass if it {less}",)
+    wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
+    clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
+    return Diagnostic(
+        "R0408",
+        message,
+        at(rule.span),
+        expected=f"expected {clauses}",
+        help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
+        "whether the law agrees, you know",
+        notes=notes,
+        severity="warning",
+    )

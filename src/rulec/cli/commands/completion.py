@@ -1,0 +1,32 @@
+"""``rulec completion``: the script that makes a shell complete rulec's commands."""
+
+from __future__ import annotations
+
+import click
+
+SHELLS = ("bash", "fish", "zsh")
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(SHELLS))
+@click.pass_context
+def command(context: click.Context, shell: str) -> None:
+    """Print the script for SHELL: bash (4.4 or later), zsh or fish.
+
+    \b
+    bash:  rulec completion bash > ~/.local/share/bash-completion/completions/rulec
+    zsh:   rulec completion zsh > "${fpath[1]}/_rulec"
+    fish:  rulec completion fish > ~/.config/fish/completions/rulec.fish
+    """  # noqa: D301 - click reads the backspace
+    from click.shell_completion import get_completion_class
+
+    from rulec.report.text.console import print_result
+
+    kind = get_completion_class(shell)
+    assert kind is not None, "these shells are click's own"
+    program = kind(context.find_root().command, {}, "rulec", "_RULEC_COMPLETE")
+    # Not `source`, which for bash asks the bash of this machine for its version first.
+    script = (program.source_template % program.source_vars()).strip()
+    # Of an answer such as `plain,check<tab>Check rulebooks, and …` only the first comma separates;
+    # click's script for fish drops what is behind the second.
+    print_result(script.replace('string split ","', 'string split --max 1 ","'))

@@ -1,0 +1,147 @@
+"""``rulec draw``: scenes, graphs and traces as pictures."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.commands.draw_trace import trace
+from rulec.cli.options.picture_options import picture_options, write
+from rulec.cli.options.scenario_options import chosen, graph_options
+from rulec.cli.options.shared_options import RULEBOOK_HELP, Decorated, at_option
+from rulec.cli.options.shell_completion import complete_rulebooks
+
+if TYPE_CHECKING:
+    from rulec.partition import NavigationGraph
+    from rulec.planning import Maneuvers
+    from rulec.planning.ranking.cheapest import Maneuver
+
+    Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
+
+
+def _judging_options(function: Decorated) -> Decorated:
+    for decorate in (
+        at_option,
+        click.option(
+            "--maneuver",
+            "number",
+            type=click.IntRange(min=1),
+            metavar="N",
+            help="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
+        ),
+        click.option(
+            "-r",
+            "--rulebook",
+            metavar="R",
+            help=RULEBOOK_HELP + " Left out, nothing is judged.",
+            shell_complete=complete_rulebooks,
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+@click.group()
+def command() -> None:
+    """Draw the scene over time, the navigation graph, or a trace: as SVG, PNG or a page (HTML).
+
+    SVG and HTML need nothing else and come in light and dark, as the reader prefers; PNG takes
+    `pip install 'rulec[pictures]'`.
+    """
+
+
+command.add_command(trace)
+
+
+@command.command()
+@graph_options
+@_judging_options
+@click.option(
+    "--layer",
+    "layers",
+    multiple=True,
+    type=click.IntRange(min=0),
+    metavar="P",
+    help="Draw layer P alone, counted from 0; may be repeated.  [default: all]",
+)
+@picture_options
+def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: Any) -> None:
+    """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
+
+    With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
+    its envelope. A page (HTML) has a slider for the time.
+    """
+    from rulec.report.pictures.drawing.picture_formats import Drawing
+    from rulec.report.pictures.picture_titles import scene_title
+    from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
+
+    graph, found, maneuver = _judged(**options)
+    last = len(graph.layers) - 1
+    if layers and max(layers) > last:
+        raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
+    chosen = sorted(set(layers)) or range(last + 1)
+    title = scene_title(graph, found, maneuver, options["number"] or 1)
+    pictures = scene_pictures(graph, chosen, maneuver)
+    write(Drawing(title, pictures, scene_legend(graph, maneuver)), output, form)
+
+
+@command.command()
+@graph_options
+@_judging_options
+@picture_options
+def graph(output: Path, form: str | None, **options: Any) -> None:
+    """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
+
+    With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
+    cheapest satisfying maneuver is shown.
+    """
+    from rulec.planning.product.accepted_edges import passages
+    from rulec.planning.product.graph_product import explore
+    from rulec.planning.product.node_transformers import effects
+    from rulec.report.pictures.drawing.picture_formats import Drawing
+    from rulec.report.pictures.graph_picture import graph_picture
+    from rulec.report.pictures.picture_titles import graph_title
+
+    cells, found, maneuver = _judged(**options)
+    hard = found.hard if found else effects(cells.trace_graph(), ())
+    product = found.product if found else explore(hard)
+    ways = passages(hard, product)
+    picture = graph_picture(cells, ways, maneuver, judged=found is not None)
+    title = graph_title(cells, found, product.accepted)
+    write(Drawing(title, [picture]), output, form)
+
+
+def _judged(
+    scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
+) -> Judged:
+    """The graph, with a rulebook its maneuvers, and the one that is to be shown."""
+    from itertools import islice
+
+    from rulec.api.workflow import find_maneuvers, machines, navigation_graph
+    from rulec.planning.ranking.cheapest import cheapest
+    from rulec.report.text.console import print_diagnostics
+    from rulec.report.text.count_text import shown_count
+    from rulec.scenario import load_scenario
+    from rulec.settings import search_path
+
+    if rulebook is None:
+        if number is not None:
+            raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
+        scene = load_scenario(scenario, chosen(options))
+        options["partition"] = options["partition"] or "paper"
+        return navigation_graph(scene, **options), None, None
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    scene = load_scenario(scenario, chosen(options))
+    found = find_maneuvers(scene, rules, **options)
+    wanted = number or 1
+    maneuver = None
+    if wanted <= min(found.satisfying, sys.maxsize):
+        maneuver = next(islice(cheapest(found.product), wanted - 1, None))
+    if maneuver is None and number is not None:
+        raise click.UsageError(
+            f"There is no maneuver {number}: {shown_count(found.satisfying)} satisfy the rulebook."
+        )
+    return found.graph, found, maneuver

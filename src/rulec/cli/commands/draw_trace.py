@@ -1,0 +1,108 @@
+"""``rulec draw trace``: a trace as a picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.options.picture_options import picture_options, write
+from rulec.cli.options.shared_options import at_option, rulebook_option
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.trace import Trace
+
+
+@click.command()
+@click.argument("file")
+@rulebook_option
+@click.option(
+    "--trace", "wanted", metavar="ID", help="Draw the trace with this id.  [default: the first]"
+)
+@click.option(
+    "--rule",
+    "patterns",
+    multiple=True,
+    metavar="PATTERN",
+    help="Only what rules like PATTERN read; `*` and `?` are wild. May be given several times.",
+)
+@click.option(
+    "--object",
+    "objects",
+    multiple=True,
+    metavar="ID",
+    help="Of the objects only this one. May be given several times.",
+)
+@at_option
+@picture_options
+def trace(
+    file: str,
+    rulebook: str,
+    wanted: str | None,
+    patterns: tuple[str, ...],
+    objects: tuple[str, ...],
+    at: str,
+    output: Path,
+    form: str | None,
+) -> None:
+    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what a rulebook reads in it, over time.
+
+    Violations are marked where they are decided, with the rule and its article.
+    """
+    from rulec.api.workflow import machines
+    from rulec.diagnostics import named
+    from rulec.monitoring.verify import made_for, verify
+    from rulec.report.pictures.drawing.picture_formats import Drawing
+    from rulec.report.pictures.picture_titles import trace_title
+    from rulec.report.pictures.trace_picture import ribbon_picture
+    from rulec.report.pictures.trace_ribbon import ribbon
+    from rulec.report.text.console import print_diagnostics
+    from rulec.settings import search_path
+
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    chosen = _trace(file, wanted)
+    for item in objects:
+        if item not in chosen.objects:
+            raise click.UsageError(
+                f"trace `{chosen.id}` has no object `{item}`; it has {named(list(chosen.objects))}."
+            )
+    used = _only(made_for(chosen, rules), patterns)
+    verdict = verify(chosen, used)
+    shown = ribbon(chosen, used, verdict, objects)
+    title = trace_title(replace(verdict, violations=shown.violations), used, (*patterns, *objects))
+    write(Drawing(title, [ribbon_picture(shown, used)]), output, form)
+
+
+def _trace(file: str, wanted: str | None) -> Trace:
+    """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
+    from rulec.diagnostics import RulecError
+    from rulec.trace.formats.trace_files import read_traces
+
+    names: list[str] = []
+    for one in read_traces(file):
+        if isinstance(one, RulecError):
+            raise one
+        if wanted in (None, one.id):
+            return one
+        names.append(one.id)
+    some = ", ".join(f"`{name}`" for name in names[:5]) + (", …" if len(names) > 5 else "")
+    raise click.UsageError(f"`{file}` has no trace `{wanted}`; it has {some}.")
+
+
+def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
+    """The rulebook with the rules alone that one of the patterns matches, if there are any."""
+    from fnmatch import fnmatchcase
+
+    kept = tuple(
+        rule
+        for rule in rules.rules
+        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
+    )
+    if not kept:
+        raise click.UsageError(
+            f"{rules.name} has no rule like {' or '.join(f'`{one}`' for one in patterns)}."
+        )
+    return replace(rules, rules=kept)

@@ -1,0 +1,100 @@
+"""``rulec fmt``: rulebooks and vocabularies in their one canonical form."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+
+if TYPE_CHECKING:
+    from rulec.rulebook.files.batch_format import Formatted
+
+
+@click.command()
+@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(allow_dash=True))
+@click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
+@click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
+def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
+    """Format rulebooks and vocabularies in place.
+
+    Each PATH is a file or a folder (all .rules files in it and below it); without one it is the
+    working folder. `-` formats standard input to standard output.
+
+    A file with mistakes of spelling is left as it is, and its mistakes are shown. What is written
+    means the same and has the same comments, or nothing is written.
+
+    Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
+    formatted.
+    """
+    from rulec.report.text.console import print_aside, print_diagnostics
+    from rulec.rulebook.files.batch_format import format_files, replace_files
+    from rulec.settings import search_path
+
+    if "-" in paths:
+        if len(paths) > 1:
+            raise click.UsageError("`-` is standard input and stands alone")
+        return _standard_input(check=check, diff=diff)
+    files, refused = format_files(paths or ["."], search_path())
+    changed = [file for file in files if file.changed]
+    in_form = len(files) - len(changed)
+    if diff or check:
+        _show(changed, check=check, diff=diff)
+    else:
+        unwritten = replace_files(changed)
+        named = {one.place.file for one in unwritten if one.place is not None}
+        changed = [file for file in changed if file.name not in named]
+        refused = (*refused, *unwritten)
+    print_diagnostics(refused)
+    if changed or in_form:
+        print_aside(_summary(len(changed), in_form, would=diff or check))
+    if refused:
+        return ExitStatus.NOT_ANSWERED
+    return ExitStatus.FOUND if changed and (diff or check) else ExitStatus.OK
+
+
+def _standard_input(*, check: bool, diff: bool) -> int:
+    from rulec.files import MAX_SOURCE_BYTES
+    from rulec.rulebook.files.batch_format import formatted
+
+    file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
+    if not (check or diff):
+        # Not as text: in the terminal's encoding it might be another one.
+        sys.stdout.buffer.write(file.after)
+        return ExitStatus.OK
+    if not file.changed:
+        return ExitStatus.OK
+    _show([file], check=check, diff=diff)
+    return ExitStatus.FOUND
+
+
+def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
+    from rulec.report.text.console import print_result, wants_color
+    from rulec.report.text.text_diff import as_diff, for_terminal
+
+    for file in changed:
+        if diff:
+            text = as_diff(file.name, file.before.decode(), file.after.decode())
+            if sys.stdout.isatty():
+                shown = for_terminal(text, color=wants_color(sys.stdout))
+                print_result(shown.removesuffix("\n"))
+            else:
+                sys.stdout.buffer.write(text.encode())
+        elif check:
+            print_result(f"would change {file.name}")
+
+
+def _summary(changed: int, unchanged: int, *, would: bool) -> str:
+    parts = []
+    if changed:
+        parts.append(f"{_files(changed)} {'would change' if would else 'changed'}")
+    if unchanged:
+        parts.append(f"{_files(unchanged)} in form already")
+    return ", ".join(parts)
+
+
+def _files(number: int) -> str:
+    return f"{number:,} {'file' if number == 1 else 'files'}"

@@ -1,0 +1,129 @@
+"""``rulec maneuvers``: the maneuvers of a scenario, judged by a rulebook."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options.scenario_options import chosen, graph_options
+from rulec.cli.options.shared_options import at_option, json_option, rulebook_option
+
+if TYPE_CHECKING:
+    from rulec.planning import Maneuvers, Ranked
+
+
+@click.command()
+@graph_options
+@rulebook_option
+@click.option(
+    "--list",
+    "n_listed",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="List the N cheapest satisfying maneuvers.",
+)
+@click.option(
+    "--rank",
+    "n_ranked",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="List the N best maneuvers: by what they violate, hard rules above soft ones, by levels "
+    "and weights; then by cost.",
+)
+@click.option(
+    "--why",
+    is_flag=True,
+    help="Say for every rule how many maneuvers violate it, how many violate no other hard rule, "
+    "and give an example.",
+)
+@click.option(
+    "--classes",
+    "n_classes",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
+)
+@click.option(
+    "--worlds",
+    is_flag=True,
+    help="Where obstacles have several predictions: count also what is left if one of them does "
+    "something less likely.",
+)
+@click.option(
+    "--after",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="What was before: a file with one trace, or a monitor that was saved (.json).",
+)
+@json_option
+@at_option
+def command(
+    scenario: str,
+    rulebook: str,
+    n_listed: int | None,
+    n_ranked: int | None,
+    why: bool,
+    n_classes: int | None,
+    worlds: bool,
+    after: Path | None,
+    json_output: bool,
+    at: str,
+    **options: Any,
+) -> int:
+    """Count the maneuvers of SCENARIO (a name or a file) that satisfy every hard rule.
+
+    If none does, the least violating ones are shown.
+
+    With --after they go on where a past has ended: its last state comes one step before the
+    scenario begins. What was violated for good by then is said, and not counted against them.
+
+    Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
+    """
+    from rulec.api.workflow import find_maneuvers, machines
+    from rulec.planning.probability.alternative_predictions import otherwise
+    from rulec.planning.probability.rule_probability import chances
+    from rulec.planning.trace_history import read_past
+    from rulec.report.maneuvers import maneuver_report as report
+    from rulec.report.text.console import print_diagnostics, print_result
+    from rulec.scenario import load_scenario
+    from rulec.settings import search_path
+
+    begin = time.perf_counter()
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    past = None if after is None else read_past(after)
+    scene = load_scenario(scenario, chosen(options))
+    found = find_maneuvers(scene, rules, after=past, **options)
+    listed = None if n_listed is None else found.cheapest(n_listed)
+    best = None if found.satisfying or n_ranked is not None else _best(found)
+    ranked = None if n_ranked is None else found.ranked(n_ranked)
+    shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
+    uncertain = any(one.alternatives for one in scene.obstacles)
+    answers = report.Answers(
+        listed=listed,
+        best=best,
+        ranked=ranked,
+        chances={one.nodes: chances(found, one) for one in shown} if uncertain else {},
+        worlds=otherwise(found) if worlds else None,
+        prunings=found.prunings() if why else None,
+        classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
+    )
+    seconds = time.perf_counter() - begin
+    print_result((report.as_json if json_output else report.as_text)(found, answers, seconds))
+    return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED
+
+
+def _best(found: Maneuvers) -> Sequence[Ranked] | None:
+    """The least violating maneuvers; what keeps them from being known is said beside the counts."""
+    from rulec.diagnostics import RulecError
+    from rulec.report.text.console import print_diagnostics
+
+    try:
+        return found.best()
+    except RulecError as error:
+        print_diagnostics(error.diagnostics)
+        return None

@@ -1,0 +1,91 @@
+"""``rulec monitor``: a running trace judged state by state."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options.shared_options import at_option, json_option, seconds
+from rulec.cli.options.shell_completion import complete_rulebooks
+
+
+@click.command()
+@click.argument("rulebook", shell_complete=complete_rulebooks)
+@click.option(
+    "--step",
+    "step_s",
+    callback=seconds,
+    metavar="S",
+    help="Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
+    "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
+)
+@click.option(
+    "--restore",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Go on where the monitor stood that was saved in FILE.",
+)
+@click.option(
+    "--save",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Save in FILE where the monitor stands when it ends, however it ends.",
+)
+@json_option
+@at_option
+def command(
+    rulebook: str,
+    step_s: Fraction | None,
+    restore: Path | None,
+    save: Path | None,
+    json_output: bool,
+    at: str,
+) -> int:
+    """Judge by RULEBOOK the states that come on standard input, one JSON object a line.
+
+    Prints a line for each, at once: is the trace, as far as it has come, satisfied or violated for
+    good, does it hold so far, or is something pending? A line that cannot be judged is reported and
+    changes nothing.
+
+    Exit status: 0 every hard rule is kept if the trace ends here, 1 one is violated, 2 a state
+    could not be judged. With --save the trace is not over, and what is pending is no violation.
+    """
+    from rulec.api.workflow import compile_rulebook
+    from rulec.diagnostics import Place, RulecError
+    from rulec.monitoring.online.running_monitor import Monitor
+    from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
+    from rulec.monitoring.online.stream_answers import answer
+    from rulec.report.text.console import Complaints, print_diagnostics, print_result
+    from rulec.report.verdicts import monitor_lines
+    from rulec.settings import search_path
+    from rulec.trace.formats.live_states import read_live
+
+    saved = None if restore is None else read_saved(restore)
+    step_s = step_s or step_of(saved)
+    rules = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s, at)
+    if restore is None:
+        monitor = Monitor(rules, step_s)
+    else:
+        monitor = Monitor.restore(rules, saved, Place(str(restore)))
+    complaints, refused = Complaints(), False
+    with saved_at_the_end(monitor, save):
+        for one in read_live(sys.stdin.buffer, "standard input"):
+            found = answer(monitor, one)
+            if isinstance(found, RulecError):
+                refused = True
+                complaints.add(found)
+                if json_output:
+                    print_result(monitor_lines.refused_as_json(found))
+            else:
+                print_result(
+                    monitor_lines.as_json(found) if json_output else monitor_lines.as_text(found)
+                )
+        complaints.close()
+    if refused:
+        return ExitStatus.NOT_ANSWERED
+    lost = {"violated"} if save is not None else {"violated", "pending"}
+    return ExitStatus.VIOLATED if monitor.so_far.verdict in lost else ExitStatus.OK

@@ -1,0 +1,61 @@
+"""``rulec new``: a rulebook to start from."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+
+import click
+
+from rulec.cli.options.shell_completion import complete_rulebooks
+
+
+@click.command()
+@click.argument("name")
+@click.option(
+    "-o",
+    "--output",
+    default=".",
+    metavar="DIR",
+    show_default="the working folder",
+    help="The folder for NAME.rules, made if need be.",
+)
+@click.option(
+    "--extends",
+    "base",
+    metavar="R",
+    help="Build upon this rulebook: its name.",
+    shell_complete=complete_rulebooks,
+)
+def command(name: str, output: str, base: str | None) -> None:
+    """Write NAME.rules, a rulebook that checks and tests, to be changed into your own.
+
+    An existing file is left alone.
+    """
+    from rulec.diagnostics import Diagnostic, Place, RulecError
+    from rulec.files import make_folder, written_whole
+    from rulec.report.text.console import print_result
+    from rulec.rulebook.files.template import new_rulebook, new_rulebook_upon
+    from rulec.settings import search_path
+
+    name = name.removesuffix(".rules")
+    if base is not None and ("/" in base or base.endswith(".rules")):
+        raise click.UsageError(
+            f"--extends takes a name, such as `{Path(base).stem}`: a rulebook finds another one "
+            "beside itself, on the search path, or among what ships"
+        )
+    today = datetime.now().astimezone().date()
+    if base is None:
+        text = new_rulebook(name, today)
+    else:
+        text = new_rulebook_upon(name, base, today, (Path(output), *search_path()))
+    path = Path(output) / f"{name}.rules"
+    if path.exists() or path.is_symlink():
+        way_out = "give another name, or another folder with --output"
+        raise RulecError(
+            Diagnostic("R0702", "the file is there already", Place(str(path)), help=way_out)
+        )
+    make_folder(path.parent)
+    with written_whole(path) as stream:
+        stream.write(text.encode())
+    print_result(f"wrote {path}; next: rulec test {path if '/' in str(path) else f'./{path}'}")

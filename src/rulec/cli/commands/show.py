@@ -1,0 +1,182 @@
+"""``rulec show``: a rule in English, as a formula, as an automaton, and by examples."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.options.shared_options import at_option, json_option
+from rulec.cli.options.shell_completion import complete_rulebooks, complete_rules
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.report.automata.automaton_model import Automaton
+    from rulec.rulebook.model import Rule, Rulebook
+
+FORMATS = ("text", "dot", "svg")
+
+SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
+
+OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
+"""Ends of names of pictures that are not drawn."""
+
+
+@click.command()
+@click.argument("rulebook", shell_complete=complete_rulebooks)
+@click.argument("rule", required=False, shell_complete=complete_rules)
+@click.option(
+    "--automaton",
+    "automaton_format",
+    type=click.Choice(FORMATS),
+    help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False),
+    metavar="FILE",
+    help="Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
+)
+@json_option
+@at_option
+def command(
+    rulebook: str,
+    rule: str | None,
+    automaton_format: str | None,
+    output: str | None,
+    json_output: bool,
+    at: str,
+) -> None:
+    """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
+
+    The sentence in English is made from the formula, and has one reading only. Without RULE every
+    rule is shown in brief, a rulebook's only one in full.
+    """
+    from rulec.report.rulebooks import rule_page
+    from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
+
+    if output is not None and automaton_format is None and not json_output:
+        if Path(output).suffix.lower() in OTHERS:
+            raise click.UsageError(f"{output}: an automaton is drawn in a file .svg, .dot or .gv")
+        automaton_format = SUFFIXES.get(Path(output).suffix)
+    if json_output and automaton_format is not None:
+        raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
+    book, compiled = _read(rulebook, at)
+    chosen = _chosen(book, rule, rulebook)
+    width = page_width() if output is None else PAGE_WIDTH
+    if chosen is None and automaton_format is not None:
+        raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
+    page = None
+    if chosen is not None:
+        one = _compiled(book, chosen, compiled)
+        page = rule_page.page_of(chosen, one.rules[0], one.vocabulary)
+    rules = book.rules if chosen is None else (chosen,)
+    if json_output:
+        text = rule_page.as_json(book.name, rules, book.vocabulary, page)
+    elif page is None:
+        text = "\n\n\n".join(
+            rule_page.summary(each, book.name, book.vocabulary, width) for each in rules
+        )
+    elif automaton_format is None:
+        text = rule_page.as_text(page, book.name, book.vocabulary, width)
+    else:
+        name = f"{book.name} {page.rule.name}"
+        text = _automaton(page.automaton, automaton_format, name, width)
+    put_result(text, output)
+
+
+def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
+    """A rulebook as meant; one that was compiled long ago comes with its machines."""
+    from rulec.automata.bundle.bundle_file import read_compiled
+    from rulec.rulebook.loader import load_rulebook
+    from rulec.rulebook.model import Rule, Rulebook
+    from rulec.settings import search_path
+
+    if Path(reference).suffix != ".json":
+        return load_rulebook(reference, search_path(), at), None
+    compiled = read_compiled(Path(reference))
+    rules = tuple(
+        Rule(
+            one.name,
+            one.strength,
+            one.variables,
+            one.formula,
+            one.cite,
+            one.says,
+            level=one.level,
+            weight=one.weight,
+            source=one.source,
+            certainty=one.certainty,
+            book=one.book or compiled.name,
+        )
+        for one in compiled.rules
+    )
+    return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
+
+
+def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
+    from rulec.diagnostics import nearest_name
+
+    if name is None:
+        return book.rules[0] if len(book.rules) == 1 else None
+    by_name = {rule.name: rule for rule in book.rules}
+    if name not in by_name:
+        if why := _why_absent(book, name, reference):
+            raise click.UsageError(f"{book.name} has no rule `{name}`{why}")
+        near = nearest_name(name, by_name)
+        way_out = f"did you mean `{near}`?" if near else f"it has {_names(book)}"
+        raise click.UsageError(f"{book.name} has no rule `{name}`; {way_out}")
+    return by_name[name]
+
+
+def _why_absent(book: Rulebook, name: str, reference: str) -> str:
+    """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
+    from rulec.analysis.lineage.book_lineage import read_with_inheritance
+    from rulec.settings import search_path
+    from rulec.syntax.printer import print_in_force
+
+    if Path(reference).suffix == ".json":
+        return ""
+    _, inherited = read_with_inheritance(reference, search_path(), book.at)
+    last = next((one.steps[-1] for one in inherited.rules if one.name == name), None)
+    if last is None:
+        return ""
+    if last.rule is not None and last.rule.in_force is not None:
+        return f" on {book.at}: it is {print_in_force(last.rule.in_force)}"
+    deed = {"dropped": "dropped it", "silent": "is silent on it"}[last.deed]
+    return f": {last.book} {deed}, because {last.because}"
+
+
+def _names(book: Rulebook) -> str:
+    from rulec.diagnostics.phrases import named
+
+    return named([rule.name for rule in book.rules])
+
+
+def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
+    """The rulebook with this rule alone, compiled."""
+    from rulec.api.workflow import compile_rulebook
+
+    if compiled is None:
+        return compile_rulebook(replace(book, rules=(rule,)))
+    own = tuple(one for one in compiled.rules if one.name == rule.name)
+    return replace(compiled, rules=own)
+
+
+def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
+    from rulec.report.automata import automaton_dot, automaton_layout, automaton_svg, automaton_text
+
+    if output_format == "text":
+        return automaton_text.as_text(automaton, width)
+    if output_format == "dot":
+        return automaton_dot.as_dot(automaton, name)
+    if automaton_layout.is_too_large(automaton):
+        raise click.ClickException(
+            f"an automaton of {len(automaton.fates):,} states and {len(automaton.transitions):,} "
+            "transitions is too large to draw; see it with --automaton text, or lay it out "
+            "yourself from --automaton dot"
+        )
+    return automaton_svg.as_svg(automaton, name)

@@ -1,0 +1,111 @@
+"""``rulec test``: the examples of rulebooks, run."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options.shared_options import at_option
+from rulec.cli.options.shell_completion import complete_rulebooks
+
+if TYPE_CHECKING:
+    from rulec.book_tests.example_runs import ExampleRun
+
+
+def _number(
+    context: click.Context, parameter: click.Parameter, value: float | None
+) -> float | None:
+    """Not a number is in no range, and click lets it pass."""
+    if value is not None and math.isnan(value):
+        raise click.BadParameter("it has to be a number from 0 to 100")
+    return value
+
+
+@click.command()
+@click.argument(
+    "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
+)
+@click.option(
+    "--run",
+    "pattern",
+    metavar="PATTERN",
+    help="Run the examples whose RULE or RULE/LABEL this matches; * and ? are wild. "
+    "One without a label goes by its number.",
+)
+@click.option(
+    "--output-format",
+    type=click.Choice(["full", "json", "junit"]),
+    default="full",
+    show_default=True,
+    help="Text, JSON, or JUnit XML.",
+)
+@click.option("--fail-on-empty", is_flag=True, help="Fail if there is no example to run.")
+@click.option(
+    "--coverage",
+    "with_coverage",
+    is_flag=True,
+    help="Say which edges of each rule's automaton no example takes, and which atoms none sees "
+    "both true and false.",
+)
+@click.option(
+    "--threshold",
+    type=click.FloatRange(0, 100),
+    callback=_number,
+    metavar="PERCENT",
+    help="Fail if the examples cover less; implies --coverage.",
+)
+@at_option
+def command(
+    rulebooks: tuple[str, ...],
+    pattern: str | None,
+    output_format: str,
+    fail_on_empty: bool,
+    with_coverage: bool,
+    threshold: float | None,
+    at: str,
+) -> int:
+    """Run the accept and reject examples of every RULEBOOK: a name, or the path of a source.
+
+    Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
+    could not be read or compiled.
+    """
+    from rulec.book_tests.edge_coverage import coverage
+    from rulec.report.tests.example_text import render, shortcomings
+    from rulec.report.text.console import print_aside, print_result, wants_color
+
+    compiled = next((one for one in rulebooks if one.endswith(".json")), None)
+    if compiled is not None:
+        raise click.UsageError(f"`{compiled}` is compiled and has no examples; give its source")
+    runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
+    measured = with_coverage or threshold is not None
+    covered = [coverage(run) for run in runs] if measured else None
+    if runs or output_format != "full":
+        print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
+    short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
+    for sentence in short:
+        print_aside(f"rulec: {sentence}")
+    if len(runs) < len(rulebooks):
+        return ExitStatus.NOT_ANSWERED
+    failed = any(not one.passed for run in runs for one in run.outcomes)
+    return ExitStatus.FOUND if failed or short else ExitStatus.OK
+
+
+def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
+    """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
+    from rulec.api.rulebook_questions import run_examples
+    from rulec.book_tests.verdict_coverage import unexercised
+    from rulec.diagnostics import RulecError
+    from rulec.report.text.console import print_diagnostics
+    from rulec.settings import search_path
+
+    try:
+        run = run_examples(rulebook, search_path(), pattern, at)
+    except RulecError as error:
+        print_diagnostics(error.diagnostics)
+        return None
+    print_diagnostics([*run.warnings, *unexercised(run)])
+    return run

@@ -1,0 +1,235 @@
+"""``rulec verify``: traces and recorded traffic judged by a rulebook."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options.recording_options import drives_options, egos_option, given, wanted
+from rulec.cli.options.shared_options import (
+    at_option,
+    json_option,
+    net_option,
+    rulebook_option,
+    traces_format_option,
+)
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.automata.step_compilation import AnyStep
+    from rulec.diagnostics import RulecError
+    from rulec.extraction.selection.requested import Wanted
+    from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.report.text.console import Complaints
+    from rulec.trace import Trace
+    from rulec.trace.formats.trace_files import Format
+
+    Rules = CompiledRulebook | AnyStep
+    Items = Sequence[Trace | RulecError]
+    Answer = tuple[Items, int, Verdict | NotJudged]
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@rulebook_option
+@click.option(
+    "--explain",
+    "n_explained",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Explain the first N violations state by state.  [default: 1; with --json 0]",
+)
+@click.option(
+    "--every-part",
+    is_flag=True,
+    help="Explain by every part of a formula and every state, however large the table becomes.",
+)
+@traces_format_option
+@egos_option
+@drives_options
+@net_option
+@json_option
+@at_option
+def command(
+    files: tuple[str, ...],
+    rulebook: str,
+    n_explained: int | None,
+    every_part: bool,
+    form: Format | None,
+    json_output: bool,
+    at: str,
+    net: Path | None,
+    egos: tuple[str, ...],
+    **options: Any,
+) -> int:
+    """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
+
+    Prints the violations of every trace and a summary; with --json one line per trace. A trace that
+    cannot be judged is reported and does not stop the others.
+
+    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
+    vehicle is judged by what it did, and a table says who violated what.
+
+    Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
+    """
+    from rulec.api.workflow import machines
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.report.text.console import Complaints, print_diagnostics
+    from rulec.scenario.recording_files import is_recording
+    from rulec.settings import search_path
+
+    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    recordings = [file for file in files if is_recording(file)]
+    if not recordings and (option := "--net" if net else "--ego" if egos else given(options)):
+        raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
+    to_explain = n_explained if n_explained is not None else 0 if json_output else 1
+    run = _Run(rules, json_output, Complaints(), to_explain, every_part)
+    if recordings:
+        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+        about = wanted(egos, options, book.vocabulary)
+        for file in recordings:
+            run.recording(file, net, about)
+    if len(recordings) < len(files):
+        run.traces([file for file in files if file not in recordings], form)
+    run.complaints.close()
+    if run.not_answered:
+        return ExitStatus.NOT_ANSWERED
+    return ExitStatus.VIOLATED if run.violated else ExitStatus.OK
+
+
+@dataclass
+class _Run:
+    """What is asked of every file, and what has become of those so far."""
+
+    rules: Rules
+    json_output: bool
+    complaints: Complaints
+    to_explain: int
+    every_part: bool
+    violated: bool = False
+    not_answered: bool = False
+
+    def traces(self, files: Sequence[str], form: Format | None) -> None:
+        """Judge the traces of files, with one summary for all of them."""
+        from rulec.monitoring.batch.table_verdicts import rulebook_for
+        from rulec.monitoring.explain.explanation import explain
+        from rulec.monitoring.verdict import Verdict
+        from rulec.report.text.console import print_result
+        from rulec.report.verdicts import verdict_report
+        from rulec.trace import Trace
+
+        satisfied = violated = not_judged = 0
+        for traces, place, answer in _answers(files, form, self.rules):
+            if isinstance(answer, Verdict):
+                satisfied += answer.satisfied
+                violated += not answer.satisfied
+                if not (answer.violations or self.json_output):
+                    continue
+                used = rulebook_for(traces, place, self.rules)
+                explained = []
+                chosen = answer.violations[: self.to_explain]
+                if chosen:
+                    self.to_explain -= len(chosen)
+                    trace = traces[place]
+                    assert isinstance(trace, Trace), "what has a verdict is a trace"
+                    explained = [explain(violation, trace, used) for violation in chosen]
+                print_result(
+                    verdict_report.as_json(answer, used, explained)
+                    if self.json_output
+                    else verdict_report.as_text(answer, used, explained, every_part=self.every_part)
+                )
+            else:
+                not_judged += 1
+                self.complaints.add(answer.error)
+                if self.json_output:
+                    print_result(verdict_report.not_judged_as_json(answer))
+        if not self.json_output:
+            print_result(verdict_report.summary(satisfied, violated, not_judged))
+        self.violated |= violated > 0
+        self.not_answered |= not_judged > 0
+
+    def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
+        """Judge every drive of a recording."""
+        from rulec.api.workflow import judge_recording
+        from rulec.diagnostics import RulecError
+        from rulec.extraction.recording_verdicts import Judged
+        from rulec.extraction.violation_tally import Tally
+        from rulec.monitoring.explain.explanation import explain
+        from rulec.monitoring.verdict import NotJudged, Verdict
+        from rulec.report.text.console import print_result, progress
+        from rulec.report.verdicts import recording_table as report
+
+        try:
+            judged = judge_recording(Path(file), self.rules, wanted, net)
+        except RulecError as error:
+            self.complaints.add(error)
+            self.not_answered = True
+            return
+        tally = Tally()
+        blocks = []
+        with progress(f"judging {file}", len(judged.egos)) as tell:
+            for number, one in enumerate(judged.answers(), 1):
+                tell(number)
+                tally.add(one)
+                explained = []
+                if isinstance(one, Judged) and isinstance(one.answer, Verdict):
+                    chosen = one.answer.violations[: self.to_explain]
+                    self.to_explain -= len(chosen)
+                    explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
+                    if explained:
+                        blocks.append(
+                            report.in_detail(one, judged, explained, every_part=self.every_part)
+                        )
+                elif isinstance(one, Judged) and isinstance(one.answer, NotJudged):
+                    self.complaints.add(one.answer.error)
+                    self.not_answered = True
+                if self.json_output:
+                    print_result(report.as_json(one, judged, explained))
+        if not self.json_output:
+            print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
+        self.violated |= bool(tally.violated)
+        self.not_answered |= not tally.judged
+
+
+def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
+    """Traces, which of them, and its verdict, or why there is none."""
+    from rulec.diagnostics import RulecError
+    from rulec.files import opened
+    from rulec.monitoring.verdict import NotJudged
+    from rulec.trace.formats.trace_files import format_of
+
+    for file in files:
+        try:
+            if file == "-":
+                yield from _judged(sys.stdin.buffer, "standard input", form or "jsonl", None, rules)
+                continue
+            with opened(Path(file)) as stream:
+                about = os.fstat(stream.fileno())
+                size = about.st_size if stat.S_ISREG(about.st_mode) else None
+                yield from _judged(stream, file, form or format_of(file), size, rules)
+        except RulecError as error:
+            yield [error], 0, NotJudged(None, error)
+
+
+def _judged(
+    stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
+) -> Iterator[Answer]:
+    from rulec.monitoring.batch.table_verdicts import judge_items
+    from rulec.report.text.console import progress
+    from rulec.trace.formats.trace_files import read_chunks
+
+    with progress(f"judging {name}", size) as tell:
+        for traces in read_chunks(stream, name, form):
+            found, answers = judge_items(traces, rules)
+            for place, answer in enumerate(answers):
+                yield found, place, answer
+            if size is not None:
+                tell(stream.tell())

@@ -1,0 +1,143 @@
+"""Arguments for scenarios: how one is cut into cells, and what can be chosen in a recorded one."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.options.shared_options import Decorated, net_option
+from rulec.cli.options.shell_completion import complete_scenarios
+
+if TYPE_CHECKING:
+    from rulec.scenario import Choice
+
+_WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
+
+
+def _prediction(
+    context: click.Context, parameter: click.Parameter, value: str
+) -> str | dict[str, Fraction]:
+    """A kind of prediction, or several with their probabilities."""
+    from rulec.scenario.alternatives import adds_up
+    from rulec.scenario.recorded.scene_choice import PREDICTIONS
+
+    known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
+    if value in PREDICTIONS:
+        return value
+    found: dict[str, Fraction] = {}
+    for part in value.split(","):
+        kind, _, weight = (one.strip() for one in part.partition("="))
+        if kind not in PREDICTIONS or kind in found:
+            raise click.BadParameter(f"it has to be {known}, or each of them once with a weight")
+        found[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
+        if not found[kind]:
+            raise click.BadParameter(f"`{part}` has to end in a weight above 0, such as `=0.7`")
+    if not adds_up(sum(found.values(), Fraction(0))):
+        raise click.BadParameter("the weights have to add up to 1")
+    return found
+
+
+def _scene_options(function: Decorated) -> Decorated:
+    """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
+    for decorate in (
+        net_option,
+        click.option(
+            "--congested-below",
+            "congested_below_kmh",
+            type=click.FloatRange(min=0),
+            default=30.0,
+            show_default=True,
+            metavar="KMH",
+            help="In a recorded scene: traffic counts as congested below this median speed.",
+        ),
+        click.option(
+            "--ego-width",
+            "ego_width_m",
+            type=click.FloatRange(min=0, max=100),
+            metavar="M",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+            "[default: as wide as the vehicle that it is, if any; else a point]",
+        ),
+        click.option(
+            "--prediction",
+            callback=_prediction,
+            default="recorded",
+            show_default=True,
+            metavar="KIND",
+            help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
+            "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
+        ),
+        click.option(
+            "--reference",
+            metavar="LANELET",
+            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
+            "[default: the one ego is on]",
+        ),
+        click.option(
+            "--at-time",
+            "at_s",
+            type=float,
+            metavar="S",
+            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
+            "planning problem, or the vehicle's first]",
+        ),
+        click.option(
+            "--ego",
+            metavar="ID",
+            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
+            "[default: the first planning problem]",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+def chosen(options: dict[str, Any]) -> Choice:
+    """The choice that ``graph_options`` say, taken out of all options."""
+    from rulec.scenario.recorded.scene_choice import Choice
+
+    return Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
+
+
+def graph_options(function: Decorated) -> Decorated:
+    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
+
+    Also what can be chosen about a recorded scene, which ``chosen`` takes out again.
+    """
+    function = _scene_options(function)
+    for decorate in (
+        click.option(
+            "--adjacency",
+            type=click.Choice(["touch", "edge", "forward"]),
+            default="touch",
+            show_default=True,
+            help="Which cells are neighbours: those that meet in a point, along a border, "
+            "or along a border and not only behind.",
+        ),
+        click.option(
+            "--extent",
+            type=click.Choice(["lane", "body"]),
+            default="lane",
+            show_default=True,
+            help="How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+            "and half of ego's width to either side.",
+        ),
+        click.option(
+            "--partition",
+            type=click.Choice(["paper", "fine"]),
+            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+            "paper without one]",
+        ),
+        click.option(
+            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+        ),
+        click.option(
+            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
+        ),
+        click.argument("scenario", shell_complete=complete_scenarios),
+    ):
+        function = decorate(function)
+    return function

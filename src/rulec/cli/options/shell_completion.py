@@ -1,0 +1,92 @@
+"""What a shell offers while somebody types: names that rulec knows, and files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import click
+from click.shell_completion import CompletionItem
+
+from rulec.diagnostics import RulecError
+
+
+def complete_rulebooks(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of rulebooks, and files."""
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    return _named(available_rulebooks(_folders()), incomplete)
+
+
+def complete_sources(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of rulebooks and vocabularies, and files."""
+    from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
+
+    vocabularies = (path.stem for path in available_vocabularies(_folders()))
+    return _named([*available_rulebooks(_folders()), *vocabularies], incomplete)
+
+
+def complete_rules(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of the rules of the rulebook that has been named before, with what they say."""
+    from rulec.automata.bundle.bundle_file import read_compiled
+    from rulec.rulebook.loader import load_rulebook
+
+    reference = str(ctx.params.get("rulebook"))
+    try:
+        compiled = Path(reference).suffix == ".json"
+        rules = (
+            read_compiled(Path(reference)).rules
+            if compiled
+            else load_rulebook(reference, _folders()).rules
+        )
+    except RulecError:
+        return []
+    return [
+        CompletionItem(rule.name, help=rule.says or None)
+        for rule in rules
+        if rule.name.startswith(incomplete)
+    ]
+
+
+def complete_scenarios(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Names of scenarios, and files."""
+    from rulec.scenario import available_scenarios
+
+    return _named(available_scenarios(), incomplete)
+
+
+def complete_codes(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Codes of messages, with what they are about."""
+    from rulec.diagnostics.codes import CODES
+
+    return [
+        CompletionItem(code, help=title)
+        for code, title in CODES.items()
+        if code.startswith(incomplete.upper())
+    ]
+
+
+def _folders() -> tuple[Path, ...]:
+    """The project's own folders; while a command is typed nobody wants to hear of mistakes."""
+    from rulec.settings import search_path
+
+    try:
+        return search_path()
+    except RulecError:
+        return ()
+
+
+def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+    # The first has the shell offer files as well, whose paths begin so.
+    return [CompletionItem(incomplete, type="file"), *fitting]

@@ -1,0 +1,91 @@
+"""What can be chosen about a recording, and its drives accordingly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
+from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.selection.thresholds import USUAL, Thresholds
+from rulec.extraction.to_trace import Drive, Telling
+from rulec.extraction.tracks.mirror import mirrored
+from rulec.rulebook.model import Traffic
+from rulec.scenario.recorded.recording import Recording
+from rulec.trace import Value
+from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Whose drives, by which thresholds, and what is taken for granted.
+
+    No ``egos`` is everybody. ``assumed`` holds in every state. ``as_recorded``: a recording of
+    traffic on the other side than the rulebook's is not mirrored.
+    """
+
+    egos: tuple[str, ...] = ()
+    thresholds: Thresholds = USUAL
+    assumed: Mapping[str, Value] = field(default_factory=dict)
+    as_recorded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WantedDrives:
+    """The drives of ``egos``; ``recording`` is the one that they are from, perhaps mirrored."""
+
+    recording: Recording
+    mirrored: bool
+    egos: tuple[str, ...]
+    drives: Drives
+
+    def of(self, ego: str) -> Iterator[Drive | NoDrive]:
+        """Those of one vehicle, worked out when they are asked for."""
+        return self.drives.of(ego)
+
+
+def wanted_drives(
+    recording: Recording,
+    wanted: Wanted,
+    file: str,
+    traffic: Traffic = "",
+    vocabulary: Vocabulary | None = None,
+    names: frozenset[str] | None = None,
+) -> WantedDrives:
+    """The drives of a recording, for rules of a side of traffic, in the words of a vocabulary.
+
+    Raises:
+        RulecError: R0612 for a vehicle that is not there.
+    """
+    own = recording.side
+    side = traffic or own or "right"
+    other = own is not None and own != side and not wanted.as_recorded
+    if other:
+        recording = mirrored(recording)
+    telling = Telling(vocabulary, names, wanted.assumed)
+    drives = Drives(recording, side, wanted.thresholds, telling)
+    return WantedDrives(recording, other, _chosen(drives.egos(), wanted.egos, file), drives)
+
+
+def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
+    for ego in wanted:
+        if ego not in known:
+            raise RulecError(
+                Diagnostic(
+                    "R0612",
+                    f"there is no vehicle `{ego}` that drives",
+                    Place(file),
+                    help=did_you_mean(ego, known) or _some(known),
+                )
+            )
+    return tuple(ego for ego in known if not wanted or ego in wanted)
+
+
+_MOST_NAMED = 12
+
+
+def _some(known: tuple[str, ...]) -> str:
+    if not known:
+        return "nobody in this file does"
+    more = f", or one of {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
+    return f"choose {named(known[:_MOST_NAMED])}{more}"

@@ -1,0 +1,117 @@
+"""Where ego is, seen from others: along the road, across it, and how far away.
+
+Along the road bodies count: ego is behind somebody until its front is level with the other's rear.
+Across the road lanes count, those of the other's body and that of ego's middle, so that who keeps
+within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios.md``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.selection.thresholds import Thresholds
+from rulec.extraction.tracks.driven_road import Road
+from rulec.extraction.tracks.road_extents import Placed
+from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
+from rulec.scenario.motion import Facing
+
+Codes = NDArray[intp]
+BEHIND, BESIDE, IN_FRONT_OF = range(3)
+RIGHT_OF, SAME_LANE, LEFT_OF = range(3)
+assert STATIONS == ("behind", "beside", "in_front_of")
+assert LATERALS == ("right_of", "same_lane", "left_of")
+
+_STANDS_MPS = 0.1
+_FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
+
+
+def lanes_touched(placed: Placed, road: Road, thresholds: Thresholds) -> Flags:
+    """Which lanes bodies reach into; the last axis is that of the lanes."""
+    right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
+    low, high = placed.w_min[..., None], placed.w_max[..., None]
+    inside = np.minimum(high, left) - np.maximum(low, right)
+    # A narrow body, such as a pedestrian's, is in a lane with most of it
+    enough = np.minimum(thresholds.touching_m, (high - low) / 2)
+    touched: Flags = (inside > enough) & road.lanes_at(placed.s)
+    return touched
+
+
+def station(own: Placed, others: Placed) -> Codes:
+    """Behind, beside or in front of others."""
+    behind = own.s_max <= others.s_min
+    ahead = own.s_min >= others.s_max
+    return np.where(behind, BEHIND, np.where(ahead, IN_FRONT_OF, BESIDE))
+
+
+def lateral(own: Placed, others: Placed, touched: Flags, road: Road) -> Codes:
+    """Right of others, in their lanes, or left of them."""
+    low, high = _widened(others, touched, road)
+    return _side(own.w, low, high)
+
+
+def _widened(others: Placed, touched: Flags, road: Road) -> tuple[Values, Values]:
+    """The bounds of the lanes that others are in; of who is in none, its own."""
+    straight = road.lanes.straight
+    first = touched.argmax(axis=-1)
+    last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
+    some = touched.any(axis=-1)
+    return (
+        np.where(some, straight[first], others.w_min),
+        np.where(some, straight[last], others.w_max),
+    )
+
+
+def _side(w: Values, low: Values, high: Values) -> Codes:
+    return np.where(w <= low, RIGHT_OF, np.where(w >= high, LEFT_OF, SAME_LANE))
+
+
+def gap(own: Placed, others: Placed) -> Values:
+    """The distance along the road between bodies, 0 beside each other."""
+    return np.maximum(np.maximum(others.s_min - own.s_max, own.s_min - others.s_max), 0.0)
+
+
+def lateral_gap(own: Placed, others: Placed) -> Values:
+    """The distance across the road between bodies, 0 behind each other."""
+    return np.maximum(np.maximum(others.d_min - own.d_max, own.d_min - others.d_max), 0.0)
+
+
+def position(
+    own: Placed, others: Placed, touched: Flags, walking: Flags, road: Road
+) -> NDArray[np.str_]:
+    """The paper's letters, b, f, l and r; who walks is seen in its own frame.
+
+    Where bodies are beside each other in one lane their middles decide.
+    """
+    low, high = _widened(others, touched, road)
+    s_min, s_max = others.s_min.copy(), others.s_max.copy()
+    facing = np.where(walking[:, None], _facing(others), 0)
+    across = walking[:, None] & (facing % 2 == 1)
+    low, high = np.where(across, others.w_min, low), np.where(across, others.w_max, high)
+    for start, end in road.crossings:
+        on = across & (s_min < end) & (s_max > start)
+        s_min, s_max = (
+            np.where(on, np.minimum(s_min, start), s_min),
+            np.where(on, np.maximum(s_max, end), s_max),
+        )
+    column = np.where(own.s_max <= s_min, BEHIND, np.where(own.s_min >= s_max, IN_FRONT_OF, BESIDE))
+    row = _side(own.w, low, high)
+    inside = (row == SAME_LANE) & (column == BESIDE)
+    column = np.where(inside, np.where(own.s < others.s, BEHIND, IN_FRONT_OF), column)
+    tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])
+    letters: NDArray[np.str_] = tables[facing, 3 * row + column]
+    return letters
+
+
+def _facing(others: Placed) -> Codes:
+    """Where people go, or look if they stand, rounded to a right angle of the road.
+
+    Half-way counts as across it.
+    """
+    moves = np.hypot(others.along, others.across) > _STANDS_MPS
+    angle = np.where(moves, np.arctan2(others.across, others.along), others.turned)
+    angle = np.round(np.degrees(np.nan_to_num(angle)), 6)
+    across = np.where(angle > 0, 1, 3)
+    return np.where(np.abs(angle) < 45, 0, np.where(np.abs(angle) > 135, 2, across))

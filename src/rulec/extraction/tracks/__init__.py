@@ -1,0 +1,1 @@
+"""TODO extraction/tracks."""

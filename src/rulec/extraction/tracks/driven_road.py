@@ -1,0 +1,106 @@
+"""The road that ego drives along: street-wise coordinates, lanes, and what the map says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.scenario.geometry import Box
+from rulec.scenario.recorded.crosswalks import crossings
+from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes_along
+from rulec.scenario.recorded.recording import Lanelet, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
+from rulec.scenario.recorded.route import beside, extended
+from rulec.scenario.recorded.traffic_obstacles import View
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Road:
+    """Ego's own lanelets lie one behind the other, from ``borders[i]`` to ``borders[i + 1]``.
+
+    ``rows[i]`` are those beside each other there, a lane each, from the right; None where the map
+    has none. ``crossings`` are pedestrian crossings and ``junctions`` junctions, from where to
+    where along the road.
+    """
+
+    rows: tuple[tuple[Lanelet | None, ...], ...]
+    own_lane: int
+    borders: Values
+    line: ReferenceLine
+    lanes: Lanes
+    crossings: tuple[tuple[float, float], ...]
+    junctions: tuple[tuple[float, float], ...]
+
+    def lanelet(self, piece: int, lane: int) -> Lanelet:
+        """The lanelet of a lane; where the map has none, ego's own."""
+        row = self.rows[piece]
+        own = row[self.own_lane]
+        assert own is not None
+        return row[lane] or own
+
+    def piece(self, s: Values) -> NDArray[intp]:
+        """The numbers of the lanelets at places."""
+        found = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
+        return np.clip(found, 0, len(self.rows) - 1)
+
+    def lanes_at(self, s: Values) -> Flags:
+        """Which lanes there are at places: the last axis is that of the lanes, from the right."""
+        at = np.searchsorted(self.lanes.s, np.nan_to_num(s), "right") - 1
+        return self.lanes.there[np.clip(at, 0, len(self.lanes.there) - 1)]
+
+    def lane_of(self, d: Values) -> NDArray[intp]:
+        """The lanes at straightened offsets; who is beside the road counts to the nearest."""
+        straight = self.lanes.straight
+        found = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
+        return np.clip(found, 0, len(straight) - 2)
+
+
+def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) -> Road:
+    """The road of a chain of lanelets, and what lies straight on before and after it.
+
+    ``junctions`` are the lanelets that lie in one.
+
+    Raises:
+        ValueError: its lanes cannot be laid out along a line.
+    """
+    whole = extended(recording, way)
+    lanelets = tuple(recording.lanelets[number] for number in whole)
+    line = reference_line(np.concatenate([one.centre for one in lanelets]))
+    borders = borders_along(lanelets, line)
+    first = whole.index(way[0])
+    middle = float(borders[first] + borders[first + len(way)]) / 2
+    lanes = lanes_along(recording, whole, line, middle)
+    outline = Box(0.0, line.length, float(lanes.straight[0]), float(lanes.straight[-1]))
+    view = View(recording, line, lanes, 0.0, 0.0, outline)
+    ((_, own_d),) = lanes.straightened(np.array([[middle, 0.0]])).tolist()
+    own = int(np.clip(np.searchsorted(lanes.straight, own_d) - 1, 0, len(lanes.straight) - 2))
+    return Road(
+        tuple(_row(recording, number, own, len(lanes.straight) - 1) for number in whole),
+        own,
+        borders,
+        line,
+        lanes,
+        tuple(one.s for one in crossings(view)),
+        tuple(_runs(borders, [number in junctions for number in whole])),
+    )
+
+
+def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanelet | None, ...]:
+    right = beside(recording, number, left=False)
+    left = beside(recording, number, left=True)
+    row = dict(enumerate((number, *left), own)) | dict(zip(range(own - 1, -1, -1), right))  # noqa: B905
+    return tuple(recording.lanelets[row[k]] if k in row else None for k in range(count))
+
+
+def _runs(borders: Values, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
+    """From where to where pieces with a flag follow each other."""
+    for flag, pieces in groupby(range(len(flags)), key=lambda piece: flags[piece]):
+        if flag:
+            run = list(pieces)
+            yield float(borders[run[0]]), float(borders[run[-1] + 1])

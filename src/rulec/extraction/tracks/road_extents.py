@@ -1,0 +1,98 @@
+"""Where everybody is along and across a road.
+
+Rows are participants and columns time steps, as in ``everyone``; NaN where somebody is nowhere near
+the road. ``d`` is in metres, ``w`` between the lanes' straight bounds, so that lanes have numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from rulec.extraction.tracks.driven_road import Road
+from rulec.extraction.tracks.tracks import Everyone, Values
+
+_SPREAD, _MORE_M = 2.0, 3.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Placed:
+    """The bounds of what everybody occupies, and the middle of these.
+
+    ``turned`` is the heading as seen from the road's direction (radians), ``along`` and ``across``
+    the velocity along the road and to its left (m/s).
+    """
+
+    s_min: Values
+    s_max: Values
+    d_min: Values
+    d_max: Values
+    w_min: Values
+    w_max: Values
+    turned: Values
+    along: Values
+    across: Values
+
+    @property
+    def s(self) -> Values:
+        """The middle along the road."""
+        return (self.s_min + self.s_max) / 2
+
+    @property
+    def w(self) -> Values:
+        """The middle across the road."""
+        return (self.w_min + self.w_max) / 2
+
+    def of(self, row: int) -> Placed:
+        """One participant's, with an axis of length 1 for it."""
+        return Placed(*(getattr(self, field.name)[row : row + 1] for field in fields(self)))
+
+
+def placed(people: Everyone, road: Road) -> Placed:
+    """Everybody, in the coordinates of a road."""
+    shape = people.there.shape
+    bounds = [np.full(shape, np.nan) for _ in range(6)]
+    known = list(people.outlines())
+    if known:
+        counts = np.array([len(outline) for _, _, outline in known])
+        starts = np.append(0, np.cumsum(counts)[:-1])
+        corners = np.concatenate([outline for _, _, outline in known])
+        middles = np.add.reduceat(corners, starts) / counts[:, None]
+        away = np.hypot(*(corners - np.repeat(middles, counts, axis=0)).T)
+        # Near the foot of its middle, so that no body is torn apart where a road meets itself
+        reach = np.maximum.reduceat(away, starts) * _SPREAD + _MORE_M
+        around = np.repeat(road.line.coordinates(middles)[:, 0], counts)
+        found = road.line.coordinates_near(corners, around, np.repeat(reach, counts))
+        found[np.isnan(around)] = np.nan
+        places = np.column_stack((found, road.lanes.straightened(found)[:, 1]))
+        low, high = (one.reduceat(places, starts) for one in (np.minimum, np.maximum))
+        rows, columns = np.array([(row, column) for row, column, _ in known]).T
+        for axis in range(3):
+            bounds[2 * axis][rows, columns] = low[:, axis]
+            bounds[2 * axis + 1][rows, columns] = high[:, axis]
+        standing = [row for row, one in enumerate(people.participants) if one.standing]
+        for bound in bounds:
+            bound[standing] = bound[standing][:, :1]
+    directions = _directions(road, (bounds[0] + bounds[1]) / 2)
+    cos, sin = np.cos(directions), np.sin(directions)
+    s_min, s_max, d_min, d_max, w_min, w_max = bounds
+    return Placed(
+        s_min,
+        s_max,
+        d_min,
+        d_max,
+        w_min,
+        w_max,
+        (people.heading - directions + np.pi) % (2 * np.pi) - np.pi,
+        people.vx * cos + people.vy * sin,
+        people.vy * cos - people.vx * sin,
+    )
+
+
+def _directions(road: Road, s: Values) -> Values:
+    line = road.line
+    piece = np.searchsorted(line.arc, np.nan_to_num(s), "right") - 1
+    ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]
+    directions: Values = np.arctan2(ahead[..., 1], ahead[..., 0])
+    return directions

@@ -1,0 +1,160 @@
+"""Which parts of a formula decide its value on a word, and at which instants.
+
+As long as atoms keep their values where they decide, the formula keeps its own, whatever else
+changes. What decides is enough, not all there is: of two false operands of `and` the first one does
+(cf. Beer, Ben-David, Chockler, Orni, Trefler, "Explaining counterexamples using causality", 2009).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.logic.bounds import PAST, range_of
+from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
+from rulec.logic.semantics import Letter, Semantics, extended_values
+
+_Reason = tuple[Formula, int, int]
+"""A part, and the first and the last of the instants at which it decides."""
+
+
+def deciding_instants(
+    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
+) -> dict[Formula, list[bool]]:
+    """For the formula and every part: does it decide, at each instant, what holds at the first?
+
+    Bounds are in steps. ValueError as for ``holds``.
+    """
+    known = extended_values(formula, word, semantics)
+    length, last = len(known[formula]), len(word) - 1
+    onward = {part: _Column.of(values) for part, values in known.items()}
+    backward = {part: _Column.of(values[::-1]) for part, values in known.items()}
+    # A part begins to decide where its mark is above 0, and ceases to where it is below.
+    marks = {part: [0] * (length + 1) for part in known}
+    marks[formula][:2] = [1, -1]
+    found = {}
+    for part in reversed(known):  # all that it is an operand of has been before it
+        begun, decides = 0, []
+        for instant, mark in enumerate(marks[part][:length]):
+            begun += mark
+            decides.append(begun > 0)
+            if not begun:
+                continue
+            if isinstance(part, Unary | Binary) and part.operator in PAST:
+                # The past ends with the first instant.
+                mirrored = _reasons(part, length - 1 - instant, backward, ends=True)
+                reasons = [(one, length - 1 - b, length - 1 - a) for one, a, b in mirrored]
+            else:
+                reasons = list(_reasons(part, instant, onward, ends=semantics == "finite"))
+            for operand, start, stop in reasons:
+                marks[operand][start] += 1
+                marks[operand][stop + 1] -= 1
+        # What comes after the word's end is its last letter again.
+        found[part] = [*decides[:last], any(decides[last:])]
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A part's values, and the next instant from each one on with either value.
+
+    If there is none it is the number of instants.
+    """
+
+    values: Sequence[bool]
+    next_false: Sequence[int]
+    next_true: Sequence[int]
+
+    @staticmethod
+    def of(values: Sequence[bool]) -> _Column:
+        """The column of these values."""
+        following: dict[bool, list[int]] = {}
+        for value in (False, True):
+            found = [len(values)]
+            for instant in range(len(values) - 1, -1, -1):
+                found.append(instant if values[instant] == value else found[-1])
+            following[value] = found[::-1]
+        return _Column(values, following[False], following[True])
+
+    def next(self, value: bool, instant: int) -> int:
+        """The next instant with this value."""
+        return (self.next_true if value else self.next_false)[min(instant, len(self.values))]
+
+
+_ALONE = {
+    BinaryOperator.AND: (False, False),
+    BinaryOperator.OR: (True, True),
+    BinaryOperator.IMPLIES: (False, True),
+}
+"""For each operand the value with which it decides alone."""
+
+_FAILING = frozenset(
+    (
+        UnaryOperator.ALWAYS,
+        UnaryOperator.WEAK_NEXT,
+        UnaryOperator.HISTORICALLY,
+        UnaryOperator.WEAK_PREVIOUSLY,
+        BinaryOperator.RELEASE,
+        BinaryOperator.STRONG_RELEASE,
+    )
+)
+"""These say that no instant is found at which operands fail; the others, that one is or is not at
+which they hold."""
+
+_WEAK = frozenset((BinaryOperator.WEAK_UNTIL, BinaryOperator.STRONG_RELEASE))
+
+
+def _reasons(
+    part: Formula, instant: int, columns: Mapping[Formula, _Column], *, ends: bool
+) -> Iterator[_Reason]:
+    match part:
+        case Unary(UnaryOperator.NOT, operand):
+            yield operand, instant, instant
+        case Binary(BinaryOperator.IFF | BinaryOperator.XOR, left, right):
+            yield left, instant, instant
+            yield right, instant, instant
+        case Binary(operator, left, right) if operator in _ALONE:
+            pairs = zip((left, right), _ALONE[operator], strict=True)
+            alone = [one for one, value in pairs if columns[one].values[instant] == value]
+            for one in alone[:1] or (left, right):
+                yield one, instant, instant
+        case Unary(_, operand):
+            yield from _of_search(part, None, operand, instant, columns, ends)
+        case Binary(_, left, right):
+            yield from _of_search(part, left, right, instant, columns, ends)
+
+
+def _of_search(
+    part: Unary | Binary,
+    left: Formula | None,
+    right: Formula,
+    instant: int,
+    columns: Mapping[Formula, _Column],
+    ends: bool,
+) -> Iterator[_Reason]:
+    """Why there is, or is not, an instant within the range with ``right``, before it ``left``."""
+    wanted = part.operator not in _FAILING
+    weak = part.operator in _WEAK
+    low, high = range_of(part)
+    last = len(columns[right].values) - 1
+    start, end = instant + low, last if high is None else min(instant + high, last)
+    # Beyond the last instant everything is as it is there, which is then on the way, too.
+    beyond = start > last and not ends and (high is None or low <= high)
+    start = last if beyond else start
+    found = columns[right].next(wanted, start)
+    broken = last + 1 if left is None else columns[left].next(not wanted, instant)
+    way = found + 1 if beyond else found
+    if found <= end and broken >= way:
+        yield right, found, found
+        if left is not None and instant < way:
+            yield left, instant, way - 1
+        return
+    if left is not None and weak and broken > end:
+        yield left, instant, end
+        return
+    stop = end
+    if left is not None and (weak or beyond or broken < end) and broken <= last:
+        yield left, broken, broken
+        stop = min(broken, end)
+    if start <= stop < found:
+        yield right, start, stop

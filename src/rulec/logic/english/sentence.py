@@ -1,0 +1,257 @@
+"""A formula as a plain English sentence that has one reading only.
+
+What can be said in a line without doubt is: what scopes over the rest of a line stands at its head,
+and only simple clauses stand between commas. Whatever is nested deeper becomes a list with labels,
+as in contracts. Different formulas get different sentences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+from rulec.logic.english.atom_phrases import (
+    atom_in_english,
+    comparison_in_english,
+    counted,
+    lasting,
+    listed,
+    single_count,
+    spoken,
+)
+from rulec.logic.english.temporal_phrases import adverb, pattern_of
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Formula,
+    Same,
+    Unary,
+    UnaryOperator,
+)
+
+MOST_IN_A_LINE = 3
+"""Longer chains of ``and``, ``or`` and ``then`` become lists."""
+
+
+class Shape(IntEnum):
+    """What a phrase can stand beside, from the simplest to what needs a list of its own."""
+
+    CLAUSE = 0
+    """One atom or comparison, or its denial."""
+    SCOPED = 1
+    """Adverbs before one clause: they reach to the end."""
+    JOINED = 2
+    """Clauses joined by one ``and`` or ``or``."""
+    REACHING = 3
+    """Adverbs before joined clauses."""
+    LINE = 4
+    """Anything else that is one line."""
+    LIST = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """A line, and the list that it introduces, if any.
+
+    In ``text`` the character ``label(n)`` stands for the label of the n-th of ``items``. ``joint``
+    is the word before the last item, or before the last of the clauses that are joined.
+    """
+
+    text: str
+    shape: Shape
+    items: tuple[Phrase, ...] = ()
+    joint: str = ""
+    n_clauses: int = 1
+
+
+def label(index: int) -> str:
+    """What stands in a phrase's text for the label of its item ``index``, from 0."""
+    return chr(0xE000 + index)
+
+
+def sentence(formula: Formula, variables: Sequence[tuple[str, str]], related: Related) -> Phrase:
+    """The rule that has this formula as a sentence, without its full stop.
+
+    Args:
+        formula: what the rule requires.
+        variables: the rule's variables, each with its type.
+        related: can an object be of both types? If so the variables stand for different ones.
+    """
+    body = phrase(formula, inside=False)
+    return replace(body, text=f"{_for_every(variables, related)}{body.text}") if variables else body
+
+
+_WHEN = {
+    "initially": "at the start of the trace",
+    "at start": "at the start of the stretch that the rule guards",
+    "throughout": "throughout the stretch that the rule guards",
+    "at some point": "at some point of the stretch that the rule guards",
+    "at end": "at the end of the stretch that the rule guards",
+}
+
+
+def exemption(formula: Formula, scope: str) -> Phrase:
+    """An exception of a rule as a sentence, without its full stop; ``scope`` as in a rulebook."""
+    return _after(f"it does not count if, {_WHEN[scope]},", phrase(formula, inside=True))
+
+
+def condition(formula: Formula, *, guards: bool) -> Phrase:
+    """Where a rule applies at all; ``guards``: it guards a stretch of the trace."""
+    when = _WHEN["throughout" if guards else "initially"]
+    return _after(f"it counts only if, {when},", phrase(formula, inside=True))
+
+
+Related = Callable[[str, str], bool]
+
+
+def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
+    named = []
+    for number, (name, of_type) in enumerate(variables):
+        other = any(related(of_type, earlier) for _, earlier in variables[:number])
+        named.append(f"every {'other ' if other else ''}{spoken(of_type)} {name}")
+    return f"for {listed(named)}: "
+
+
+def phrase(formula: Formula, *, inside: bool) -> Phrase:
+    """A formula as a phrase; ``inside``: it speaks of another time than the start of the trace."""
+    at_start = "" if inside else " at the start"
+    match formula:
+        case Unary(UnaryOperator.NOT, operand) if not _counts(operand):
+            denied = _clause(operand, holds=False)
+            if denied is not None:
+                return Phrase(f"{denied}{at_start}", Shape.CLAUSE)
+            return _after("it is not the case that", phrase(operand, inside=inside))
+        case Unary(UnaryOperator.NOT, operand):
+            return _after("it is not the case that", phrase(operand, inside=inside))
+        case Unary(operator, operand, bound):
+            return _after(adverb(operator, bound, inside=inside), phrase(operand, inside=True))
+        case Binary(BinaryOperator.AND | BinaryOperator.OR):
+            return _chain(formula, inside=inside)
+        case Binary(BinaryOperator.THEN):
+            return _phases(formula)
+        case Binary(BinaryOperator.IMPLIES, left, right):
+            return _condition(phrase(left, inside=inside), phrase(right, inside=inside))
+        case Binary(BinaryOperator.IFF, left, right):
+            return _between("{} if and only if {}", left, right, inside=inside)
+        case Binary(BinaryOperator.XOR, left, right):
+            return _between("either {} or {}, but not both", left, right, inside=inside)
+        case Binary(operator, left, right, bound):
+            return _between(pattern_of(operator, bound, inside=inside), left, right, inside=True)
+        case Comparison() if (count := single_count(formula)) is not None:
+            there_are = counted(formula, count)
+            lead = there_are if inside else f"at the start {there_are}"
+            return _after(lead, phrase(count.body, inside=True))
+    clause = _clause(formula, holds=True)
+    assert clause is not None, "everything else is a clause"
+    return Phrase(f"{clause}{at_start}", Shape.CLAUSE)
+
+
+def _counts(formula: Formula) -> bool:
+    return isinstance(formula, Comparison) and single_count(formula) is not None
+
+
+def _clause(formula: Formula, *, holds: bool) -> str | None:
+    match formula:
+        case Atom():
+            return atom_in_english(formula, holds=holds)
+        case Comparison():
+            return comparison_in_english(formula, holds=holds)
+        case Constant(value):
+            verb = "holds" if holds else "does not hold"
+            return f"“{'true' if value else 'false'}” {verb}"
+        case Same(left, right):
+            return f"{left} {'is' if holds else 'is not'} the same as {right}"
+    return None
+
+
+def _after(lead: str, scope: Phrase) -> Phrase:
+    """Words at the head of a line, which reach to its end, or over the list that it introduces."""
+    if scope.shape is Shape.JOINED and lead.endswith("that"):
+        return Phrase(f"{lead} {_together(scope)}", Shape.REACHING)
+    # A pause is made where more than a clause follows, unless there is one or `that` forbids it.
+    runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith(("it ", "there "))
+    pause = "" if runs_on or lead.endswith(("that", "which", ",")) else ","
+    shape = Shape.REACHING if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
+    return replace(scope, text=f"{lead}{pause} {scope.text}", shape=shape)
+
+
+def _together(joined: Phrase) -> str:
+    """Clauses joined by ``and`` or ``or`` behind a denial, which has to be one of all of them."""
+    if joined.joint == "or":
+        return f"either {joined.text}"
+    pair = joined.n_clauses == 2
+    return f"both {joined.text}" if pair else f"all of this is so: {joined.text}"
+
+
+def _between(pattern: str, left: Formula, right: Formula, *, inside: bool) -> Phrase:
+    """Clauses in the places of a pattern; what is more than a clause goes to a list below it."""
+    first, last = phrase(left, inside=inside), phrase(right, inside=inside)
+    if last.shape is Shape.JOINED and pattern.endswith("{}"):
+        last = Phrase(_together(last), Shape.CLAUSE)
+    return _placed(pattern, (first, last), Shape.CLAUSE)
+
+
+def _placed(pattern: str, sides: Sequence[Phrase], most: Shape) -> Phrase:
+    items: list[Phrase] = []
+    places = []
+    for side in sides:
+        places.append(side.text if side.shape <= most else label(len(items)))
+        items += [side] if side.shape > most else []
+    text = pattern.format(*places)
+    if not items:
+        return Phrase(text, Shape.LINE)
+    return Phrase(f"{text}, where:", Shape.LIST, tuple(items))
+
+
+def _condition(left: Phrase, right: Phrase) -> Phrase:
+    if left.shape > Shape.REACHING:
+        return _placed("if {}, then {}", (left, right), Shape.REACHING)
+    shape = Shape.LIST if right.shape is Shape.LIST else Shape.LINE
+    return replace(right, text=f"if {left.text}, then {right.text}", shape=shape)
+
+
+def _chain(formula: Binary, *, inside: bool) -> Phrase:
+    """``and`` and ``or``, which are read from the left."""
+    operands: list[Formula] = []
+    rest: Formula = formula
+    while isinstance(rest, Binary) and rest.operator is formula.operator:
+        operands.append(rest.right)
+        rest = rest.left
+    parts = tuple(phrase(part, inside=inside) for part in (rest, *reversed(operands)))
+    joint = formula.operator.value
+    if (
+        len(parts) <= MOST_IN_A_LINE
+        and all(part.shape is Shape.CLAUSE for part in parts[:-1])
+        and parts[-1].shape <= Shape.SCOPED
+    ):
+        shape = Shape.JOINED if parts[-1].shape is Shape.CLAUSE else Shape.LINE
+        texts = [part.text for part in parts]
+        comma = "," if shape is Shape.LINE else ""
+        head = ", ".join(texts[:-1])
+        return Phrase(f"{head}{comma} {joint} {texts[-1]}", shape, (), joint, len(parts))
+    both = "both" if len(parts) == 2 else "all"
+    head = f"{both} of these hold:" if joint == "and" else "at least one of these holds:"
+    return Phrase(head, Shape.LIST, parts, joint)
+
+
+def _phases(formula: Binary) -> Phrase:
+    """``then``, which is read from the right; a bound says how long the phase before it lasts."""
+    phases: list[tuple[Phrase, str]] = []
+    rest: Formula = formula
+    while isinstance(rest, Binary) and rest.operator is BinaryOperator.THEN:
+        lasts = "" if rest.bound is None else f" {lasting(rest.bound)}"
+        phases.append((phrase(rest.left, inside=True), lasts))
+        rest = rest.right
+    phases.append((phrase(rest, inside=True), ""))
+    if len(phases) <= MOST_IN_A_LINE and all(one.shape is Shape.CLAUSE for one, _ in phases):
+        steps = ", then".join(f"{lasts} {one.text}" for one, lasts in phases)
+        return Phrase(f"without a break first{steps}", Shape.LINE)
+    items = tuple(
+        replace(one, text=f"{lasts.strip()}: {one.text}") if lasts else one for one, lasts in phases
+    )
+    head = "these phases follow one another without a break, each for at least one moment:"
+    return Phrase(head, Shape.LIST, items, "then")

@@ -1,0 +1,68 @@
+"""A sentence with its lists laid out: (a), (b), below them (i), (ii), below these (1), (2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rulec.logic.english.sentence import Phrase, label
+
+_ROMAN = ((50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, "i"))
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of a sentence, ``depth`` lists deep; the first one has no label."""
+
+    depth: int
+    label: str
+    text: str
+
+
+def lines(phrase: Phrase) -> list[Line]:
+    """The sentence from its capital letter to its full stop."""
+    found = list(_lines(phrase, 0, "", "."))
+    first = found[0]
+    return [Line(0, "", f"{first.text[:1].upper()}{first.text[1:]}"), *found[1:]]
+
+
+def in_one_line(phrase: Phrase) -> str:
+    """The sentence as one line of text, labels included."""
+    return " ".join(f"{line.label} {line.text}".strip() for line in lines(phrase))
+
+
+def _lines(phrase: Phrase, depth: int, own: str, end: str) -> Iterator[Line]:
+    labels = [_label(depth, index, own) for index in range(len(phrase.items))]
+    text = phrase.text
+    for index, one in enumerate(labels):
+        text = text.replace(label(index), one)
+    yield Line(depth, own, text if phrase.items else f"{text}{end}")
+    for index, (one, item) in enumerate(zip(labels, phrase.items, strict=True)):
+        left = len(labels) - index - 1
+        after = end if not left else f"; {phrase.joint}" if left == 1 and phrase.joint else ";"
+        yield from _lines(item, depth + 1, one, after)
+
+
+def _label(depth: int, index: int, above: str) -> str:
+    match depth:
+        case 0:
+            return f"({_letters(index)})"
+        case 1:
+            return f"({_roman(index + 1)})"
+        case 2:
+            return f"({index + 1})"
+        case _:
+            return f"({above.strip('()')}.{index + 1})"
+
+
+def _letters(index: int) -> str:
+    more, last = divmod(index, 26)
+    return (_letters(more - 1) if more else "") + chr(ord("a") + last)
+
+
+def _roman(number: int) -> str:
+    text = ""
+    for value, sign in _ROMAN:
+        times, number = divmod(number, value)
+        text += sign * times
+    return text

@@ -1,0 +1,207 @@
+"""The past as registers: operators of the past give way to propositions about what was.
+
+Every operator of the past is a case of ``left since[low..high] right``. Where no operator of the
+future has a say in its operands, the word up to an instant decides it: a register, small and
+deterministic, holds what will be needed (cf. Havelund, Roşu, "Synthesizing monitors for safety
+properties", 2002). Elsewhere it is said by its expansion laws (Lichtenstein, Pnueli, Zuck, "The
+glory of the past", 1985), which need to know a formula's value one instant ago: a memory. What is
+left speaks of the present and the future alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from rulec.logic.bounds import BOOLEAN, PAST, Range, range_of
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Formula,
+    Same,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+
+NOT, AND, OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+
+
+@dataclass(frozen=True, slots=True)
+class Register:
+    """The proposition ``atom``: does ``left since[low..high] right`` hold now?
+
+    ``left`` and ``right`` speak of the present alone, and of earlier registers. Its state is the
+    set of instants at which it holds if ``left`` does from now on and ``right`` does not: bit k of
+    an integer stands for k instants after the last letter, bit 0 for that letter. An integer below
+    0 has bits without end.
+    """
+
+    atom: Atom
+    left: Formula
+    right: Formula
+    span: Range
+
+    at_first = 0
+    """The state before the first letter."""
+
+    def after(self, state: int, left: bool, right: bool) -> int:
+        """The state after a letter for which the operands have these values."""
+        due = state >> 1 if left else 0
+        return due | self._ahead if right else due
+
+    @property
+    def _ahead(self) -> int:
+        low, high = self.span
+        reached = -1 << low
+        return reached if high is None else reached & ((1 << (high + 1)) - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """The proposition ``atom``: is there an instant before this one, and did ``formula`` hold then?
+
+    ``formula`` has no operator of the past; it may speak of registers and memories, of this one
+    too. The future has a say in it.
+    """
+
+    atom: Atom
+    formula: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """A formula without operators of the past, and what the fresh atoms in it stand for.
+
+    For any word there is one way to choose these atoms' values such that each does what it is said
+    to; with them ``present`` holds at the first instant if the original formula does.
+    """
+
+    present: Formula
+    registers: tuple[Register, ...]
+    memories: tuple[Memory, ...]
+
+
+def remembered(formula: Formula) -> Past:
+    """The formula without operators of the past. Its bounds are in steps; ValueError if not."""
+    found = _Found()
+    present = _present(formula, found)
+    fresh: list[Register | Memory] = [*found.registers.values(), *found.memories.values()]
+    needed: list[Register | Memory] = []
+    spoken_of = set(atoms_of(present))
+    # None of them speaks of a later one.
+    for one in sorted(fresh, key=lambda each: found.order[each.atom], reverse=True):
+        if one.atom in spoken_of:
+            needed.insert(0, one)
+            for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):
+                spoken_of.update(atoms_of(part))
+    return Past(
+        present,
+        tuple(one for one in needed if isinstance(one, Register)),
+        tuple(one for one in needed if isinstance(one, Memory)),
+    )
+
+
+def definition(memory: Memory) -> Formula:
+    """What makes a memory a memory: false at the first instant, then what the formula was."""
+    first = Unary(NOT, memory.atom)
+    then = Unary(UnaryOperator.WEAK_NEXT, memory.atom)
+    then_not = Unary(UnaryOperator.WEAK_NEXT, first)
+    was = Binary(BinaryOperator.IMPLIES, memory.formula, then)
+    was_not = Binary(OR, memory.formula, then_not)
+    return Binary(AND, first, Unary(UnaryOperator.ALWAYS, Binary(AND, was, was_not)))
+
+
+@dataclass(slots=True)
+class _Found:
+    """What has been found so far: registers by what they say, memories by what they remember."""
+
+    registers: dict[tuple[Formula, Formula, Range], Register] = field(default_factory=dict)
+    memories: dict[Formula, Memory] = field(default_factory=dict)
+    sinces: dict[tuple[Formula, Formula, Range], Formula] = field(default_factory=dict)
+    order: dict[Formula, int] = field(default_factory=dict)
+
+    def fresh(self, kind: str) -> Atom:
+        # No atom of a rulebook has a space there.
+        atom = Atom(f"{kind} {len(self.order)}")
+        self.order[atom] = len(self.order)
+        return atom
+
+    def is_settled(self, formula: Formula) -> bool:
+        """Does the word up to an instant decide it?"""
+        unsettled = {one.atom for one in self.memories.values()}
+        return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
+
+
+def _present(formula: Formula, found: _Found) -> Formula:
+    match formula:
+        case Atom() | Comparison() | Same() | Constant():
+            return formula
+        case Unary(operator, operand, bound):
+            inner = _present(operand, found)
+            if operator not in PAST:
+                return Unary(operator, inner, bound)
+            span = range_of(formula)
+            if operator in (UnaryOperator.WEAK_PREVIOUSLY, UnaryOperator.HISTORICALLY):
+                return Unary(NOT, _since(Constant(True), Unary(NOT, inner), span, found))
+            return _since(Constant(True), inner, span, found)
+        case Binary(operator, left, right, bound):
+            first, second = _present(left, found), _present(right, found)
+            if operator not in PAST:
+                return Binary(operator, first, second, bound)
+            return _since(first, second, range_of(formula), found)
+
+
+def _since(left: Formula, right: Formula, span: Range, found: _Found) -> Formula:
+    if found.is_settled(left) and found.is_settled(right):
+        # The same operator on the same operands needs no second register.
+        key = (left, right, span)
+        if key not in found.registers:
+            found.registers[key] = Register(found.fresh("register"), left, right, span)
+        return found.registers[key].atom
+    return _unfolded(left, right, span, found)
+
+
+def _unfolded(left: Formula, right: Formula, span: Range, found: _Found) -> Formula:
+    """``left since right`` in the words of the present and of one instant ago.
+
+    From the shortest range to the wanted one, each says by the one before what was one instant ago.
+    """
+    key = (left, right, span)
+    known = found.sinces.get(key)
+    if known is not None:
+        return known
+    low, high = span
+    if high is None:
+        before = found.fresh("memory")
+        now: Formula = Binary(OR, right, Binary(AND, left, before))
+        found.memories[now] = Memory(before, now)
+    else:
+        now = right
+        for _ in range(high - low):
+            now = Binary(OR, right, Binary(AND, left, _one_ago(now, found)))
+    for _ in range(low):
+        now = Binary(AND, left, _one_ago(now, found))
+    found.sinces[key] = now
+    return now
+
+
+def _one_ago(formula: Formula, found: _Found) -> Formula:
+    if found.is_settled(formula):
+        return _since(Constant(True), formula, Range(1, 1), found)
+    if formula not in found.memories:
+        found.memories[formula] = Memory(found.fresh("memory"), formula)
+    return found.memories[formula].atom
+
+
+def _is_present(formula: Formula) -> bool:
+    """Does it speak of the present alone?"""
+    match formula:
+        case Atom() | Comparison() | Same() | Constant():
+            return True
+        case Unary(operator, operand):
+            return operator in BOOLEAN and _is_present(operand)
+        case Binary(between, left, right):
+            return between in BOOLEAN and _is_present(left) and _is_present(right)

@@ -1,0 +1,207 @@
+"""Many traces judged together; each verdict is the one that ``verify`` gives of the trace alone.
+
+Traces that are alike but for their objects' names run through the machines together. Whatever is
+odd about a trace, from an unknown name to a missing value, is left to ``verify``, which says it
+best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from rulec.automata.axiom_instances import counts
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.thresholds import exact
+from rulec.diagnostics import RulecError
+from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.batch.column_reader import NotGivenError
+from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.engine import judge_cells, judge_columns
+from rulec.monitoring.batch.trace_groups import grouped, under_one_name
+from rulec.monitoring.batch.trace_shapes import Names, Shape, in_own_names, shape_of
+from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.batch.verdict_columns import Judged
+from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.state_view import Moment
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.verify import RulebookFor, check_step, judge, made_for
+from rulec.trace import Trace
+from rulec.trace.trace_validation import check_frame, check_presence
+
+MOST_STATES = 1 << 18
+"""Traces with so many states together are read before they are judged."""
+
+FEWEST = 4
+"""Fewer traces of one shape are judged one by one."""
+
+_LONG = 1 << 6
+"""Fewer of them are judged together, too, if they have so many states."""
+
+_SHARED = 4
+"""Where a state is met so many times, on average, what it means is worked out once."""
+
+Rules = CompiledRulebook | RulebookFor
+Answer = Verdict | NotJudged
+
+
+def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterator[Answer]:
+    """The verdict on each trace, in their order; in place of one that cannot be given, why.
+
+    Traces are read some thousands at a time, fewer if they are long, so there may be any number of
+    them. A ``RulecError`` in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
+    """
+    chunk: list[Trace | RulecError] = []
+    n_states = 0
+    for item in traces:
+        chunk.append(item)
+        n_states += len(item.states) + 1 if isinstance(item, Trace) else 1
+        if n_states >= MOST_STATES:
+            yield from judge_chunk(chunk, rulebook)
+            chunk, n_states = [], 0
+    yield from judge_chunk(chunk, rulebook)
+
+
+def judge_chunk(
+    items: Sequence[Trace | RulecError], rulebook: Rules, fewest: int = FEWEST
+) -> list[Answer]:
+    """The same for a few traces; ``fewest`` of one shape are judged together."""
+    answers: list[Answer | None] = [None] * len(items)
+    shapes: dict[Shape, list[int]] = {}
+    for place, item in enumerate(items):
+        if isinstance(item, Trace):
+            try:
+                shapes.setdefault(shape_of(item), []).append(place)
+            except (TypeError, AttributeError, KeyError):
+                continue  # it is no trace, which ``verify`` will say
+    for places in shapes.values():
+        if len(places) >= fewest or _are_long(items, places):
+            _judge_group(items, places, rulebook, answers)
+    return [
+        judge(item, rulebook) if answer is None else answer
+        for item, answer in zip(items, answers, strict=True)
+    ]
+
+
+def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
+    """Have traces so many states together that it does not matter how few they are?"""
+    traces = [items[place] for place in places]
+    return sum(len(one.states or ()) for one in traces if isinstance(one, Trace)) >= _LONG
+
+
+def _judge_group(
+    items: Sequence[Trace | RulecError],
+    places: Sequence[int],
+    rulebook: Rules,
+    answers: list[Answer | None],
+) -> None:
+    """Answer for those traces of one shape that nothing is odd about."""
+    sound: list[tuple[int, Trace]] = []
+    for place in places:
+        trace = items[place]
+        if isinstance(trace, Trace) and _is_framed(trace):
+            sound.append((place, trace))
+    if not sound:
+        return
+    try:
+        rules = rules_for(sound[0][1], rulebook)
+    except RulecError:
+        return
+    group = _judged(sound, rules)
+    if group is None:
+        return
+    unread = set(chain.from_iterable(one.unread.tolist() for one in group.judged))
+    violations = violations_in(group.judged)
+    for number, place in enumerate(group.order):
+        if number not in unread:
+            where, trace = group.traces[place]
+            found = violations.get(number, ())
+            told = in_own_names(found, group.objects, tuple(trace.objects))
+            answers[where] = Verdict(trace.id, told)
+
+
+_Placed = tuple[int, Trace]
+
+
+@dataclass(frozen=True, slots=True)
+class _JudgedGroup:
+    """What the engine says of the objects of a group, of which traces, and in which order."""
+
+    judged: Sequence[Judged]
+    traces: Sequence[_Placed]
+    order: Sequence[int]
+    objects: Names
+
+
+def _judged(traces: Sequence[_Placed], rules: CompiledRulebook) -> _JudgedGroup | None:
+    group = grouped([trace for _, trace in traces])
+    cells = group.cells
+    if len(cells.states) * _SHARED > cells.layout.n_states:
+        if any(counts(fact.formula) for fact in rules.facts):
+            return None
+        try:
+            columns = gathered(cells, rules.vocabulary, group.names)
+            judged = judge_columns(columns, rules)
+        except (OddError, NotGivenError):
+            return None
+        return _JudgedGroup(judged, traces, group.order, tuple(cells.objects))
+    cells = under_one_name(group)
+    scenes = cells.there or (cells.objects,) * len(cells.states)
+    odd = {
+        id(state)
+        for state, known, there in zip(group.cells.states, cells.states, scenes, strict=True)
+        if not _fits(known, cells.objects, there, rules)
+    }
+    if odd:
+        traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
+        if not traces:
+            return None
+        group = grouped([trace for _, trace in traces])
+        cells = under_one_name(group)
+    return _JudgedGroup(judge_cells(cells, rules), traces, group.order, tuple(cells.objects))
+
+
+def _is_framed(trace: Trace) -> bool:
+    try:
+        check_frame(trace)
+        if trace.present:
+            check_presence(trace)
+    except (RulecError, TypeError):
+        return False
+    return True
+
+
+def rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
+    """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
+    rules = made_for(trace, rulebook)
+    for rule in rules.rules:
+        check_step(rule, exact(trace.step_s))
+    check_objects(trace.objects, rules.vocabulary)
+    return rules
+
+
+def _fits(
+    state: object, objects: Mapping[str, str], there: Mapping[str, str], rulebook: CompiledRulebook
+) -> bool:
+    if not isinstance(state, Mapping):
+        return False
+    vocabulary = rulebook.vocabulary
+    try:
+        check_state(state, objects, vocabulary, "")
+        moment = Moment(state, there, vocabulary)
+        check_counting_facts(rulebook, 1, lambda _: moment, str, None)
+    except RulecError:
+        return False
+    return True
+
+
+def violations_in(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
+    """The violations of each trace that has some, in the order of rules and objects."""
+    found: dict[int, list[Violation]] = {}
+    for one in judged:
+        rule, objects = one.task.rule, one.task.objects
+        for trace, step in zip(one.violated.tolist(), one.lost_at().tolist(), strict=True):
+            violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
+            found.setdefault(trace, []).append(violation)
+    return found

@@ -1,0 +1,60 @@
+"""The letters that a rule's machine reads in each of a few states."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.rule_bindings import Task
+from rulec.monitoring.letter_reader import Columns
+from rulec.trace.trace_columns import TraceCells
+from rulec.vocabulary import Vocabulary
+
+
+class Spelling:
+    """The states of walks, read for tasks, by the code that reads single traces."""
+
+    def __init__(self, traces: TraceCells, vocabulary: Vocabulary) -> None:
+        self._n_cells = len(traces.states)
+        # States in which the same objects are there are read together.
+        parts: dict[tuple[tuple[str, str], ...], list[int]] = {}
+        for cell in range(self._n_cells):
+            there = traces.there[cell] if traces.there else traces.objects
+            parts.setdefault(tuple(there.items()), []).append(cell)
+        self._parts = [
+            (
+                cells,
+                frozenset(name for name, _ in there),
+                Columns(
+                    [traces.states[cell] for cell in cells],
+                    vocabulary,
+                    str,
+                    objects=dict(there),
+                ),
+            )
+            for there, cells in parts.items()
+        ]
+
+    def letters(self, task: Task) -> list[int]:
+        """For each cell the class of the letter; -1 where there is none to be read.
+
+        Where an object of the task is not there its machine does not run; any letter will do.
+        """
+        found = [0] * self._n_cells
+        for cells, there, columns in self._parts:
+            if there.issuperset(task.objects.values()):
+                for cell, letter in zip(cells, _word(task, columns, len(cells)), strict=True):
+                    found[cell] = letter
+        return found
+
+
+def _word(task: Task, columns: Columns, n_states: int) -> list[int]:
+    try:
+        return list(columns.word(task.rule, task.objects, 0, n_states - 1))
+    except RulecError:
+        return [_letter(task, columns, place) for place in range(n_states)]
+
+
+def _letter(task: Task, columns: Columns, place: int) -> int:
+    try:
+        return columns.word(task.rule, task.objects, place, place)[0]
+    except RulecError:
+        return -1

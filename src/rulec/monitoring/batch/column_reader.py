@@ -1,0 +1,207 @@
+"""What rules read of columns: values, numbers, counts, as digits of letters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import numpy as np
+
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.automata.thresholds import scale
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Count,
+    Formula,
+    Quantity,
+    Same,
+    Term,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
+from rulec.logic.free_names import names_in
+from rulec.logic.kleene import Bound
+from rulec.monitoring.batch.kleene_columns import (
+    UNKNOWN,
+    Mask,
+    Truth,
+    alike,
+    conjoined,
+    disjoined,
+    known,
+    negated,
+)
+from rulec.monitoring.batch.sum_thresholds import Summand, digits_of_sum
+from rulec.trace.trace_columns import Array, TraceColumns
+from rulec.vocabulary import Enumeration, Vocabulary
+
+_AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
+_IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
+
+_SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+
+
+class NotGivenError(Exception):
+    """There is no column for a name about some objects, no default, and a rule needs it."""
+
+    def __init__(self, name: str, objects: tuple[str, ...]) -> None:
+        super().__init__(name)
+        self.name = name
+        self.objects = objects
+
+
+class Reading:
+    """Columns, read for the rules of a vocabulary. What has been worked out once is kept."""
+
+    def __init__(self, columns: TraceColumns, vocabulary: Vocabulary) -> None:
+        self.columns = columns
+        self._vocabulary = vocabulary
+        self._known: dict[tuple[object, ...], Array] = {}
+
+    def values(self, name: str, items: tuple[str, ...]) -> Array | bool | float | None:
+        """A column as it is given, or the declared default; None if there is neither.
+
+        The default of an enumeration is its place among the declared values.
+        """
+        found = self.columns.values.get((name, items))
+        if found is not None:
+            return found
+        declaration = self._vocabulary.declarations[name]
+        if isinstance(declaration, Enumeration) and declaration.default is not None:
+            return declaration.values.index(declaration.default)
+        default = declaration.default
+        assert not isinstance(default, str), "only an enumeration's default is a value's name"
+        return default
+
+    def digits(self, read: NumberRead, bound: Bound) -> Array:
+        """How many thresholds a number passes in each state. Raises NotGivenError."""
+        chosen = {name: bound[name] for name in scale(read).variables}
+        key = (read.terms, read.thresholds, *sorted(chosen.items()))
+        if key not in self._known:
+            self._known[key] = self._digits(read, chosen)
+        return self._known[key]
+
+    def _digits(self, read: NumberRead, bound: Bound) -> Array:
+        n_states = self.columns.layout.n_states
+        ready = scale(read)
+        if ready.quantity is None:
+            return digits_of_sum(read, self._summands(read.terms, bound), n_states)
+        items = tuple([bound[one] for one in ready.quantity.arguments])
+        numbers = self.values(ready.quantity.name, items)
+        if numbers is None:
+            raise NotGivenError(ready.quantity.name, items)
+        if not isinstance(numbers, np.ndarray):
+            return np.full(n_states, ready.digit(numbers), dtype=np.uint8)
+        digits = np.zeros(n_states, dtype=np.uint8)
+        for floor in ready.floors:
+            digits += numbers >= floor
+        return digits
+
+    def _summands(self, terms: tuple[tuple[Fraction, Term], ...], bound: Bound) -> list[Summand]:
+        """What is summed up. Raises NotGivenError."""
+        found: list[Summand] = []
+        for coefficient, term in terms:
+            if isinstance(term, Quantity):
+                items = tuple([bound[one] for one in term.arguments])
+                numbers = self.values(term.name, items)
+                if numbers is None:
+                    raise NotGivenError(term.name, items)
+                found.append((coefficient, numbers))
+            else:
+                found.append((coefficient, self._counted(term, bound)))
+        return found
+
+    def _counted(self, count: Count, bound: Bound) -> Array:
+        """How many objects count in each state. Raises NotGivenError where that is not known."""
+        n_states = self.columns.layout.n_states
+        total: Array = np.zeros(n_states, dtype=np.int64)
+        for name, kind in self.columns.objects.items():
+            if not self._vocabulary.is_subtype(kind, count.type):
+                continue
+            truth = self._truth(count.body, {**bound, count.variable: name})
+            there = self._there(name)
+            total += truth.true & there
+            if np.any(there & ~(truth.true | truth.false)):
+                raise self._missing(count, {**bound, count.variable: name})
+        return total
+
+    def _missing(self, count: Count, bound: Bound) -> NotGivenError:
+        """The first thing that the body speaks of and that is not given."""
+        for one in atoms_of(count.body):
+            if isinstance(one, Atom):
+                items = tuple([bound[variable] for variable in one.arguments])
+                if self.values(one.name, items) is None:
+                    return NotGivenError(one.name, items)
+                continue
+            for _, term in one.terms:
+                if isinstance(term, Quantity):
+                    items = tuple([bound[variable] for variable in term.arguments])
+                    if self.values(term.name, items) is None:
+                        return NotGivenError(term.name, items)
+        return NotGivenError(next(names_in(count)), ())
+
+    def _there(self, name: str) -> Mask:
+        """The states in which an object is there."""
+        if name not in self.columns.present:
+            return np.True_
+        first, last = self.columns.present[name]
+        layout = self.columns.layout
+        there = np.zeros(layout.n_states, dtype=bool)
+        there[layout.starts[first] : layout.starts[last + 1]] = True
+        return there
+
+    def _truth(self, formula: Formula, bound: Mapping[str, str]) -> Truth:
+        match formula:
+            case Atom(name, arguments, wanted):
+                return self.atom(name, tuple([bound[one] for one in arguments]), wanted)
+            case Comparison():
+                return self._compared(formula, bound)
+            case Same(one, other):
+                return known(np.bool_(bound[one] == bound[other]))
+            case Constant(truth):
+                return known(np.bool_(truth))
+            case Unary(operator, operand) if operator is UnaryOperator.NOT:
+                return negated(self._truth(operand, bound))
+            case Binary(operator, left, right):
+                first, second = self._truth(left, bound), self._truth(right, bound)
+                if operator is _AND:
+                    return conjoined(first, second)
+                if operator is _OR:
+                    return disjoined(first, second)
+                if operator is _IMPLIES:
+                    return disjoined(negated(first), second)
+                if operator is _IFF:
+                    return alike(first, second)
+                if operator is _XOR:
+                    return negated(alike(first, second))
+        raise TypeError("this formula does not speak of one state alone")
+
+    def _compared(self, comparison: Comparison, bound: Bound) -> Truth:
+        try:
+            return known(self.compared(comparison, bound))
+        except NotGivenError:
+            return UNKNOWN
+
+    def compared(self, comparison: Comparison, bound: Bound) -> Mask:
+        """Where a comparison holds. Raises NotGivenError."""
+        at = Threshold(comparison.limit, inclusive=True)
+        above = Threshold(comparison.limit, inclusive=False)
+        # 0 below the limit, 1 at it, 2 above it.
+        side = self.digits(NumberRead(comparison.terms, (at, above)), bound)
+        return np.isin(side, _SIDES[comparison.relation])
+
+    def atom(self, name: str, items: tuple[str, ...], wanted: str | None) -> Truth:
+        """Where a signal is on, or an enumeration has a value."""
+        values = self.values(name, items)
+        if values is None:
+            return UNKNOWN
+        declaration = self._vocabulary.declarations[name]
+        if isinstance(declaration, Enumeration):
+            assert wanted is not None, "the rulebook has been checked"
+            return known(np.asarray(values == declaration.values.index(wanted)))
+        return known(np.asarray(values, dtype=bool))

@@ -1,0 +1,140 @@
+"""States gathered into columns, as far as nothing about them is odd."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from contextlib import suppress
+from operator import itemgetter
+from typing import Any
+
+from rulec.monitoring.batch.trace_shapes import Names
+from rulec.monitoring.batch.value_encoding import OddError, meant
+from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns
+from rulec.vocabulary import Declaration, Vocabulary
+
+_NOT_GIVEN = object()
+_EMPTY: Mapping[str, Any] = {}
+
+
+def gathered(
+    traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names] = ()
+) -> TraceColumns:
+    """The same traces as columns.
+
+    ``names`` has for each state what the objects are called there, unless they have their names.
+
+    Raises:
+        OddError: if ``check_state`` would refuse a state, or a value is given in some states only
+            and has no default; sometimes, too, if a value is of an unusual type.
+    """
+    if not set(map(type, traces.states)) <= {dict}:
+        raise OddError
+    gathering = _Gathering(traces, vocabulary, names)
+    for name in set().union(*traces.states):
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None:
+            raise OddError
+        values = [state.get(name, _NOT_GIVEN) for state in traces.states]
+        gathering.add(values, declaration, declaration.parameters, ())
+    return TraceColumns(
+        traces.layout, gathering.columns, traces.objects, traces.present, traces.step_s
+    )
+
+
+class _Gathering:
+    def __init__(self, traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names]) -> None:
+        self.columns: dict[Key, Array] = {}
+        self._names = names
+        self._traces = traces
+        self._vocabulary = vocabulary
+        self._known: dict[str, Set[int]] = {}
+
+    def add(
+        self,
+        values: Sequence[Any],
+        declaration: Declaration,
+        parameters: Sequence[str],
+        items: tuple[str, ...],
+    ) -> None:
+        """Add the columns for what states say of a name about some objects, and of further ones."""
+        if not parameters:
+            self.columns[declaration.name, items] = self._column(values, declaration, items)
+            return
+        maps = [_EMPTY if value is _NOT_GIVEN else value for value in values]
+        if not set(map(type, maps)) <= {dict}:
+            raise OddError
+        for item, inner in self._by_object(maps):
+            kind = self._traces.objects.get(item)
+            if kind is None or not self._vocabulary.is_subtype(kind, parameters[0]):
+                raise OddError
+            self.add(inner, declaration, parameters[1:], (*items, item))
+
+    def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Sequence[tuple[str, Sequence[Any]]]:
+        """What states say of each object that any of them speaks of."""
+        if set(map(len, maps)) == {len(maps[0])}:
+            with suppress(KeyError, ValueError):
+                return self._if_of_the_same(maps)
+        if self._names:
+            objects = self._traces.objects
+            meant = {own: dict(zip(own, objects, strict=True)) for own in set(self._names)}
+            maps = list(map(_under, maps, map(meant.__getitem__, self._names)))
+        every = set().union(*maps)
+        return [(item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every]
+
+    def _if_of_the_same(
+        self, maps: Sequence[Mapping[str, Any]]
+    ) -> Sequence[tuple[str, Sequence[Any]]]:
+        """As ``_by_object``, if all speak of the objects of the first; KeyError otherwise.
+
+        ValueError if that speaks of what is none.
+        """
+        if not self._names:
+            return [(item, list(map(itemgetter(item), maps))) for item in maps[0]]
+        objects = tuple(self._traces.objects)
+        return [
+            (objects[place], [one[own[place]] for one, own in zip(maps, self._names, strict=True)])
+            for place in map(self._names[0].index, maps[0])
+        ]
+
+    def _column(
+        self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
+    ) -> Array:
+        if _NOT_GIVEN in values:
+            values = self._filled(values, declaration, items)
+        return meant(values, declaration).take(self._traces.cells)
+
+    def _filled(
+        self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
+    ) -> Sequence[Any]:
+        """The values with the default where none is given."""
+        filler = declaration.default
+        if filler is None:
+            if self._are_there_in_any(items, _places(values)):
+                raise OddError
+            # Where an object is not there, nothing reads what would be said of it.
+            filler = next(value for value in values if value is not _NOT_GIVEN)
+        return [filler if value is _NOT_GIVEN else value for value in values]
+
+    def _are_there_in_any(self, items: tuple[str, ...], places: Sequence[int]) -> bool:
+        """Are all these objects there in any of the states at these places?"""
+        if not self._traces.there:
+            return bool(places)
+        return bool(set(places).intersection(*map(self._places_of, items)))
+
+    def _places_of(self, item: str) -> Set[int]:
+        """The states that an object is there in, by their places."""
+        if item not in self._known:
+            there = enumerate(self._traces.there)
+            self._known[item] = frozenset([place for place, objects in there if item in objects])
+        return self._known[item]
+
+
+def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, Any]:
+    try:
+        return {names[item]: value for item, value in about.items()}
+    except KeyError:
+        raise OddError from None
+
+
+def _places(values: Sequence[Any]) -> list[int]:
+    return [place for place, value in enumerate(values) if value is _NOT_GIVEN]

@@ -1,0 +1,128 @@
+"""Several machines as one, which reads what all of them read and gives all their verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from rulec.automata.mealy_monitor import Machine
+from rulec.automata.tables import minimise
+
+MOST_ENTRIES = 256
+"""The states times the letters of a joint machine: as many as a byte can name."""
+
+MOST_VERDICTS = 8
+"""Machines joined into one: as many as a byte has bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """Machines that run together.
+
+    ``members`` are the machines' places among those that were given. ``letters[cell]`` is the
+    letter of a cell, ``following[state][letter]`` the next state, ``verdicts[state][letter]`` a
+    whole number: its bit k says whether the k-th member accepts a word that ends with this letter
+    read in this state. Runs start in state 0.
+    """
+
+    members: tuple[int, ...]
+    letters: tuple[int, ...]
+    following: tuple[tuple[int, ...], ...]
+    verdicts: tuple[tuple[int, ...], ...]
+
+    @property
+    def n_letters(self) -> int:
+        """How many letters there are."""
+        return len(self.following[0])
+
+
+Spelled = tuple[Machine, tuple[int, ...]]
+"""A machine, and for each cell the class of the letter that the machine reads there."""
+
+
+def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Iterator[Joint]:
+    """Joint machines that together do what all of these do, in this order.
+
+    Neighbours are joined as long as what comes out has no more than ``most_entries``; a machine
+    that is larger by itself stays alone.
+    """
+    for start in range(0, len(machines), MOST_VERDICTS):
+        members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
+        everything = _joint(members, tuple([machines[one] for one in members]), most_entries)
+        if everything is not None:
+            yield everything
+        else:
+            yield from _one_by_one(members, machines, most_entries)
+
+
+def _one_by_one(
+    members: Sequence[int], machines: Sequence[Spelled], most_entries: int
+) -> Iterator[Joint]:
+    found: Joint | None = None
+    for place in members:
+        one = machines[place]
+        more = None
+        if found is not None:
+            together = (*(machines[member] for member in found.members), one)
+            more = _joint((*found.members, place), together, most_entries)
+        if more is None:
+            if found is not None:
+                yield found
+            more = _joint((place,), (one,), most_entries) or _alone(place, *one)
+        found = more
+    if found is not None:
+        yield found
+
+
+@lru_cache(maxsize=256)
+def _joint(
+    members: tuple[int, ...], machines: tuple[Spelled, ...], most_entries: int
+) -> Joint | None:
+    """The smallest machine that does the same; None if it is too large, or would be on the way.
+
+    Many traces come some thousand at a time, and mean the same each time.
+    """
+    columns = list(zip(*(letters for _, letters in machines), strict=True))
+    spelled = list(dict.fromkeys(columns))
+    states = {(0,) * len(machines): 0}
+    following: list[list[int]] = []
+    verdicts: list[list[int]] = []
+    waiting = list(states)
+    while waiting:
+        state = waiting.pop(0)
+        if len(states) * len(spelled) > 4 * most_entries:
+            return None
+        following.append([])
+        verdicts.append([])
+        for column in spelled:
+            target, verdict = [], 0
+            for bit, ((machine, _), one, letter) in enumerate(
+                zip(machines, state, column, strict=True)
+            ):
+                target.append(machine.following[one][letter])
+                verdict |= machine.accepting[one][letter] << bit
+            reached = tuple(target)
+            if reached not in states:
+                states[reached] = len(states)
+                waiting.append(reached)
+            following[-1].append(states[reached])
+            verdicts[-1].append(verdict)
+    smaller, outputs = minimise(following, verdicts, 0)
+    effects = list(zip(*smaller, *outputs, strict=True))
+    numbers = {effect: number for number, effect in enumerate(dict.fromkeys(effects))}
+    if len(smaller) * len(numbers) > most_entries:
+        return None
+    kept = [effects.index(effect) for effect in numbers]
+    letter_of = {one: numbers[effect] for one, effect in zip(spelled, effects, strict=True)}
+    return Joint(
+        members,
+        tuple([letter_of[column] for column in columns]),
+        tuple([tuple([row[place] for place in kept]) for row in smaller]),
+        tuple([tuple([row[place] for place in kept]) for row in outputs]),
+    )
+
+
+def _alone(place: int, machine: Machine, letters: tuple[int, ...]) -> Joint:
+    verdicts = tuple(tuple(map(int, row)) for row in machine.accepting)
+    return Joint((place,), letters, machine.following, verdicts)

@@ -1,0 +1,134 @@
+"""A machine runs over many traces, several steps of all of them in one look-up.
+
+What a trace reads in some steps is one number: the letters are its digits. A table says, for every
+state and every such number, where that leads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from itertools import repeat
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.batch.machines.step_order import Step
+from rulec.trace.trace_columns import Array
+
+Rows = tuple[tuple[int, ...], ...]
+"""A number for each letter, for each state."""
+
+_MOST_ENTRIES = 1 << 16
+"""As many as two bytes can name."""
+
+_LONGEST = 16
+"""Steps in one look-up, if there is but one letter."""
+
+_WORTH = 4
+"""So many look-ups pay for one entry of a table."""
+
+
+def pays(n_states: int, n_letters: int, n_traces: int) -> bool:
+    """Are two steps in one look-up cheaper than two look-ups, however the traces end?"""
+    return n_states * n_letters**2 <= _most_entries(n_traces)
+
+
+def _most_entries(n_traces: int) -> int:
+    return min(_MOST_ENTRIES, n_traces // _WORTH)
+
+
+def run_leaping(
+    following: Rows, verdicts: Rows, letters: Array, steps: Sequence[Step]
+) -> NDArray[np.uint8]:
+    """The verdicts on all traces: ``verdicts[state][letter]`` for the last letter of each.
+
+    ``letters`` is the column of all letters. Runs start in state 0.
+    """
+    n_states, n_letters = len(following), len(following[0])
+    found = np.empty(steps[0].now, dtype=np.uint8)
+    leaps = list(_leaps(steps, n_states, n_letters, _most_entries(steps[0].now)))
+    state: Array | None = None
+    for place, leap in enumerate(leaps):
+        entry = letters[leap[0].part].astype(np.uint16)
+        for step in leap[1:]:
+            entry *= np.uint16(n_letters)
+            entry += letters[step.part]
+        # A run has been in one state only before its first step.
+        begins = n_states if place else 1
+        if state is not None:
+            entry += state
+        end = leap[-1]
+        if end.onward < end.now:
+            table = _verdicts(following, verdicts, len(leap), begins)
+            found[end.onward : end.now] = table.take(entry[end.onward :])
+        if end.onward:
+            table = _onward(following, len(leap), begins, len(leaps[place + 1]))
+            state = table.take(entry[: end.onward])
+    return found
+
+
+# Many traces come some thousand at a time, and the same machines run over them each time.
+
+
+@lru_cache(maxsize=64)
+def _onward(following: Rows, length: int, begins: int, next_length: int) -> Array:
+    """Where so many letters lead, from each of the states that runs begin in.
+
+    A state is said as the first entry that it has in the next leap's table.
+    """
+    table = np.array(following, dtype=np.uint16)
+    scale = np.uint16(len(following[0]) ** next_length)
+    entries: Array = _after(table, following, length, begins) * scale
+    return entries
+
+
+@lru_cache(maxsize=64)
+def _verdicts(following: Rows, verdicts: Rows, length: int, begins: int) -> Array:
+    """The verdicts after so many letters."""
+    return _after(np.array(verdicts, dtype=np.uint8), following, length, begins)
+
+
+def _after(last: Array, following: Rows, length: int, begins: int) -> Array:
+    """What ``last`` says of the last letter, for all that comes before it."""
+    if length == 1:
+        return last[:begins].ravel()
+    onward = np.array(following, dtype=np.uint16)
+    before = onward[:begins]
+    for _ in range(length - 2):
+        before = onward[before].reshape(begins, -1)
+    return last[before].ravel()
+
+
+def _leaps(
+    steps: Sequence[Step], n_states: int, n_letters: int, most: int
+) -> Iterator[Sequence[Step]]:
+    """Steps that are taken together: where a trace ends, they do."""
+    start, begins = 0, 1
+    for end, step in enumerate(steps, 1):
+        if step.onward < step.now:
+            for length in _lengths(
+                end - start, _most(most // begins, n_letters), _most(most // n_states, n_letters)
+            ):
+                yield steps[start : start + length]
+                start += length
+            begins = n_states
+
+
+def _most(n_entries: int, n_letters: int) -> int:
+    """How many letters a number has that has no more values than these."""
+    length = 1
+    while n_letters ** (length + 1) <= n_entries and length < _LONGEST:
+        length += 1
+    return length
+
+
+def _lengths(n_steps: int, first: int, later: int) -> Iterator[int]:
+    """As few parts of so many steps as there can be, much alike, as that makes small tables.
+
+    The first part has no more than ``first`` steps, no other more than ``later``.
+    """
+    n_parts = 1 + -(-max(n_steps - first, 0) // later)
+    later = min(later, -(-n_steps // n_parts))
+    yield n_steps - later * (n_parts - 1)
+    yield from repeat(later, n_parts - 1)

@@ -1,0 +1,29 @@
+"""The steps of many traces, one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from rulec.trace.trace_columns import Layout
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step of ``now`` traces, ``onward`` of which have a next one; ``part`` is their column."""
+
+    now: int
+    onward: int
+    part: slice
+
+
+def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
+    """The steps from one to another (inclusive), or to the end of each trace."""
+    starts = layout.starts.tolist()
+    steps = range(first, layout.n_steps if last is None else last + 1)
+    # No trace goes on after the last of these steps.
+    traces = [*(starts[step + 1] - starts[step] for step in steps), 0]
+    return [
+        Step(now, onward, slice(starts[step], starts[step] + now))
+        for step, (now, onward) in zip(steps, pairwise(traces), strict=True)
+    ]

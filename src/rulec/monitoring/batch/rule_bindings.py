@@ -1,0 +1,47 @@
+"""What there is to judge: every rule, for every binding of its variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.monitoring.binding import bindings
+from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A rule, bound to ``objects``, from step ``first`` to ``last`` (inclusive) of every trace.
+
+    ``last`` is None for each trace's own end.
+    """
+
+    rule: CompiledRule
+    objects: Mapping[str, str]
+    first: int
+    last: int | None
+
+    @property
+    def stretch(self) -> tuple[int, int | None]:
+        """From where to where it is judged."""
+        return self.first, self.last
+
+
+def tasks_of(
+    rules: Sequence[CompiledRule],
+    vocabulary: Vocabulary,
+    objects: Mapping[str, str],
+    present: Mapping[str, tuple[int, int]],
+    n_steps: int,
+) -> Iterator[Task]:
+    """All tasks on traces with these objects, of which the longest has ``n_steps`` states.
+
+    In the order in which a verdict lists violations. All traces have the steps that ``present``
+    speaks of.
+    """
+    for rule in rules:
+        for binding in bindings(rule, vocabulary, objects, present, n_steps):
+            ends_early = any(item in present for item in binding.objects.values())
+            last = binding.last if ends_early else None
+            yield Task(rule, binding.objects, binding.first, last)

@@ -1,0 +1,81 @@
+"""Blocks of tables, judged as they are; each verdict is the one that the trace gets alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain
+
+from rulec.automata.axiom_instances import counts
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.batch_verify import Answer, Rules, judge_chunk, rules_for, violations_in
+from rulec.monitoring.batch.block_columns import Group, groups_of, tabled
+from rulec.monitoring.batch.column_reader import NotGivenError
+from rulec.monitoring.batch.engine import judge_columns
+from rulec.monitoring.batch.trace_shapes import in_own_names
+from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.verify import judge, made_for, made_for_step
+from rulec.trace import Trace
+from rulec.trace.formats.block_presence import outlined
+from rulec.trace.formats.table_blocks import Block, OddTableError
+
+_FEWEST_ROWS = 200
+"""Where a shape has fewer rows, on average, traces are read row by row."""
+
+Items = Sequence[Trace | RulecError]
+
+
+def judge_items(items: Items, rulebook: Rules) -> tuple[Items, Sequence[Answer]]:
+    """As ``judge_chunk``, of traces that may be a block; with the traces as they were read."""
+    if isinstance(items, Block):
+        answers = _judge_block(items, rulebook)
+        if answers is not None:
+            return items, answers
+        items = list(items)
+    return items, judge_chunk(items, rulebook)
+
+
+def rulebook_for(items: Items, place: int, rulebook: Rules) -> CompiledRulebook:
+    """The rulebook that one of ``judge_items`` was judged by."""
+    if isinstance(items, Block):
+        return made_for_step(items.step_s(place), rulebook)
+    trace = items[place]
+    assert isinstance(trace, Trace)
+    return made_for(trace, rulebook)
+
+
+def _judge_block(block: Block, rulebook: Rules) -> list[Answer] | None:
+    """None if something is odd about the block."""
+    answers: list[Answer | None] = [None] * len(block)
+    try:
+        outline = outlined(block)
+        groups = groups_of(block, outline)
+        if len(groups) * _FEWEST_ROWS > len(outline.trace) + _FEWEST_ROWS:
+            return None
+        for group in groups:
+            _judge_group(group, rulebook, answers)
+    except (OddTableError, OddError, NotGivenError, RulecError):
+        return None
+    return [
+        judge(block[place], rulebook) if answer is None else answer
+        for place, answer in enumerate(answers)
+    ]
+
+
+def _judge_group(group: Group, rulebook: Rules, answers: list[Answer | None]) -> None:
+    """Answer for the traces of which all that the rules read can be."""
+    outline = group.outline
+    objects = dict(zip(group.objects, group.types, strict=True))
+    step_s = float(outline.step_s[group.traces[0]])
+    rules = rules_for(Trace("", step_s, objects, ()), rulebook)
+    if any(counts(fact.formula) for fact in rules.facts):
+        raise OddError
+    judged = judge_columns(tabled(group, rules.vocabulary), rules)
+    unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
+    violations = violations_in(judged)
+    for number, trace in enumerate(group.traces.tolist()):
+        if number not in unread:
+            found = violations.get(number, ())
+            told = in_own_names(found, group.objects, outline.objects_of(trace)) if found else ()
+            answers[trace] = Verdict(outline.names[trace], told)

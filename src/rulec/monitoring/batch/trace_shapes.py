@@ -1,0 +1,68 @@
+"""Traces that are alike but for the names of their objects, and what they are called."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rulec.monitoring.verdict import Violation
+from rulec.trace import Trace
+
+Shape = tuple[object, ...]
+
+Names = tuple[str, ...]
+"""The objects of a trace, in its order."""
+
+_PLAIN = frozenset((bool, int, float, str))
+
+
+def shape_of(trace: Trace) -> Shape:
+    """What traces have in common that are judged together.
+
+    The step, and in their order the objects' types and when they are there; not their names.
+    """
+    places = {name: place for place, name in enumerate(trace.objects)}
+    stretches = [(places[name], stretch) for name, stretch in trace.present.items()]
+    return trace.step_s, tuple(trace.objects.values()), tuple(sorted(stretches))
+
+
+def renamed(about: object, names: Mapping[str, str]) -> dict[str, Any] | None:
+    """What is said of objects, said of those of other names.
+
+    None if it speaks of what is none of the objects, or is unusual.
+    """
+    if type(about) is not dict:
+        return None
+    found = {}
+    for item, value in about.items():
+        said = value if type(value) in _PLAIN else renamed(value, names)
+        if said is None or item not in names:
+            return None
+        found[names[item]] = said
+    return found
+
+
+def renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
+    """The same for a whole state."""
+    if type(state) is not dict:
+        return None
+    found = {
+        name: value if type(value) in _PLAIN else renamed(value, names)
+        for name, value in state.items()
+    }
+    return None if None in found.values() else found
+
+
+def in_own_names(
+    violations: Sequence[Violation], objects: Names, own: Names
+) -> tuple[Violation, ...]:
+    """Violations that are told of some objects, told of those of other names."""
+    if not violations or objects == own:
+        return tuple(violations)
+    names = dict(zip(objects, own, strict=True))
+    return tuple([_bound_to(one, names) for one in violations])
+
+
+def _bound_to(one: Violation, names: Mapping[str, str]) -> Violation:
+    binding = {variable: names[item] for variable, item in one.binding.items()}
+    return Violation(one.rule, one.strength, binding, one.step)

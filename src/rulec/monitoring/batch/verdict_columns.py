@@ -1,0 +1,113 @@
+"""What the engine says of one rule, for one binding, on many traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_alone
+from rulec.monitoring.batch.machines.joint_machine import joined
+from rulec.monitoring.batch.machines.table_run import first_lost, run
+from rulec.monitoring.batch.rule_bindings import Task
+from rulec.trace.trace_columns import Array, Layout
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walk:
+    """The column of cells that tasks are judged on, and what the cells mean to each of them.
+
+    ``letters[k][cell]`` is the class of the letter that the k-th task's machine reads there; below
+    0 if it reads none: a value is missing, or what is read cannot be the case.
+    """
+
+    layout: Layout
+    cells: Array
+    tasks: Sequence[Task]
+    letters: Sequence[Sequence[int]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """A task's verdicts: ``accepted`` has one for each trace, in the layout's order.
+
+    ``unread`` are traces with a state, on the task's stretch, that the machine reads no letter of;
+    their verdicts mean nothing.
+    """
+
+    task: Task
+    accepted: NDArray[np.bool_]
+    unread: NDArray[np.intp]
+    _layout: Layout
+    _cells: Array
+    _letters: Sequence[int]
+
+    @property
+    def violated(self) -> NDArray[np.intp]:
+        """The traces that violate the rule."""
+        return np.flatnonzero(~self.accepted)
+
+    def lost_at(self) -> NDArray[np.int64]:
+        """For each of ``violated`` the first state after which nothing can save the rule, or -1.
+
+        -1 if only the end of the trace, or of the objects' stretch, decides.
+        """
+        chosen, layout = self.violated, self._layout
+        first, last = self.task.stretch
+        ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
+        machine = self.task.rule.machine
+        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.following)):
+            meant = np.array(self._letters)
+            words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
+            lost = np.array([first_lost_of_one(machine, meant.take(word)) for word in words])
+            return np.where(lost < 0, lost, lost + first)
+        steps = range(first, int(ends[0]) if len(ends) else first)
+        walks = (self._cells[layout.starts[step] + chosen[: _longer(ends, step)]] for step in steps)
+        lost = first_lost(machine, self._letters, walks, ends - first)
+        return np.where(lost < 0, lost, lost + first)
+
+
+def _longer(ends: NDArray[np.int64], step: int) -> int:
+    """How many of these, which descend, are above a step."""
+    return int(np.searchsorted(-ends, -step))
+
+
+def judged(walk: Walk) -> Iterator[Judged]:
+    """The verdicts on a walk's tasks, in their order. All have the same stretch."""
+    if not walk.tasks:
+        return
+    first, last = walk.tasks[0].stretch
+    unread = [_unread(walk, letters) for letters in walk.letters]
+    spelled = [_spelled(letters) for letters in walk.letters]
+    machines = [task.rule.machine for task in walk.tasks]
+    for joint in joined(list(zip(machines, spelled, strict=True))):
+        verdicts = run(joint, walk.cells, walk.layout, first, last)
+        for bit, member in enumerate(joint.members):
+            yield Judged(
+                walk.tasks[member],
+                (verdicts & np.uint8(1 << bit)) != 0,
+                unread[member],
+                walk.layout,
+                walk.cells,
+                spelled[member],
+            )
+
+
+def _spelled(letters: Sequence[int]) -> tuple[int, ...]:
+    """Some letter for the cells that have none: they are met in no trace, or in unread ones."""
+    if min(letters, default=0) >= 0:
+        return tuple(letters)
+    return tuple([max(letter, 0) for letter in letters])
+
+
+def _unread(walk: Walk, letters: Sequence[int]) -> NDArray[np.intp]:
+    if min(letters, default=0) >= 0:
+        return np.empty(0, dtype=np.intp)
+    missing = np.array(letters) < 0
+    (first, last), layout = walk.tasks[0].stretch, walk.layout
+    start = layout.starts[first]
+    end = layout.starts[-1 if last is None else last + 1]
+    places = np.flatnonzero(missing.take(walk.cells[start:end])) + start
+    return np.unique(layout.traces_at(places))

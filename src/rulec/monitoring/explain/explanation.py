@@ -1,0 +1,255 @@
+"""Why a rule is violated: what it read in each state, and how its formula came out in parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import Machine, NumberRead
+from rulec.automata.thresholds import exact
+from rulec.logic.bounds import in_steps
+from rulec.logic.causes import deciding_instants
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    Comparison,
+    Count,
+    Formula,
+    Proposition,
+    Term,
+    Unary,
+    atoms_of,
+)
+from rulec.logic.kleene import Unknown, counted, holds, total
+from rulec.logic.printing import in_words, term_in_words
+from rulec.logic.semantics import values_of_parts
+from rulec.monitoring.binding import Binding, bindings
+from rulec.monitoring.explain.nearest_satisfying import Change, nearest_kept
+from rulec.monitoring.state_view import Moment
+from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verify import columns_of
+from rulec.trace import Trace, Value
+from rulec.vocabulary import Quantity as QuantityDeclaration
+from rulec.vocabulary import Vocabulary
+
+MOST_STATES = 10
+"""A longer stretch is shown by its first state and those up to the one behind the decisive one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """Something that the rule reads, such as ``position(v1)``, and its value in each state.
+
+    ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
+    ``changed``: does the rule tell the value in the decisive state from the one before?
+    ``decides``: does a part that decides read it?
+    """
+
+    text: str
+    values: tuple[Value, ...]
+    changed: bool
+    decides: bool
+    unit: str = ""
+    objects: tuple[tuple[str, ...], ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of the formula, ``depth`` operators inside it, and whether it holds in each state.
+
+    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
+    it one of those that, at some instant, make the formula come out as it does?
+    """
+
+    formula: Formula
+    text: str
+    depth: int
+    values: tuple[bool, ...]
+    changed: bool
+    decides: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A violation state by state.
+
+    ``states`` are the numbers of the states that are shown, ``decisive`` is the one after which
+    nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
+    each of ``states``; the first part is the formula itself, each stands before what it is made of.
+    ``repair`` is what states would have had to say for the rule to be kept, their places being
+    their numbers in the trace; None if nothing would have helped.
+    """
+
+    rule: CompiledRule
+    violation: Violation
+    states: tuple[int, ...]
+    decisive: int
+    facts: tuple[Fact, ...]
+    parts: tuple[Part, ...]
+    repair: tuple[Change, ...] | None
+    vocabulary: Vocabulary
+
+
+def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
+    """Explain one of the violations that ``verify`` found in this trace by this rulebook."""
+    rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
+    binding = _binding(violation, rule, trace, rulebook.vocabulary)
+    columns = columns_of(trace, rulebook)
+    stretch = range(binding.first, binding.last + 1)
+    decisive = binding.last if violation.step is None else violation.step
+    states = _shown(stretch, decisive)
+    seen = _Seen(
+        [columns.moment(number) for number in stretch],
+        binding.objects,
+        [number - binding.first for number in states],
+        decisive - binding.first,
+    )
+    truths = {atom: seen.truths(atom) for atom in dict.fromkeys(atoms_of(rule.formula))}
+    word = [
+        frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
+    ]
+    formula = in_steps(rule.formula, exact(trace.step_s))
+    values = values_of_parts(formula, word, rulebook.semantics)
+    instants = deciding_instants(formula, word, rulebook.semantics)
+    decides = {part for part, at in instants.items() if any(at)}
+    return Explanation(
+        rule,
+        violation,
+        states,
+        decisive,
+        tuple(_facts(truths, decides, seen)),
+        tuple(_parts(rule.formula, formula, values, decides, seen, 0)),
+        _repair(rule.machine, seen, binding.first),
+        rulebook.vocabulary,
+    )
+
+
+def _repair(machine: Machine, seen: _Seen, first: int) -> tuple[Change, ...] | None:
+    found = nearest_kept(machine, [seen.letter(machine, moment) for moment in seen.moments])
+    return found and tuple([replace(one, place=first + one.place) for one in found])
+
+
+def _binding(
+    violation: Violation, rule: CompiledRule, trace: Trace, vocabulary: Vocabulary
+) -> Binding:
+    everyone = bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
+    return next(found for found in everyone if found.objects == violation.binding)
+
+
+def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
+    if len(stretch) <= MOST_STATES:
+        return tuple(stretch)
+    last = min(decisive + 1, stretch[-1])
+    first = max(stretch[0], last - MOST_STATES + 2)
+    return tuple(sorted({stretch[0], *range(first, last + 1)}))
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What a binding's states say; verify has read all of it, so nothing is unknown.
+
+    ``shown`` are the indices of the moments to show, ``decisive`` is one of them.
+    """
+
+    moments: Sequence[Moment]
+    bound: Mapping[str, str]
+    shown: Sequence[int]
+    decisive: int
+
+    def truths(self, proposition: Proposition) -> list[bool]:
+        """Is it the case, in each moment?"""
+        return [holds(proposition, self.bound, moment) is True for moment in self.moments]
+
+    def values(self, name: str, arguments: Sequence[str]) -> list[Value]:
+        """The value of a declaration in each moment."""
+        items = tuple(self.bound[variable] for variable in arguments)
+        found = [moment.value(name, items) for moment in self.moments]
+        return [value for value in found if not isinstance(value, Unknown)]
+
+    def letter(self, machine: Machine, moment: Moment) -> tuple[int, ...]:
+        """What a machine reads of a moment, digit by digit."""
+        digits = []
+        for read in machine.reads:
+            if isinstance(read, NumberRead):
+                number = total(read.terms, self.bound, moment)
+                assert not isinstance(number, Unknown), "verify has read it"
+                digits.append(read.digit(number))
+            else:
+                items = tuple([self.bound[variable] for variable in read.variables])
+                value = moment.value(read.name, items)
+                assert not isinstance(value, Unknown), "verify has read it"
+                digits.append(read.digit(value))
+        return tuple(digits)
+
+    def counted(self, term: Count) -> list[tuple[str, ...]]:
+        """The objects that count in each moment."""
+        found = [counted(term, self.bound, moment) for moment in self.moments]
+        return [objects for objects in found if not isinstance(objects, Unknown)]
+
+    def changes(self, values: Sequence[object]) -> bool:
+        """Is the value in the decisive moment another than in the one before?"""
+        return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
+
+
+def _facts(
+    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], seen: _Seen
+) -> Iterator[Fact]:
+    """What is read, in the order in which the formula first speaks of it."""
+    readers: dict[Atom | Term, list[Proposition]] = {}
+    for proposition in truths:
+        for read in _read_by(proposition):
+            readers.setdefault(read, []).append(proposition)
+    for read, propositions in readers.items():
+        # A number always changes a little; what counts is whether it passes a limit.
+        passes = isinstance(read, Atom) or any(seen.changes(truths[one]) for one in propositions)
+        decides = not deciding.isdisjoint(propositions)
+        if isinstance(read, Count):
+            objects = seen.counted(read)
+            yield Fact(
+                term_in_words(read),
+                tuple(len(objects[n]) for n in seen.shown),
+                passes and seen.changes([len(one) for one in objects]),
+                decides,
+                objects=tuple(objects[n] for n in seen.shown),
+            )
+        else:
+            values = seen.values(read.name, read.arguments)
+            items = tuple(seen.bound[variable] for variable in read.arguments)
+            declaration = seen.moments[0].vocabulary.declarations[read.name]
+            yield Fact(
+                str(Atom(read.name, items)),
+                tuple(values[n] for n in seen.shown),
+                passes and seen.changes(values),
+                decides,
+                declaration.unit if isinstance(declaration, QuantityDeclaration) else "",
+            )
+
+
+def _read_by(proposition: Proposition) -> list[Atom | Term]:
+    if isinstance(proposition, Comparison):
+        return [term for _, term in proposition.terms]
+    return [Atom(proposition.name, proposition.arguments)]
+
+
+def _parts(
+    written: Formula,
+    stepped: Formula,
+    truths: Mapping[Formula, list[bool]],
+    deciding: Set[Formula],
+    seen: _Seen,
+    depth: int,
+) -> Iterator[Part]:
+    """The parts as they are written, with the values of the same formula with bounds in steps."""
+    values = truths[stepped]
+    shown = tuple(values[n] for n in seen.shown)
+    text, decides = in_words(written), stepped in deciding
+    yield Part(written, text, depth, shown, seen.changes(values), decides)
+    match written, stepped:
+        case Unary(_, operand), Unary(_, same):
+            yield from _parts(operand, same, truths, deciding, seen, depth + 1)
+        case Binary(_, left, right), Binary(_, same_left, same_right):
+            yield from _parts(left, same_left, truths, deciding, seen, depth + 1)
+            yield from _parts(right, same_right, truths, deciding, seen, depth + 1)
+        case _:
+            return

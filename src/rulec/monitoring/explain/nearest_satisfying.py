@@ -1,0 +1,211 @@
+"""The nearest trace that keeps a rule: how little would have had to be otherwise.
+
+Of two traces the nearer one differs in fewer things that the rule reads, each of them counted once
+in every state; of equally near ones that one is nearer which is like the given one for longer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice
+from math import prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.guards import Cube
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead
+from rulec.logic.formula import Count
+from rulec.witnesses.fourier_motzkin import Bounded, solve
+from rulec.witnesses.letter_witness import bounds_of
+
+Letter = tuple[int, ...]
+"""The digit of each thing that a machine reads of a state, in its order."""
+
+MOST_WAYS = 8
+"""Of what a state might say instead no more is listed than changes to so many sets of reads."""
+
+_Near = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""For each class of letters how far it is from a letter, and the number of its nearest one."""
+
+_FAR = 1 << 40
+"""Further than any trace, and still far from what 64 bits hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a state would have had to say: the letters of any of the ``cubes`` do.
+
+    ``place`` is the state's in the word. Of what need not be otherwise a cube has all digits.
+    """
+
+    place: int
+    cubes: tuple[Cube, ...]
+
+
+def nearest_kept(machine: Machine, word: Sequence[Letter]) -> tuple[Change, ...] | None:
+    """What to change so that a non-empty word is accepted, and the least of that.
+
+    None if no word of this length is. Letters that cannot be, by the facts of the vocabulary or by
+    what their numbers say of each other, are not used.
+    """
+    alphabet = _Alphabet(machine)
+    given = [alphabet.number(letter) for letter in word]
+    while True:
+        letters = _nearest(machine, [alphabet.near(letter) for letter in word])
+        if letters is None:
+            return None
+        changed = [place for place, letter in enumerate(letters) if letter != given[place]]
+        wrong = [letters[place] for place in changed if not alphabet.can_be(letters[place])]
+        if not wrong:
+            break
+        alphabet.exclude(wrong)
+    symbols = [machine.letters[letter] for letter in letters]
+    found, state = [], 0
+    for place, symbol in enumerate(symbols):
+        if letters[place] != given[place]:
+            rest = symbols[place + 1 :] if place == changed[-1] else None
+            does = _as_good(machine, state, symbol, rest)
+            found.append(Change(place, alphabet.ways(word[place], letters[place], does)))
+        state = machine.following[state][symbol]
+    return tuple(found)
+
+
+def _nearest(machine: Machine, near: Sequence[_Near]) -> list[int] | None:
+    """The nearest accepted letters: from the last state back it is known how far they are."""
+    following = np.array(machine.following)
+    # So far from being accepted is the rest of the word, by how much of it there is and the state.
+    last = np.where(np.array(machine.accepting), near[-1][0], _FAR)
+    costs = np.empty((len(near), len(following)), dtype=np.int64)
+    costs[-1] = last.min(axis=1)
+    for place in range(len(near) - 2, -1, -1):
+        (near[place][0] + costs[place + 1][following]).min(axis=1, out=costs[place])
+        np.minimum(costs[place], _FAR, out=costs[place])
+    if costs[0][0] >= _FAR:
+        return None
+    letters, state = [], 0
+    for place, (distances, nearest) in enumerate(near):
+        beyond = costs[place + 1][following[state]] if place + 1 < len(near) else None
+        row = last[state] if beyond is None else distances + beyond
+        best = np.flatnonzero(row == row.min())
+        # Like the given word for as long as possible.
+        symbol = best[np.argmin(distances[best])]
+        letters.append(int(nearest[symbol]))
+        state = machine.following[state][symbol]
+    return letters
+
+
+def _as_good(
+    machine: Machine, state: int, symbol: int, rest: Sequence[int] | None
+) -> NDArray[np.bool_]:
+    """Which classes do as well as one, read in a state.
+
+    Those that lead to the same state; where nothing else is changed in the ``rest`` of the word,
+    those after which it is accepted.
+    """
+    row = machine.following[state]
+    if rest is None:
+        return np.array([target == row[symbol] for target in row])
+    if not rest:
+        return np.array(machine.accepting[state])
+    return np.array([_accepts(machine, target, rest) for target in row])
+
+
+def _accepts(machine: Machine, state: int, rest: Sequence[int]) -> bool:
+    for symbol in rest[:-1]:
+        state = machine.following[state][symbol]
+    return machine.accepting[state][rest[-1]]
+
+
+class _Alphabet:
+    """All letters of a machine, as columns of digits."""
+
+    def __init__(self, machine: Machine) -> None:
+        self._reads = machine.reads
+        sizes = [one.size for one in self._reads]
+        self._strides = [prod(sizes[:n]) for n in range(len(sizes))]
+        numbers = np.arange(len(machine.letters))
+        self._digits = np.array(
+            [numbers // stride % size for stride, size in zip(self._strides, sizes, strict=True)]
+        ).reshape(len(sizes), len(numbers))
+        self._is_number = np.array([isinstance(one, NumberRead) for one in self._reads], dtype=bool)
+        self._classes = np.array(machine.letters)
+        self._n_classes = len(machine.following[0])
+        self._near: dict[Letter, _Near] = {}
+        self._can_be: dict[Letter, bool] = {}
+        self._ways: dict[tuple[Letter, int, bytes], tuple[Cube, ...]] = {}
+
+    def number(self, letter: Letter) -> int:
+        """The place of a letter among all."""
+        return sum([stride * digit for stride, digit in zip(self._strides, letter, strict=True)])
+
+    def near(self, letter: Letter) -> _Near:
+        """How far the classes are from a letter."""
+        if letter not in self._near:
+            n_letters = len(self._classes)
+            ranks = self._differ(letter).sum(axis=0) * n_letters + np.arange(n_letters)
+            possible = self._classes != IMPOSSIBLE
+            best = np.full(self._n_classes, _FAR * n_letters)
+            np.minimum.at(best, self._classes[possible], ranks[possible])
+            self._near[letter] = best // n_letters, best % n_letters
+        return self._near[letter]
+
+    def _differ(self, letter: Letter) -> NDArray[np.bool_]:
+        differ: NDArray[np.bool_] = self._digits != np.array(letter, dtype=np.int64)[:, np.newaxis]
+        return differ
+
+    def exclude(self, letters: Sequence[int]) -> None:
+        """These letters cannot be, and none that says the same of all numbers."""
+        numbers = self._digits[self._is_number]
+        for letter in letters:
+            self._classes[(numbers == numbers[:, [letter]]).all(axis=0)] = IMPOSSIBLE
+        self._near.clear()
+
+    def can_be(self, number: int) -> bool:
+        """Are there numbers that are as this letter says?"""
+        digits = tuple(self._digits[self._is_number, number].tolist())
+        if digits not in self._can_be:
+            reads = [one for one in self._reads if isinstance(one, NumberRead)]
+            terms = list(dict.fromkeys(term for one in reads for _, term in one.terms))
+            counts = [term for term in terms if isinstance(term, Count)]
+            system = [Bounded({count: Fraction(-1)}, Fraction(0)) for count in counts]
+            for one, digit in zip(reads, digits, strict=True):
+                system += bounds_of(one, digit)
+            self._can_be[digits] = solve(system, terms, {}, frozenset(counts)) is not None
+        return self._can_be[digits]
+
+    def ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
+        """The letters as near to a given one as this one, of the classes that do as well."""
+        key = given, number, does.tobytes()
+        if key not in self._ways:
+            self._ways[key] = self._found_ways(given, number, does)
+        return self._ways[key]
+
+    def _found_ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
+        differ = self._differ(given)
+        as_near = differ.sum(axis=0) == differ[:, number].sum()
+        good = as_near & (self._classes != IMPOSSIBLE) & does[self._classes]
+        by_reads: dict[tuple[int, ...], list[int]] = {}
+        for letter in [number, *np.flatnonzero(good).tolist()]:
+            reads = tuple(np.flatnonzero(differ[:, letter]).tolist())
+            by_reads.setdefault(reads, []).append(letter)
+        found = (self._cubes(reads, letters) for reads, letters in sorted(by_reads.items()))
+        return tuple(islice((cube for cubes in found for cube in cubes), MOST_WAYS))
+
+    def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
+        """Letters with the same changes: in one cube if they are all that it has."""
+        rows = {tuple(self._digits[changed, one].tolist()) for one in letters if self.can_be(one)}
+        columns = [frozenset(digits) for digits in zip(*rows, strict=True)]
+        if rows and prod(map(len, columns)) == len(rows):
+            yield self._cube(changed, columns)
+            return
+        for row in sorted(rows):
+            yield self._cube(changed, [frozenset({digit}) for digit in row])
+
+    def _cube(self, changed: Sequence[int], digits: Sequence[frozenset[int]]) -> Cube:
+        cube = [frozenset(range(one.size)) for one in self._reads]
+        for place, allowed in zip(changed, digits, strict=True):
+            cube[place] = allowed
+        return tuple(cube)

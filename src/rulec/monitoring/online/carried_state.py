@@ -1,0 +1,28 @@
+"""What has been before a graph begins, as far as it bears on what can come."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TypeAlias
+
+from rulec.monitoring.verdict import Violation
+
+RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
+"""A rule's name, and the objects that its variables stand for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """Where machines stand whose objects stay, and what is violated for good.
+
+    ``settled`` are rules for objects that stay that are among the ``violations``.
+    """
+
+    states: Mapping[RuleFor, int] = field(default_factory=lambda: MappingProxyType({}))
+    settled: frozenset[RuleFor] = frozenset()
+    violations: tuple[Violation, ...] = ()
+
+
+NO_PAST = Past()

@@ -1,0 +1,56 @@
+"""A saved monitor as a file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.files import opened, written_whole
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.trace.formats.json_line_problems import is_beginning
+
+
+def read_saved(path: Path) -> Any:
+    """What the file holds, for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
+    with opened(path) as stream:
+        data = stream.read()
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError):
+        why = "it has been cut short" if is_beginning(data) else "it is not JSON"
+        message = f"this is not a saved monitor: {why}"
+        help_text = "give a file that `rulec monitor --save` has written"
+        raise RulecError(Diagnostic("R0510", message, Place(str(path)), help=help_text)) from None
+
+
+def step_of(saved: Any) -> Fraction | None:
+    """The step that a monitor was saved with; None if it says none that makes sense."""
+    try:
+        step_s = Fraction(saved["step_s"])
+    except (TypeError, LookupError, ValueError, ZeroDivisionError):
+        return None
+    return step_s if step_s > 0 else None
+
+
+@contextmanager
+def saved_at_the_end(monitor: Monitor, path: Path | None) -> Iterator[None]:
+    """Save a monitor however the block ends; at its beginning, too, to know that it can be done.
+
+    Without a path this does nothing. Raises RulecError R0702.
+    """
+    _save(monitor, path)
+    try:
+        yield
+    finally:
+        _save(monitor, path)
+
+
+def _save(monitor: Monitor, path: Path | None) -> None:
+    if path is not None:
+        with written_whole(path) as stream:
+            stream.write(json.dumps(monitor.snapshot(), ensure_ascii=False).encode() + b"\n")

@@ -1,0 +1,51 @@
+"""One state as a rule reads it: who is there, what is the case, and what the numbers are.
+
+A value that a state does not give, and that has no default, is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from rulec.automata.thresholds import exact
+from rulec.logic.kleene import Unknown
+from rulec.trace import State, Value
+from rulec.vocabulary import Declaration, Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A state that has passed ``check_state``, and the objects that are there, with their types."""
+
+    state: State
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+
+    def value(self, name: str, items: tuple[str, ...]) -> Value | Unknown:
+        """The value that the state gives, or the declared default."""
+        # As value_in, which is not called because this is asked of every object in every state.
+        value: Any = self.state.get(name)
+        for item in items:
+            value = value.get(item) if value is not None else None
+        if value is None:
+            value = self.vocabulary.declarations[name].default
+        return Unknown(name, items) if value is None else value
+
+    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The quantity's value: exact."""
+        value = self.value(name, items)
+        assert not isinstance(value, str), "check_state has refused it"
+        return value if isinstance(value, Unknown) else exact(value)
+
+
+def value_in(
+    state: State, name: str, objects: Sequence[str], declaration: Declaration
+) -> Value | None:
+    """The value that a state gives, or the declared default; None if there is neither."""
+    value: Any = state.get(name)
+    for item in objects:
+        value = value.get(item) if value is not None else None
+    return declaration.default if value is None else value

@@ -1,0 +1,154 @@
+"""A compiled rulebook's verdict on a trace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import Machine
+from rulec.automata.thresholds import exact
+from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.binding import bindings
+from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.trace import Trace
+from rulec.trace.trace_validation import check_trace
+
+RulebookFor = Callable[[Fraction], CompiledRulebook]
+"""Gives the rulebook whose machines judge traces of a step (s). Raises RulecError."""
+
+
+def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
+    """Judge a trace by every rule, for every binding of its variables.
+
+    Raises:
+        RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
+            R0507 if a rule was compiled for traces of another step, R0508 if a state contradicts
+            a fact that a rule depends on, with the trace's own place.
+    """
+    check_trace(trace)
+    rulebook = made_for(trace, rulebook)
+    for rule in rulebook.rules:
+        if rule.step_s is not None:
+            check_step(rule, exact(trace.step_s), "the trace", trace.place)
+    check_objects(trace.objects, rulebook.vocabulary, trace.place)
+    for number, state in enumerate(trace.states):
+        check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
+    columns = columns_of(trace, rulebook)
+    check_counting_facts(
+        rulebook, len(trace.states), columns.moment, "state {}".format, trace.place
+    )
+    violations = []
+    for rule in rulebook.rules:
+        # Objects that did the same are judged once.
+        verdicts: dict[tuple[int, ...], tuple[bool, int | None]] = {}
+        for binding in bindings(
+            rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
+        ):
+            word = columns.word(rule, binding.objects, binding.first, binding.last)
+            if word not in verdicts:
+                verdicts[word] = run(rule.machine, word)
+            accepted, step = verdicts[word]
+            if not accepted:
+                step = None if step is None else binding.first + step
+                violations.append(Violation(rule.name, rule.strength, binding.objects, step))
+    return Verdict(trace.id, tuple(violations))
+
+
+def columns_of(
+    trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
+) -> Columns:
+    """The columns of a trace that has been checked; ``where`` names a state in messages."""
+    vocabulary = rulebook.vocabulary
+    return Columns(
+        trace.states,
+        vocabulary,
+        where,
+        trace.place,
+        trace.objects,
+        trace.present,
+        rulebook.facts,
+    )
+
+
+def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> CompiledRulebook:
+    """The rulebook with the machines for a trace's step. Raises RulecError."""
+    return made_for_step(trace.step_s, rulebook, trace.place)
+
+
+def made_for_step(
+    step_s: float, rulebook: CompiledRulebook | RulebookFor, place: Place | None = None
+) -> CompiledRulebook:
+    """The same for the step of a trace at some place."""
+    if isinstance(rulebook, CompiledRulebook):
+        return rulebook
+    try:
+        return rulebook(exact(step_s))
+    except RulecError as error:
+        # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
+        raise RulecError([_at(place, one) for one in error.diagnostics]) from None
+
+
+def _at(place: Place | None, problem: Diagnostic) -> Diagnostic:
+    if place is None:
+        return problem
+    here = () if problem.place is None else (Label(problem.place, "asked for here"),)
+    return replace(problem, place=place, labels=(*here, *problem.labels))
+
+
+def check_step(
+    rule: CompiledRule, step_s: Fraction, what: str = "this", place: Place | None = None
+) -> None:
+    """A rule with bounds in seconds judges states as far apart as it was compiled for.
+
+    Raises RulecError R0507; ``what`` names in it whose step this is.
+    """
+    if rule.step_s is None or rule.step_s == step_s:
+        return
+    step = number_in_words(step_s)
+    raise RulecError(
+        Diagnostic(
+            "R0507",
+            f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
+            f"{what} has steps of {step} s",
+            place,
+            help=f"compile its source with `--step {step}`",
+        )
+    )
+
+
+def judge(
+    item: Trace | RulecError, rulebook: CompiledRulebook | RulebookFor
+) -> Verdict | NotJudged:
+    """As ``verify``, for one of many: what cannot be judged is an answer too.
+
+    ``item`` may be, in place of a trace, the error that kept it from being read.
+    """
+    if isinstance(item, RulecError):
+        return NotJudged(None, item)
+    try:
+        return verify(item, rulebook)
+    except RulecError as error:
+        return NotJudged(item.id, error)
+
+
+def run(machine: Machine, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
+    """Run a machine over a non-empty word of letter classes, from a state.
+
+    Returns:
+        Whether it accepts, and the index of the letter with which it was lost, however the word
+        goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
+    """
+    following, dead = machine.following, machine.dead
+    state = before = start
+    for index, symbol in enumerate(word):
+        before, state = state, following[state][symbol]
+        # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+        if state == dead and not machine.accepting[before][symbol]:
+            return False, index
+    return machine.accepting[before][word[-1]], None

@@ -1,0 +1,44 @@
+"""Which cells of a plane lie next to each other.
+
+- ``touch``: their closures meet, a corner is enough (paper, section V-B, after Altché and de La
+  Fortelle).
+- ``edge``: they share a border of positive length.
+- ``forward``: they share such a border, and it can be crossed sideways or ahead. A neighbour that
+  can only be entered backwards, across borders at which it has the smaller ``s``, lies only behind.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Literal
+
+from rulec.partition.cells.cell_model import Plane, Row
+
+AdjacencyName = Literal["touch", "edge", "forward"]
+
+
+def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...], ...]:
+    """For every cell the cells that a step leads to, in ascending order, itself left out."""
+    found: list[set[int]] = [set() for _ in plane.cells]
+    for row in plane.rows:
+        for behind, ahead in pairwise(row.runs):
+            if behind.s_max == ahead.s_min:
+                found[behind.cell].add(ahead.cell)
+                if adjacency != "forward":
+                    found[ahead.cell].add(behind.cell)
+    for right, left in pairwise(plane.rows):
+        _sideways(right, left, adjacency == "touch", found)
+    return tuple(tuple(sorted(cells - {i})) for i, cells in enumerate(found))
+
+
+def _sideways(right: Row, left: Row, corners: bool, found: list[set[int]]) -> None:
+    start = 0
+    for run in right.runs:
+        while start < len(left.runs) and left.runs[start].s_max < run.s_min:
+            start += 1
+        for other in left.runs[start:]:
+            if other.s_min > run.s_max:
+                break
+            if corners or (other.s_min < run.s_max and run.s_min < other.s_max):
+                found[run.cell].add(other.cell)
+                found[other.cell].add(run.cell)

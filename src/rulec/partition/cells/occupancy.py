@@ -1,0 +1,156 @@
+"""Which obstacles are on the road when, and the region of each in every layer and between two.
+
+An obstacle is in a layer if what it sweeps there has some area on the road. One that leaves and
+comes back counts as another object, called ``id_2``: a rule is judged on one stretch of presence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import count, pairwise
+
+from rulec.partition.cells.predicted_occupancy import Predicted, entered, predicted
+from rulec.partition.cells.regions import ExtentName, PartitionName, Region, region_of
+from rulec.partition.cells.roadway import Roadway, coordinates, roadway
+from rulec.partition.cells.snapping import Snap, snap_table, snapped
+from rulec.scenario import Box, Obstacle, Scenario
+from rulec.scenario.motion import swept
+from rulec.scenario.time_grid import Timing
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A scenario over time: names in the order of the file, and regions in that order.
+
+    ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first come obstacles as it is
+    likeliest, in ``names``, then, in ``others``, those that other predictions have there.
+    ``instants[p]`` are the regions at the moment between layers p and p + 1. ``s`` and ``d`` snap
+    coordinates of ego and the goal.
+    """
+
+    roadway: Roadway
+    swept: tuple[tuple[Region, ...], ...]
+    names: tuple[tuple[str, ...], ...]
+    others: tuple[tuple[str, ...], ...]
+    instants: tuple[tuple[Region, ...], ...]
+    predicted_of: Mapping[str, Predicted]
+    present: Mapping[str, tuple[int, int]]
+    s: Snap
+    d: Snap
+
+
+def scene(
+    scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
+) -> Scene:
+    """Where everything is, in every layer and at every instant between two."""
+    everybody = predicted(scenario)
+    obstacles = [one.obstacle for one in everybody]
+    likeliest = len(scenario.obstacles)
+    starts = [timing.start(p) for p in range(timing.layers + 1)]
+    layers = list(pairwise(starts))
+    moments = [(start, start) for start in starts[1:-1]]
+    bodies = {
+        (i, interval): body
+        for i, obstacle in enumerate(obstacles)
+        for interval in (*layers, *moments)
+        if (body := swept(obstacle, *interval)) is not None
+    }
+    half = scenario.ego.width / 2 if extent == "body" else 0.0
+    wide = {key: _wider(body, half) for key, body in bodies.items()} if extent == "body" else {}
+    free = _narrower(scenario.road.outline, half, scenario.ego.d)
+    s, d = _snaps(scenario, [*bodies.values(), *wide.values(), free])
+    road = roadway(scenario.road, free, s, d)
+
+    def regions(interval: tuple[float, float], looking: tuple[float, float]) -> tuple[Region, ...]:
+        found = (
+            region_of(
+                obstacles[i],
+                i,
+                snapped(body, s, d),
+                looking,
+                partition,
+                road,
+                snapped(wide[i, interval], s, d) if wide else None,
+            )
+            for i in range(len(obstacles))
+            if (body := bodies.get((i, interval))) is not None
+        )
+        return tuple(
+            region if region.obstacle < likeliest else entered(region)
+            for region in found
+            if region is not None
+        )
+
+    layer_regions = tuple(regions(interval, interval) for interval in layers)
+    # At an instant a pedestrian faces where it goes next
+    instants = tuple(
+        regions(moment, upcoming) for moment, upcoming in zip(moments, layers[1:], strict=True)
+    )
+    names, index_of, present = _appearances(obstacles, layer_regions)
+    return Scene(
+        road,
+        layer_regions,
+        tuple(tuple(one for one in here if index_of[one] < likeliest) for here in names),
+        tuple(tuple(one for one in here if index_of[one] >= likeliest) for here in names),
+        instants,
+        {name: everybody[i] for name, i in index_of.items()},
+        present,
+        s,
+        d,
+    )
+
+
+def _wider(body: Box, half: float) -> Box:
+    """Where ego's centre is when the two are not side by side; ``half`` is half of ego's width."""
+    return Box(body.s_min, body.s_max, body.d_min - half, body.d_max + half)
+
+
+def _narrower(outline: Box, half: float, start: float) -> Box:
+    """Where ego's centre may be: not so close to the verge that its width reaches beyond.
+
+    Where it stands closer than that at the start, it may stay as close.
+    """
+    return Box(
+        outline.s_min,
+        outline.s_max,
+        max(outline.d_min, min(outline.d_min + half, start)),
+        min(outline.d_max, max(outline.d_max - half, start)),
+    )
+
+
+def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:
+    road_s, road_d = coordinates(scenario.road)
+    boxes = [*bodies, scenario.ego.body, *([scenario.goal] if scenario.goal else [])]
+    ego = scenario.ego
+    return (
+        snap_table(road_s, [ego.s, *(x for box in boxes for x in (box.s_min, box.s_max))]),
+        snap_table(road_d, [ego.d, *(x for box in boxes for x in (box.d_min, box.d_max))]),
+    )
+
+
+def _appearances(
+    obstacles: Sequence[Obstacle], layers: Sequence[Sequence[Region]]
+) -> tuple[tuple[tuple[str, ...], ...], dict[str, int], dict[str, tuple[int, int]]]:
+    """Names of the regions, layer by layer; whose they are; first and last layer of each."""
+    taken = {obstacle.id for obstacle in obstacles}
+    current: dict[int, str] = {}
+    index_of: dict[str, int] = {}
+    present: dict[str, tuple[int, int]] = {}
+    names: list[tuple[str, ...]] = []
+    for p, regions in enumerate(layers):
+        for i in (region.obstacle for region in regions):
+            name = current.get(i)
+            if name is None or present[name][1] < p - 1:
+                name = obstacles[i].id if name is None else _spare(obstacles[i].id, taken)
+                taken.add(name)
+                current[i] = name
+                index_of[name] = i
+                present[name] = (p, p)
+            present[name] = (present[name][0], p)
+        names.append(tuple(current[region.obstacle] for region in regions))
+    return tuple(names), index_of, present
+
+
+def _spare(name: str, taken: set[str]) -> str:
+    return next(spare for number in count(2) if (spare := f"{name}_{number}") not in taken)

@@ -1,0 +1,86 @@
+"""The regions around one obstacle: what each place on the road is called as seen from it.
+
+An obstacle's rectangle, as wide as its extent says, cuts the road in three both ways. A region
+table names the nine parts, row by row from right to left, each row in the direction of ``s``; ``o``
+is the obstacle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from rulec.partition.cells.roadway import Roadway
+from rulec.scenario import Box, Obstacle
+from rulec.scenario.motion import Facing, facing
+
+PartitionName = Literal["paper", "fine"]
+
+ExtentName = Literal["lane", "body"]
+"""How wide an obstacle is taken to be: as the lanes that it touches, or as what it sweeps."""
+
+OCCUPIED = ord("o")
+
+# The paper's figure 3, turned with the direction in which a pedestrian walks.
+PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
+    {
+        "along": b"rrrboflll",
+        "against": b"lllfobrrr",
+        "left": b"lbrlorlfr",
+        "right": b"rflrolrbl",
+    }
+)
+_FINE = b"0123o5678"
+
+STATIONS = ("behind", "beside", "in_front_of")
+LATERALS = ("right_of", "same_lane", "left_of")
+
+
+STATION_OF: Mapping[int, str] = MappingProxyType(
+    {code: STATIONS[i % 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say along the road."""
+
+LATERAL_OF: Mapping[int, str] = MappingProxyType(
+    {code: LATERALS[i // 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
+)
+"""What codes of the fine partition say across the road."""
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """The rectangle that an obstacle takes, and the table that names what lies around it."""
+
+    obstacle: int
+    extent: Box
+    table: bytes
+
+
+def region_of(
+    obstacle: Obstacle,
+    index: int,
+    body: Box,
+    interval: tuple[float, float],
+    partition: PartitionName,
+    roadway: Roadway,
+    body_wide: Box | None = None,
+) -> Region | None:
+    """The region of an obstacle that sweeps ``body`` in a time interval; None if off the road.
+
+    It takes the lanes that it touches, or ``body_wide`` if that is given.
+    """
+    lanes = roadway.lanes_touched(body)
+    if lanes is None:
+        return None
+    taken = body_wide or Box(body.s_min, body.s_max, *lanes)
+    if partition == "fine":
+        return Region(index, taken, _FINE)
+    if not obstacle.walks:
+        return Region(index, taken, PAPER_TABLES["along"])
+    direction = facing(obstacle, *interval)
+    if direction in ("along", "against"):
+        return Region(index, taken, PAPER_TABLES[direction])
+    across = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+    return Region(index, across, PAPER_TABLES[direction])

@@ -1,0 +1,72 @@
+"""The road as rectangles with snapped coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rulec.partition.cells.snapping import Snap, snapped
+from rulec.scenario import Box, Road
+
+
+@dataclass(frozen=True, slots=True)
+class Roadway:
+    """Outline, holes (missing lanes), crossings and lanes, all in snapped coordinates.
+
+    ``free`` is the part of the outline where ego's centre may be.
+    """
+
+    outline: Box
+    free: Box
+    lanes: tuple[float, ...]
+    holes: tuple[Box, ...]
+    crossings: tuple[tuple[float, float], ...]
+
+    def lanes_touched(self, body: Box) -> tuple[float, float] | None:
+        """The bounds of the lanes in which a body has some area; None if it is off the road."""
+        touched = [
+            (right, left)
+            for right, left in zip(self.lanes, self.lanes[1:], strict=False)
+            if self._is_on_lane(body, right, left)
+        ]
+        return (touched[0][0], touched[-1][1]) if touched else None
+
+    def crossing_touched(self, body: Box) -> tuple[float, float]:
+        """The body's extent in ``s``, widened to the crossings in which it has some area."""
+        low, high = body.s_min, body.s_max
+        for start, end in self.crossings:
+            if body.s_min < end and start < body.s_max:
+                low, high = min(low, start), max(high, end)
+        return low, high
+
+    def _is_on_lane(self, body: Box, right: float, left: float) -> bool:
+        if not body.overlaps(Box(self.outline.s_min, self.outline.s_max, right, left)):
+            return False
+        start, end = max(body.s_min, self.outline.s_min), min(body.s_max, self.outline.s_max)
+        for hole in sorted(self.holes, key=lambda hole: hole.s_min):
+            if hole.d_min == right:
+                if start < hole.s_min:
+                    return True
+                start = max(start, hole.s_max)
+        return start < end
+
+
+def coordinates(road: Road) -> tuple[Iterator[float], Iterator[float]]:
+    """All the road's own coordinates in ``s`` and in ``d``."""
+    intervals = (road.s, *(x.s for x in road.surfaces), *(x.s for x in road.missing))
+    return (value for interval in intervals for value in interval), iter(road.lanes)
+
+
+def roadway(road: Road, free: Box, s: Snap, d: Snap) -> Roadway:
+    """The road with every coordinate replaced by the one that stands for it."""
+    return Roadway(
+        snapped(road.outline, s, d),
+        snapped(free, s, d),
+        tuple(d[bound] for bound in road.lanes),
+        tuple(snapped(hole, s, d) for hole in road.holes()),
+        tuple(
+            (s[stretch.s[0]], s[stretch.s[1]])
+            for stretch in road.surfaces
+            if stretch.surface == "crossing"
+        ),
+    )

@@ -1,0 +1,182 @@
+"""The navigation graph: cells of every layer, and the steps between them.
+
+Definitions: Esterle, Aravantinos, Knoll, IV 2019, "Free Space-Time Partitioning"; where that leaves
+one open, ours is in ``docs/scenarios.md``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypedDict, get_args
+
+from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
+from rulec.partition.cells.adjacency import AdjacencyName, neighbours
+from rulec.partition.cells.cell_model import Layer
+from rulec.partition.cells.cell_plane import plane
+from rulec.partition.cells.continuation import continuations
+from rulec.partition.cells.occupancy import scene
+from rulec.partition.cells.predicted_occupancy import Predicted
+from rulec.partition.cells.regions import ExtentName, PartitionName
+from rulec.partition.cells.snapping import snapped
+from rulec.partition.start_cell import start_cell, step_that_leaves_room
+from rulec.partition.time_margin import Edges, Margins, edges
+from rulec.scenario import Obstacle, Scenario
+from rulec.scenario.time_grid import Timing, timing
+
+if TYPE_CHECKING:
+    import networkx
+
+    from rulec.trace.trace_model import TraceGraph
+
+
+@dataclass(frozen=True)
+class NavigationGraph:
+    """A layered directed graph; every path from ``start`` to one of ``goals`` is a maneuver.
+
+    ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
+    order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
+    that are on the road at some time, ``alternatives`` as less likely predictions have them, and
+    ``present`` the first and last layer of each.
+    """
+
+    scenario: Scenario
+    partition: PartitionName
+    adjacency: AdjacencyName
+    extent: ExtentName
+    step: Fraction
+    objects: Mapping[str, Obstacle]
+    alternatives: Mapping[str, Predicted]
+    present: Mapping[str, tuple[int, int]]
+    layers: tuple[Layer, ...]
+    successors: tuple[Edges, ...]
+    margins: tuple[Margins, ...]
+    start: int
+    goals: tuple[int, ...]
+
+    @property
+    def step_s(self) -> float:
+        """The planning interval in seconds."""
+        return float(self.step)
+
+    @property
+    def nodes(self) -> int:
+        """How many cells there are, all layers together."""
+        return sum(len(layer.cells) for layer in self.layers)
+
+    @property
+    def edges(self) -> int:
+        """How many steps there are, staying included."""
+        return sum(len(followers) for layer in self.successors for followers in layer)
+
+    def trace_graph(self) -> TraceGraph:
+        """The graph as valuations and whole-number costs, without geometry."""
+        from rulec.partition.cell_valuations import trace_graph
+
+        return trace_graph(self)
+
+    def to_networkx(self) -> networkx.DiGraph:
+        """The graph for networkx; see ``rulec.partition.networkx_graph.to_networkx``."""
+        from rulec.partition.networkx_graph import to_networkx
+
+        return to_networkx(self)
+
+
+class GraphOptions(TypedDict, total=False):
+    """The options of ``navigation_graph``; None is as if there were none."""
+
+    partition: PartitionName | None
+    adjacency: AdjacencyName
+    extent: ExtentName
+    step_s: float | None
+    horizon_s: float | None
+
+
+def navigation_graph(
+    scenario: Scenario,
+    *,
+    partition: PartitionName | None = None,
+    adjacency: AdjacencyName = "touch",
+    extent: ExtentName = "lane",
+    step_s: float | None = None,
+    horizon_s: float | None = None,
+) -> NavigationGraph:
+    """Partition a scenario's free space over time and link the cells.
+
+    Args:
+        scenario: the scene and its prediction.
+        partition: ``paper`` (behind, in front, left, right), which it is unless given, or ``fine``
+            (station and lateral).
+        adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
+        extent: how wide obstacles are: ``lane`` (all of the lanes that they touch) or ``body``.
+        step_s: planning interval in seconds, instead of the scenario's; in a recorded scene it is,
+            unless given, the longest one up to that which leaves ego a place to start.
+        horizon_s: planning horizon in seconds, instead of the scenario's.
+
+    Raises:
+        RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
+            R0608 for an unknown partition, adjacency or extent.
+    """
+    partition = partition or "paper"
+    _check_choice("partition", partition, get_args(PartitionName))
+    _check_choice("adjacency", adjacency, get_args(AdjacencyName))
+    _check_choice("extent", extent, get_args(ExtentName))
+    times = timing(
+        scenario.horizon_s if horizon_s is None else horizon_s,
+        scenario.step_s if step_s is None else step_s,
+    )
+    if step_s is None and scenario.account is not None:
+        free = step_that_leaves_room(scenario, times, partition, extent)
+        if free is not None:
+            times = Timing(free.step, int((times.layers - 1) * times.step / free.step) + 1)
+    places = scene(scenario, times, partition, extent)
+    planes = [
+        plane(places.roadway, regions, partition, names)
+        for regions, names in zip(places.swept, places.names, strict=True)
+    ]
+    start = start_cell(planes[0], places, scenario, times, partition, extent)
+    instants = [
+        plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
+        for regions in places.instants
+    ]
+    onward = [
+        continuations(before, instant, after)
+        for (before, after), instant in zip(pairwise(planes), instants, strict=True)
+    ]
+    layers = tuple(
+        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
+        for p, (flat, names, others) in enumerate(
+            zip(planes, places.names, places.others, strict=True)
+        )
+    )
+    successors, margins = edges(layers, onward)
+    goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
+    return NavigationGraph(
+        scenario,
+        partition,
+        adjacency,
+        extent,
+        times.step,
+        {name: one.obstacle for name, one in places.predicted_of.items() if not one.number},
+        {name: one for name, one in places.predicted_of.items() if one.number},
+        places.present,
+        layers,
+        successors,
+        margins,
+        start,
+        tuple(i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)),
+    )
+
+
+def _check_choice(what: str, name: str, known: tuple[str, ...]) -> None:
+    if name not in known:
+        raise RulecError(
+            Diagnostic(
+                "R0608",
+                f"there is no {what} `{name}`",
+                expected=f"expected one of {named(known)}",
+                help=did_you_mean(str(name), known),
+            )
+        )

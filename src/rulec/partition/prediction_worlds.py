@@ -1,0 +1,181 @@
+"""A graph's maneuvers where obstacles do something else than what is likeliest.
+
+A world says of each obstacle which of its predictions comes true. Ego goes the same way through
+the same cells; what these say of an obstacle is what the prediction in question makes of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import compress
+from typing import TypeVar
+
+from rulec.partition.cell_valuations import relations, signals_of
+from rulec.partition.cells.cell_model import Cell, Layer
+from rulec.partition.cells.predicted_occupancy import HIT, Predicted
+from rulec.partition.navigation_graph import NavigationGraph
+from rulec.scenario import Obstacle
+from rulec.trace.trace_model import State, TraceGraph
+
+Of = TypeVar("Of")
+
+World = Mapping[str, int]
+"""Obstacle -> the number of the prediction that comes true; 0, the likeliest, if left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedPath:
+    """A path through a graph, with all obstacles as all their predictions have them.
+
+    ``weights`` are, for each obstacle, those of its predictions; predictions that the path's cells
+    do not tell apart are one, called by the smallest number. ``traces`` is a graph of this path
+    alone; ``predicted`` says who its objects are. Of those that are ``hit`` some state does not say
+    where they are, for there they are where ego is.
+    """
+
+    traces: TraceGraph
+    weights: Mapping[str, Mapping[int, Fraction]]
+    predicted: Mapping[str, Predicted]
+    hit: frozenset[str]
+
+
+def everybody(graph: NavigationGraph) -> dict[str, Predicted]:
+    """Whoever is on the road by some prediction, by the graph's names."""
+    likeliest = {name: Predicted(one, one.id, 0) for name, one in graph.objects.items()}
+    return {**likeliest, **graph.alternatives}
+
+
+def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath:
+    """A path, given by its cells' indices, as all predictions have it."""
+    cells = [layer.cells[i] for layer, i in zip(graph.layers, path, strict=True)]
+    weights = _told_apart(graph, cells)
+    who = {name: one for name, one in everybody(graph).items() if one.number in weights[one.of]}
+    last = len(path) - 1
+    step = ((0,),)
+    traces = TraceGraph(
+        step_s=graph.step_s,
+        objects={name: one.obstacle.type for name, one in who.items()},
+        present={name: graph.present[name] for name in who if graph.present[name] != (0, last)},
+        states=tuple(
+            _states(graph, p, [i], who, {name: name for name in who}) for p, i in enumerate(path)
+        ),
+        successors=(step,) * last,
+        weights=(step,) * last,
+        margins=(((None,),),) * last,
+        cost_unit=Fraction(1),
+        start=0,
+        goals=(0,),
+    )
+    hit = (_hit_in(*there, who) for there in zip(graph.layers, cells, strict=True))
+    return PredictedPath(traces, weights, who, frozenset().union(*hit))
+
+
+def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict[int, Fraction]]:
+    """The predictions of each obstacle that cells tell apart, with their weights."""
+    who = everybody(graph)
+    said: dict[tuple[str, int], dict[int, int]] = {}
+    for p, (layer, cell) in enumerate(zip(graph.layers, cells, strict=True)):
+        for name, code in zip((*layer.objects, *layer.alternatives), cell.code, strict=True):
+            said.setdefault((who[name].of, who[name].number), {})[p] = code
+    found: dict[str, dict[int, Fraction]] = {}
+    for obstacle in graph.scenario.obstacles:
+        own = found[obstacle.id] = {0: obstacle.weight}
+        for number, one in enumerate(obstacle.alternatives, start=1):
+            alike = (
+                k for k in own if said.get((obstacle.id, k)) == said.get((obstacle.id, number))
+            )
+            known = next(alike, number)
+            own[known] = own.get(known, Fraction(0)) + one.weight
+    return found
+
+
+def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
+    """The maneuvers on which nobody hits ego in a world, with what they say there; None if none.
+
+    Obstacles have the names that they have in the scenario, whatever they do.
+    """
+    who, named = _in_world(graph, world)
+    free = [
+        [i for i, cell in enumerate(layer.cells) if not _hit_in(layer, cell, who)]
+        for layer in graph.layers
+    ]
+    if graph.start not in free[0] or not all(free):
+        return None
+    last = len(graph.layers) - 1
+    return replace(
+        _thinned(graph.trace_graph(), free),
+        objects={named[name]: one.obstacle.type for name, one in who.items()},
+        present={
+            named[name]: graph.present[name] for name in who if graph.present[name] != (0, last)
+        },
+        states=tuple(_states(graph, p, cells, who, named) for p, cells in enumerate(free)),
+    )
+
+
+def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
+    """Who is on the road in a world, by the names that they have there."""
+    who, named = _in_world(graph, world)
+    return {named[name]: one.obstacle for name, one in who.items()}
+
+
+def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
+    """Who is on the road by the graph's names, and the names that they have in the world."""
+    everyone = everybody(graph)
+    who = {name: one for name, one in everyone.items() if world.get(one.of, 0) == one.number}
+    return who, {name: one.of if name == one.obstacle.id else name for name, one in who.items()}
+
+
+def _hit_in(layer: Layer, cell: Cell, who: Collection[str]) -> set[str]:
+    """Who of them hits ego in this cell."""
+    names = (*layer.objects, *layer.alternatives)
+    return {
+        name for name, code in zip(names, cell.code, strict=True) if code == HIT and name in who
+    }
+
+
+def _states(
+    graph: NavigationGraph,
+    p: int,
+    cells: Sequence[int],
+    who: Mapping[str, Predicted],
+    named: Mapping[str, str],
+) -> tuple[State, ...]:
+    """What cells of a layer say of those who are there, by other names."""
+    layer = graph.layers[p]
+    here = [
+        (i, name) for i, name in enumerate((*layer.objects, *layer.alternatives)) if name in who
+    ]
+    signals = signals_of(graph, {named[name]: who[name].obstacle for _, name in here})
+    states = []
+    for cell in (layer.cells[i] for i in cells):
+        told = [(named[name], cell.code[i]) for i, name in here if cell.code[i] != HIT]
+        code = bytes([one for _, one in told])
+        states.append({**relations(cell, [name for name, _ in told], code), **signals})
+    return tuple(states)
+
+
+def _thinned(traces: TraceGraph, kept: Sequence[Sequence[int]]) -> TraceGraph:
+    """The graph of these nodes of every layer, the start among them."""
+    number = [{node: new for new, node in enumerate(layer)} for layer in kept]
+
+    def onward(rows: Sequence[Sequence[Sequence[Of]]], p: int) -> tuple[tuple[Of, ...], ...]:
+        ahead = number[p + 1]
+        return tuple(
+            tuple(compress(rows[p][i], [target in ahead for target in traces.successors[p][i]]))
+            for i in kept[p]
+        )
+
+    steps = range(len(kept) - 1)
+    return replace(
+        traces,
+        successors=tuple(
+            tuple(tuple(number[p + 1][i] for i in row) for row in onward(traces.successors, p))
+            for p in steps
+        ),
+        weights=tuple(onward(traces.weights, p) for p in steps),
+        margins=tuple(onward(traces.margins, p) for p in steps),
+        start=number[0][traces.start],
+        goals=tuple(number[-1][goal] for goal in traces.goals if goal in number[-1]),
+    )

@@ -1,0 +1,107 @@
+"""The cell from which ego starts, and what to say if there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.partition.cells.cell_model import Plane
+from rulec.partition.cells.cell_plane import plane
+from rulec.partition.cells.occupancy import Scene, scene
+from rulec.partition.cells.regions import ExtentName, PartitionName
+from rulec.scenario import Scenario
+from rulec.scenario.time_grid import MAX_LAYERS, Timing
+
+_FINEST = 64
+
+_TAKEN: Mapping[ExtentName, str] = {
+    "lane": "the whole width of its lanes",
+    "body": "its own width, and half of ego's to either side",
+}
+
+
+def start_cell(
+    first: Plane,
+    places: Scene,
+    scenario: Scenario,
+    timing: Timing,
+    partition: PartitionName,
+    extent: ExtentName = "lane",
+) -> int:
+    """The cell of the first layer that holds ego's centre at the start.
+
+    On a border, the free cell to the left and ahead.
+
+    Raises:
+        RulecError: R0607 if an obstacle sweeps that place within the first interval.
+    """
+    s, d = places.s[scenario.ego.s], places.d[scenario.ego.d]
+    cells = list(first.cells_at(s, d))
+    if cells:
+        return cells[-1]
+    in_the_way = [
+        region
+        for region in places.swept[0]
+        if region.obstacle < len(scenario.obstacles) and region.extent.covers(s, d)
+    ]
+    free = places.roadway.free
+    if free.d_min == free.d_max:
+        raise RulecError(
+            Diagnostic(
+                "R0607",
+                f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
+                expected="expected a road with room for ego, as its extent is `body`",
+                help="correct ego's `width`, or take the extent `lane`, which leaves it out",
+            )
+        )
+    if not in_the_way:
+        raise RulecError(
+            Diagnostic(
+                "R0607",
+                f"ego starts off the road, at s = {s:g}, d = {d:g}",
+                expected="expected a place on one of the lanes",
+                help="move ego, or extend the road",
+            )
+        )
+    blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
+    verb = "sweeps" if len(in_the_way) == 1 else "sweep"
+    step = float(timing.step)
+    finer = step_that_leaves_room(scenario, timing, partition, extent, 2)
+    raise RulecError(
+        Diagnostic(
+            "R0607",
+            f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
+            "so ego has no free cell to start from",
+            expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
+            help=f"a step of {float(finer.step):g} s would do"
+            if finer
+            else f"a smaller step does not help here: {_remedy(scenario)}",
+        )
+    )
+
+
+def _remedy(scenario: Scenario) -> str:
+    if scenario.account is None:
+        return "move ego along the road, or that obstacle"
+    return "choose another moment or another ego with --at-time and --ego"
+
+
+def step_that_leaves_room(
+    scenario: Scenario,
+    timing: Timing,
+    partition: PartitionName,
+    extent: ExtentName = "lane",
+    fraction: int = 1,
+) -> Timing | None:
+    """The longest step with which the first interval leaves ego's place free.
+
+    The step of ``timing`` divided by ``fraction``, or half of that, and so on.
+    """
+    while fraction <= _FINEST and (timing.layers - 1) * fraction < MAX_LAYERS:
+        first = Timing(timing.step / fraction, 1)
+        places = scene(scenario, first, partition, extent)
+        free = plane(places.roadway, places.swept[0], partition, places.names[0])
+        if list(free.cells_at(places.s[scenario.ego.s], places.d[scenario.ego.d])):
+            return first
+        fraction *= 2
+    return None

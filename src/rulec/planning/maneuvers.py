@@ -1,0 +1,186 @@
+"""The maneuvers of a graph, judged by a rulebook, and what can be asked of them."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.stutter_invariance import stutter_invariant
+from rulec.logic.free_names import names_in
+from rulec.monitoring.verdict import Violation
+from rulec.planning.product.cell_tracks import Places, places
+from rulec.planning.product.graph_instances import HARD, SOFT, violations
+from rulec.planning.product.graph_product import Product, count_paths, explore
+from rulec.planning.product.node_transformers import Effects, effects
+from rulec.planning.ranking.cheapest import Maneuver, cheapest
+from rulec.planning.ranking.homotopy import Classes, Variant, count_classes, variants
+from rulec.planning.ranking.least_violating import front, ranked, with_penalty
+from rulec.planning.ranking.penalties import Penalty, Ranks, ranks_of
+from rulec.planning.ranking.pruning import violating, violating_alone
+from rulec.planning.results import Pruning, Ranked
+from rulec.planning.rule_instances import applied, in_words, past_for
+from rulec.trace import TraceGraph
+
+if TYPE_CHECKING:
+    from rulec.partition import NavigationGraph
+    from rulec.planning.trace_history import Before
+
+
+MOST_BEST = 100
+"""Levels that are not comparable can leave any number of maneuvers that none is better than."""
+
+
+@dataclass(frozen=True)
+class Maneuvers:
+    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
+
+    ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
+    their vocabulary. ``after`` is the past, None if there was none. ``violated_before`` are
+    the hard rules that it has violated for good; nothing of that counts against a maneuver.
+    """
+
+    graph: NavigationGraph
+    rules: CompiledRulebook
+    paths: TraceGraph
+    traces: int
+    hard: Effects
+    product: Product
+    after: Before | None = None
+    violated_before: tuple[Violation, ...] | None = None
+
+    @property
+    def satisfying(self) -> int:
+        """How many keep every hard rule."""
+        return self.product.accepted
+
+    @property
+    def by_default(self) -> tuple[str, ...]:
+        """What rules read and the scenario does not supply, so that it has its default all along.
+
+        In the order of the vocabulary.
+        """
+        supplied = {name for layer in self.paths.states for state in layer for name in state}
+        read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
+        return tuple(name for name in self.rules.vocabulary.declarations if name in read - supplied)
+
+    def cheapest(self, n: int) -> list[Maneuver]:
+        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
+        return list(islice(cheapest(self.product), _number(n)))
+
+    def best(self, n: int = MOST_BEST) -> list[Ranked]:
+        """The least violating maneuvers: for each lowest penalty one of the cheapest.
+
+        There are several if levels are not comparable; of many, the first ``n``. If there are
+        satisfying maneuvers, these are satisfying and violate soft rules least. Raises RulecError
+        as ``judged`` does, for soft rules too.
+        """
+        return [
+            self._ranked(1, penalty, next(cheapest(product)), product.accepted)
+            for penalty in islice(front(self._every, self._ranks), _number(n))
+            for product in [with_penalty(self._every, self._ranks, penalty)]
+        ]
+
+    def ranked(self, n: int) -> list[Ranked]:
+        """The ``n`` best maneuvers, or all if there are fewer: the least violating first.
+
+        Each stands behind all that violate less; those with equal penalties are in the order of
+        cost. Raises RulecError as ``best`` does.
+        """
+        every, ranks = self._every, self._ranks
+        return list(
+            islice(
+                (
+                    self._ranked(place, penalty, maneuver, product.accepted)
+                    for place, penalty in ranked(every, ranks)
+                    for product in [with_penalty(every, ranks, penalty)]
+                    for maneuver in cheapest(product)
+                ),
+                _number(n),
+            )
+        )
+
+    def prunings(self) -> list[Pruning]:
+        """Which rule prunes what, for every rule. Raises RulecError as ``best`` does."""
+        every, alone = violating(self._every), violating_alone(self.hard)
+        return [
+            self._pruning(rule, every.get(rule.name), alone.get(rule.name))
+            for rule in self.rules.rules
+        ]
+
+    def classes(self) -> Classes:
+        """How many homotopy classes there are, by their members' verdicts: exact."""
+        return count_classes(self.hard, self._places)
+
+    def variants(self, n: int) -> list[Variant]:
+        """A cheapest satisfying maneuver for each of the ``n`` cheapest classes that have one."""
+        return list(islice(variants(self.product, self._places), _number(n)))
+
+    def counting_steps(self) -> list[CompiledRule]:
+        """The hard rules that may judge members of one class differently: they count steps."""
+        hard = [rule for rule in self.rules.rules if rule.strength == "hard"]
+        return [rule for rule in hard if not stutter_invariant(rule.machine)]
+
+    @cached_property
+    def _places(self) -> Places:
+        return places(self.graph.trace_graph())
+
+    @cached_property
+    def _ranks(self) -> Ranks:
+        return ranks_of(self.rules)
+
+    @cached_property
+    def _every(self) -> Effects:
+        """With soft rules, too. Those of which nothing can be violated are left out already."""
+        past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
+        soft = applied(self.graph, self.paths, self.rules, SOFT, past)
+        return effects(self.paths, [*self.hard.instances, *soft])
+
+    def _ranked(self, place: int, penalty: Penalty, found: Maneuver, members: int) -> Ranked:
+        weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
+        return Ranked(
+            place,
+            {rank: weight for rank, weight in weights if weight},
+            members,
+            found,
+            violations(self._every.instances, found.nodes),
+        )
+
+    def _pruning(self, rule: CompiledRule, every: Product | None, alone: Product | None) -> Pruning:
+        rejected = alone or every
+        example = next(cheapest(rejected)) if rejected else None
+        lost = violations(self._every.instances, example.nodes) if example else ()
+        return Pruning(
+            rule,
+            every.accepted if every else 0,
+            None if rule.strength == "soft" else alone.accepted if alone else 0,
+            example,
+            tuple([one for one in lost if one.rule == rule.name]),
+        )
+
+
+def _number(n: int) -> int:
+    """As many as anybody can count up to, instead of more."""
+    return min(n, sys.maxsize)
+
+
+def judged(
+    graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
+) -> Maneuvers:
+    """Count a graph's paths, and those that keep every hard rule.
+
+    ``after`` has led up to the first layer.
+
+    Raises:
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
+            rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
+    """
+    paths = in_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
+    past = past_for(graph, paths, rules, HARD, after)
+    hard = effects(paths, applied(graph, paths, rules, HARD, past))
+    before = None if after is None else past.violations
+    counted = count_paths(paths)
+    return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)

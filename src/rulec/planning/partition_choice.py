@@ -1,0 +1,109 @@
+"""Which partition has the words of a rulebook, and its graph in these words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Set
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import Diagnostic, RulecError, named
+from rulec.logic.free_names import names_in
+from rulec.trace import State, TraceGraph, Value
+from rulec.vocabulary import Vocabulary
+
+if TYPE_CHECKING:
+    from rulec.partition import PartitionName
+    from rulec.rulebook.model import Rulebook
+
+RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
+    "paper": ("position",),
+    "fine": ("station", "lateral"),
+}
+"""The relations that only one partition supplies."""
+
+SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
+"""All that partitions supply."""
+
+
+def in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
+    """Leave out what the partition supplies and the vocabulary has no word for.
+
+    The author of a rulebook has not written these names, unlike those in a file of traces.
+    """
+    if not vocabulary.types:
+        traces = replace(traces, objects={}, present={})
+    strangers = {name: _strangers(vocabulary, name, traces.objects) for name in SUPPLIED}
+    return replace(
+        traces,
+        states=tuple(
+            tuple([_state(vocabulary, strangers, state) for state in layer])
+            for layer in traces.states
+        ),
+    )
+
+
+def _strangers(vocabulary: Vocabulary, name: str, objects: Mapping[str, str]) -> Set[str]:
+    """The objects that a relation is not about, of types that the vocabulary knows."""
+    declaration = vocabulary.declarations.get(name)
+    if declaration is None or not declaration.parameters:
+        return frozenset()
+    about = declaration.parameters[0]
+    return {
+        item
+        for item, kind in objects.items()
+        if kind in vocabulary.types and not vocabulary.is_subtype(kind, about)
+    }
+
+
+def _state(vocabulary: Vocabulary, strangers: Mapping[str, Set[str]], state: State) -> State:
+    kept: dict[str, Value | Mapping[str, Value]] = {}
+    for name, value in state.items():
+        if name in SUPPLIED and name not in vocabulary.declarations:
+            continue
+        left_out = strangers.get(name)
+        if left_out and isinstance(value, Mapping):
+            value = {item: inner for item, inner in value.items() if item not in left_out}
+        kept[name] = value
+    return kept
+
+
+def partition_for(
+    rules: Rulebook | CompiledRulebook, wanted: PartitionName | None
+) -> PartitionName:
+    """The wanted partition, or the one that the rules need.
+
+    Raises:
+        RulecError: R0405 if the rules need another one, or two.
+    """
+    read = {name for rule in rules.rules for name in names_in(rule.formula)}
+    needed = {
+        name: [relation for relation in relations if relation in read]
+        for name, relations in RELATIONS_OF.items()
+        if read.intersection(relations)
+    }
+    if len(needed) > 1:
+        raise _no_partition(
+            f"rulebook `{rules.name}` reads {named(needed['paper'])} and {named(needed['fine'])}, "
+            "which no one partition supplies",
+            "say it with `station` and `lateral` alone: they tell apart all that `position` does",
+        )
+    for name, relations in needed.items():
+        if wanted not in (None, name):
+            raise _no_partition(
+                f"rulebook `{rules.name}` reads {named(relations)}, which the partition "
+                f"`{wanted}` does not supply",
+                f"use the partition `{name}`, or leave the choice to the rulebook",
+            )
+        return name
+    return wanted or _spoken_of(rules.vocabulary)
+
+
+def _spoken_of(vocabulary: Vocabulary) -> PartitionName:
+    """The partition whose relations a vocabulary declares, for rules that read none of them."""
+    declared = {name for name in vocabulary.declarations if name in RELATIONS_OF["fine"]}
+    return "fine" if declared else "paper"
+
+
+def _no_partition(message: str, way_out: str) -> RulecError:
+    return RulecError(Diagnostic("R0405", message, help=way_out))

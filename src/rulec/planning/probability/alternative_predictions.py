@@ -1,0 +1,49 @@
+"""How many maneuvers there are where one obstacle does something less likely."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.partition.prediction_worlds import named_in, world_graph
+from rulec.planning.maneuvers import Maneuvers
+from rulec.planning.product.graph_instances import HARD
+from rulec.planning.product.graph_product import count_paths, explore
+from rulec.planning.product.node_transformers import effects
+from rulec.planning.rule_instances import applied, in_words, past_for
+
+
+@dataclass(frozen=True, slots=True)
+class Otherwise:
+    """What becomes of the maneuvers if one obstacle does as its prediction ``number`` has it.
+
+    All others do what is likeliest. On so many ``traces`` nobody hits ego; those that are
+    ``satisfying`` also keep every hard rule then.
+    """
+
+    obstacle: str
+    number: int
+    weight: Fraction
+    traces: int
+    satisfying: int
+
+
+def otherwise(found: Maneuvers) -> list[Otherwise]:
+    """The counts for every prediction that is not an obstacle's likeliest: exact."""
+    return [
+        Otherwise(obstacle.id, number, one.weight, *_counts(found, obstacle.id, number))
+        for obstacle in found.graph.scenario.obstacles
+        for number, one in enumerate(obstacle.alternatives, start=1)
+    ]
+
+
+def _counts(found: Maneuvers, obstacle: str, number: int) -> tuple[int, int]:
+    graph, rules = found.graph, found.rules
+    world = {obstacle: number}
+    traces = world_graph(graph, world)
+    if traces is None:
+        return 0, 0
+    paths = in_words(graph, traces, named_in(graph, world), rules.vocabulary)
+    past = past_for(graph, paths, rules, HARD, found.after)
+    hard = effects(paths, applied(graph, paths, rules, HARD, past))
+    return count_paths(paths), explore(hard).accepted

@@ -1,0 +1,83 @@
+"""How probable it is that a maneuver keeps each rule, if obstacles have several predictions.
+
+What an obstacle does is independent of what the others do. Whatever they do, ego goes through the
+same cells. It keeps a rule for some objects if its trace does and none of these objects hits it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.partition.prediction_worlds import predicted_path
+from rulec.planning.maneuvers import Maneuvers
+from rulec.planning.probability.event_probability import Event, Weights, none_of
+from rulec.planning.probability.violation_events import Lost, LostOn
+from rulec.planning.ranking.cheapest import Maneuver
+
+
+@dataclass(frozen=True, slots=True)
+class ForObjects:
+    """The probability that a rule is kept for these objects, the scenario's."""
+
+    binding: Mapping[str, str]
+    kept: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class RuleChance:
+    """The probability that a rule is kept for all objects, and those below 1 for some of them.
+
+    None if the rule counts objects, and these can do more together than can be looked at.
+    """
+
+    rule: CompiledRule
+    kept: Fraction | None
+    bindings: tuple[ForObjects, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Chances:
+    """The probabilities that nobody hits ego, that besides every hard rule is kept, and each rule.
+
+    ``hard`` is None if that of one of the hard rules is.
+    """
+
+    clear: Fraction
+    hard: Fraction | None
+    rules: tuple[RuleChance, ...]
+
+
+def chances(found: Maneuvers, maneuver: Maneuver) -> Chances:
+    """The probabilities of one of the maneuvers: exact. Raises RulecError as ``best`` does."""
+    path = predicted_path(found.graph, maneuver.nodes)
+    judge = LostOn(found, path)
+    hard: set[Event] | None = set(judge.hits)
+    rules = []
+    for rule in found.rules.rules:
+        lost = judge.events(rule)
+        rules.append(_of_rule(rule, lost, path.weights))
+        if rule.strength == "hard":
+            hard = None if lost is None or hard is None else hard.union(*lost.values())
+    return Chances(
+        none_of(judge.hits, path.weights),
+        None if hard is None else none_of(hard, path.weights),
+        tuple(rules),
+    )
+
+
+def _of_rule(rule: CompiledRule, lost: Lost | None, weights: Weights) -> RuleChance:
+    if lost is None:
+        return RuleChance(rule, None, ())
+    names = [variable.name for variable in rule.variables]
+    return RuleChance(
+        rule,
+        none_of(set().union(*lost.values()), weights),
+        tuple(
+            ForObjects(dict(zip(names, objects, strict=True)), none_of(events, weights))
+            for objects, events in lost.items()
+            if objects
+        ),
+    )

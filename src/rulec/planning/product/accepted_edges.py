@@ -1,0 +1,55 @@
+"""Where the accepted paths of a graph run, and where only others do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.planning.product.graph_product import Product, ProductNode
+from rulec.planning.product.node_transformers import Effects
+
+Edge = tuple[int, int]
+"""A node of one layer, and one of the next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passages:
+    """For each layer the nodes, and for each but the last the edges onward, that lie on paths.
+
+    ``possible`` are on some path from the start to a goal, ``accepted`` on one that is accepted.
+    """
+
+    possible_nodes: tuple[frozenset[int], ...]
+    accepted_nodes: tuple[frozenset[int], ...]
+    possible: tuple[frozenset[Edge], ...]
+    accepted: tuple[frozenset[Edge], ...]
+
+
+def passages(effects: Effects, product: Product) -> Passages:
+    """The passages of a graph; ``product`` has been explored from ``effects``."""
+    nodes = [frozenset(i for i, there in enumerate(row) if there) for row in effects.on_the_way]
+    edges = [
+        frozenset((node, target) for node in here for target, _ in rows[node])
+        for here, rows in zip(nodes, effects.steps, strict=False)
+    ]
+    accepted_nodes, accepted = _accepted(product)
+    return Passages(tuple(nodes), accepted_nodes, tuple(edges), accepted)
+
+
+def _accepted(
+    product: Product,
+) -> tuple[tuple[frozenset[int], ...], tuple[frozenset[Edge], ...]]:
+    """Backwards from the ends; the product has been built forward from the start."""
+    ahead: frozenset[ProductNode] | set[ProductNode] = product.ends
+    nodes = [frozenset(node for node, _ in ahead)]
+    edges = []
+    for steps in reversed(product.steps):
+        found = [
+            (origin, target)
+            for origin, onward in steps.items()
+            for target, _ in onward
+            if target in ahead
+        ]
+        edges.append(frozenset((origin[0], target[0]) for origin, target in found))
+        ahead = {origin for origin, _ in found}
+        nodes.append(frozenset(node for node, _ in ahead))
+    return tuple(reversed(nodes)), tuple(reversed(edges))

@@ -1,0 +1,123 @@
+"""A rulebook's rules bound to the objects of a graph, and what every node is to their machines."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.thresholds import exact
+from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.binding import Binding, bindings
+from rulec.monitoring.fast_validation import Gate
+from rulec.monitoring.letter_reader import Columns, present_in
+from rulec.monitoring.online.carried_state import NO_PAST, Past
+from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verify import check_step, run
+from rulec.rulebook.model import Strength
+from rulec.trace import TraceGraph
+
+HARD: tuple[Strength, ...] = ("hard",)
+SOFT: tuple[Strength, ...] = ("soft",)
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """A rule with objects bound, and the letter class of every node.
+
+    ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
+    machine waits for them. ``bindings`` are all those of the rule for which all this is the same.
+    """
+
+    rule: CompiledRule
+    bindings: tuple[Binding, ...]
+    letters: tuple[tuple[int, ...], ...]
+    start: int = 0
+
+    @property
+    def first(self) -> int:
+        """The first layer in which all objects are there."""
+        return self.bindings[0].first
+
+    @property
+    def last(self) -> int:
+        """The last layer in which all objects are there."""
+        return self.bindings[0].last
+
+
+def instances(
+    graph: TraceGraph,
+    rulebook: CompiledRulebook,
+    step_s: Fraction | None = None,
+    strengths: Collection[Strength] = HARD,
+    past: Past = NO_PAST,
+) -> list[Instance]:
+    """Every rule of these strengths with every binding of its variables to the graph's objects.
+
+    ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
+    of a rule that every node is the same to are one instance. Those that were settled in the
+    ``past`` are left out, the others go on where they stood.
+
+    Raises:
+        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if one of
+            these rules was compiled for another step, R0508 if a state contradicts a fact.
+    """
+    vocabulary = rulebook.vocabulary
+    rules = [rule for rule in rulebook.rules if rule.strength in strengths]
+    for rule in rules:
+        check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
+    check_objects(graph.objects, vocabulary)
+    gate = Gate(vocabulary, graph.objects)
+    for layer, states in enumerate(graph.states):
+        for state in states:
+            if not gate.passes(state):
+                check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
+    columns = [
+        Columns(
+            states,
+            vocabulary,
+            f"a cell of layer {layer}".format,
+            objects=present_in(layer, graph.objects, graph.present),
+            facts=rulebook.facts,
+        )
+        for layer, states in enumerate(graph.states)
+    ]
+    for layer, read in enumerate(columns):
+        where = f"a cell of layer {layer}".format
+        check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
+    found: list[Instance] = []
+    for rule in rules:
+        alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
+        for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
+            letters = tuple(
+                columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
+                for layer in range(binding.first, binding.last + 1)
+            )
+            about = (rule.name, tuple(binding.objects.values()))
+            stays = binding.first == 0
+            if not (stays and about in past.settled):
+                start = past.states.get(about, 0) if stays else 0
+                alike.setdefault((binding.first, start, letters), []).append(binding)
+        found += [
+            Instance(rule, tuple(bound), letters, start)
+            for (_, start, letters), bound in alike.items()
+        ]
+    return found
+
+
+def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
+    """What a path, given by its nodes' indices, violates, and from which layer on it is lost."""
+    found = []
+    for one in rules:
+        path = nodes[one.first : one.last + 1]
+        word = [row[node] for row, node in zip(one.letters, path, strict=True)]
+        accepted, lost = run(one.rule.machine, word, one.start)
+        if not accepted:
+            layer = None if lost is None else one.first + lost
+            found += [
+                Violation(one.rule.name, one.rule.strength, binding.objects, layer)
+                for binding in one.bindings
+            ]
+    return tuple(found)

@@ -1,0 +1,76 @@
+"""The cheapest paths that keep every rule, in order, found lazily."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+from itertools import pairwise
+
+from rulec.planning.product.graph_product import Product, ProductNode
+from rulec.trace import TraceGraph
+
+
+@dataclass(frozen=True, slots=True)
+class Maneuver:
+    """A path through the graph: the node's index in each layer, cost (1/s), time margin (s).
+
+    ``margin_s`` is the smallest margin of its changes of cell; None if it never changes.
+    """
+
+    nodes: tuple[int, ...]
+    cost: float
+    margin_s: float | None
+
+
+def cheapest(product: Product) -> Iterator[Maneuver]:
+    """The accepted paths in ascending order of cost; equal costs in ascending order of nodes.
+
+    Best-first search. The cost still to come is known exactly for every product node, so a path is
+    only ever extended towards a goal, and each next maneuver costs one walk through the layers.
+    """
+    graph = product.graph
+    to_come = _costs_to_come(product)
+    queue: list[tuple[int, tuple[int, ...], int, ProductNode]] = [
+        (to_come[0][start], (start[0],), 0, start)
+        for start in product.counts[0]
+        if start in to_come[0]
+    ]
+    last = len(graph.states) - 1
+    while queue:
+        _, path, spent, here = heappop(queue)
+        layer = len(path) - 1
+        if layer == last:
+            yield maneuver(graph, path, spent)
+            continue
+        for step, cost in product.steps[layer][here]:
+            rest = to_come[layer + 1].get(step)
+            if rest is not None:
+                total = spent + cost
+                heappush(queue, (total + rest, (*path, step[0]), total, step))
+
+
+def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
+    """For each layer the product nodes that a goal can be reached from, and at what least cost."""
+    costs = [dict.fromkeys(product.ends, 0)]
+    for steps in reversed(product.steps):
+        later = costs[-1]
+        here: dict[ProductNode, int] = {}
+        for node, onward in steps.items():
+            rest = [cost + later[step] for step, cost in onward if step in later]
+            if rest:
+                here[node] = min(rest)
+        costs.append(here)
+    return costs[::-1]
+
+
+def maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
+    """A path through the graph with its margin; ``cost`` is in the graph's unit."""
+    margins = [
+        graph.margins[layer][node][graph.successors[layer][node].index(target)]
+        for layer, (node, target) in enumerate(pairwise(path))
+    ]
+    changes = [margin for margin in margins if margin is not None]
+    margin_s = min(changes) * graph.step_s if changes else None
+    return Maneuver(path, float(Fraction(cost) * graph.cost_unit), margin_s)

@@ -1,0 +1,184 @@
+"""Homotopy classes: paths that visit the same places in the same order, however long they stay.
+
+Classes are words over places; a path spells its class as it changes from one to the next. As for
+any automaton, words are counted over the sets of product nodes that a word can lead to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from heapq import heapify, heappop, heappush
+from operator import attrgetter
+
+from rulec.planning.product.cell_tracks import Places
+from rulec.planning.product.graph_product import Joint, Product, explore, kept
+from rulec.planning.product.node_transformers import Effect, Effects
+from rulec.planning.ranking.cheapest import Maneuver, maneuver
+from rulec.planning.ranking.place_product import Dwelling, dwelling
+
+REJECTED = "rejected"
+"""In place of a joint state: a rule has been lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """The cheapest way to a product node, given by the last step; how many there are in all."""
+
+    node: int
+    before: _Way | None
+    cost: int
+    members: int
+
+
+_Ways = dict[int, _Way]
+"""The ways of a class to each product node that it can lead to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Classes:
+    """How many classes there are, by what their members have for a verdict."""
+
+    accepted: int
+    rejected: int
+    divided: int
+
+    @property
+    def total(self) -> int:
+        """All of them."""
+        return self.accepted + self.rejected + self.divided
+
+    @property
+    def satisfying(self) -> int:
+        """Those with a member that is accepted."""
+        return self.accepted + self.divided
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A class with an accepted member: its places in order, how many are accepted, the cheapest."""
+
+    places: tuple[int, ...]
+    members: int
+    cheapest: Maneuver
+
+
+def count_classes(effects: Effects, places: Places) -> Classes:
+    """The classes of all paths from start to a goal, exactly."""
+    dwell, accepted = _both_verdicts(effects, places)
+    ways: list[dict[frozenset[int], int]] = [{} for _ in effects.nodes]
+    if dwell.starts:
+        ways[0][dwell.stayed(dwell.starts)] = 1
+    counts = {(True, False): 0, (False, True): 0, (True, True): 0, (False, False): 0}
+    for layer in range(len(ways)):
+        # Whoever changes place is in a later layer, so no way to these sets is still to come.
+        for here, words in ways[layer].items():
+            ends = here & dwell.ends
+            counts[not ends.isdisjoint(accepted), not ends <= accepted] += words
+            for entered in dwell.left(here).values():
+                first = min(dwell.layers[one] for one in entered)
+                there = dwell.stayed(entered)
+                ways[first][there] = ways[first].get(there, 0) + words
+        ways[layer] = {}
+    return Classes(counts[True, False], counts[False, True], counts[True, True])
+
+
+def variants(product: Product, places: Places) -> Iterator[Variant]:
+    """The classes with an accepted path, cheapest first; equal costs in the order of places.
+
+    Best-first search over words. The least cost of a word's members still to come is known exactly,
+    so a word is only ever made longer if a class needs it.
+    """
+    dwell = dwelling(product, places)
+    to_come = _costs_to_come(dwell)
+    queue: list[tuple[int, tuple[int, ...], bool, _Ways]] = []
+
+    def offer(word: tuple[int, ...], entered: _Ways) -> None:
+        ways = _stayed(dwell, to_come, entered)
+        bound = min(way.cost + to_come[one] for one, way in ways.items())
+        heappush(queue, (bound, word, False, ways))
+
+    for start in dwell.starts:
+        if start in to_come:
+            offer((dwell.place[start],), {start: _Way(start, None, 0, 1)})
+    while queue:
+        _, word, complete, ways = heappop(queue)
+        if complete:
+            yield _variant(product, dwell, word, ways)
+            continue
+        ends = {one: way for one, way in ways.items() if one in dwell.ends}
+        if ends:
+            heappush(queue, (min(way.cost for way in ends.values()), word, True, ends))
+        entered: dict[int, _Ways] = {}
+        for one, way in ways.items():
+            for target, cost in dwell.leaves[one]:
+                if target in to_come:
+                    _join(entered.setdefault(dwell.place[target], {}), target, cost, way)
+        for place, those in entered.items():
+            offer((*word, place), those)
+
+
+def _both_verdicts(effects: Effects, places: Places) -> tuple[Dwelling, frozenset[int]]:
+    """All paths, those that lose a rule included, and which of their ends are accepted."""
+
+    def enter(row: Sequence[Effect], memory: Joint | str) -> Joint | str:
+        after = None if isinstance(memory, str) else kept(row, memory)
+        return REJECTED if after is None else after
+
+    product = explore(effects, enter)
+    dwell = dwelling(product, places)
+    last = list(product.counts[-1])
+    first = len(dwell.nodes) - len(last)
+    accepted = [first + i for i, (_, memory) in enumerate(last) if memory != REJECTED]
+    return dwell, frozenset(accepted)
+
+
+def _costs_to_come(dwell: Dwelling) -> dict[int, int]:
+    """The least cost from every product node that leads to an end."""
+    costs = dict.fromkeys(dwell.ends, 0)
+    for one in reversed(range(len(dwell.nodes))):
+        rest = [
+            cost + costs[target]
+            for target, cost in (*dwell.stays[one], *dwell.leaves[one])
+            if target in costs
+        ]
+        if rest:
+            costs[one] = min(rest)
+    return costs
+
+
+def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
+    """Go on to a product node: the cheapest way is remembered, all are counted."""
+    best = _Way(target, way, way.cost + cost, way.members)
+    if target in ways:
+        other = ways[target]
+        cheaper = other if other.cost <= best.cost else best
+        best = replace(cheaper, members=best.members + other.members)
+    ways[target] = best
+
+
+def _stayed(dwell: Dwelling, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
+    """Where one can be without leaving the place, and how one got there."""
+    ways = dict(entered)
+    waiting = list(entered)
+    heapify(waiting)
+    while waiting:
+        # Numbers ascend with layers, so all ways to this one are known.
+        one = heappop(waiting)
+        for target, cost in dwell.stays[one]:
+            if target in to_come:
+                if target not in ways:
+                    heappush(waiting, target)
+                _join(ways, target, cost, ways[one])
+    return ways
+
+
+def _variant(product: Product, dwell: Dwelling, word: tuple[int, ...], ends: _Ways) -> Variant:
+    best = min(ends.values(), key=attrgetter("cost"))
+    nodes = []
+    way: _Way | None = best
+    while way is not None:
+        nodes.append(dwell.nodes[way.node])
+        way = way.before
+    members = sum(way.members for way in ends.values())
+    return Variant(word, members, maneuver(product.graph, tuple(reversed(nodes)), best.cost))

@@ -1,0 +1,143 @@
+"""The least violating paths, found without walking them all.
+
+A path is lost to an instance at most once: then its penalty is added and its machine drops out. So
+partial paths carry their penalty beside the machines' states. They are extended lowest penalty
+first, so those that violate much are not touched while there are better ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from heapq import heappop, heappush
+from itertools import count
+from operator import add, getitem, gt
+
+from rulec.planning.product.graph_product import Joint, Product, explore
+from rulec.planning.product.limits import room_for, too_many
+from rulec.planning.product.node_transformers import LOST, SAFE, Effect, Effects
+from rulec.planning.ranking.penalties import Penalty, Ranks
+
+Paying = tuple[Joint, Penalty]
+"""The machines' states, and what has been violated so far."""
+
+
+Place = tuple[int, int, Joint]
+"""A layer, a node in it, and the machines' states behind it."""
+
+
+def front(effects: Effects, ranks: Ranks) -> Iterator[Penalty]:
+    """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
+    found: list[Penalty] = []
+    passed: dict[Place, list[Penalty]] = {}
+
+    def worth(place: Place, penalty: Penalty) -> bool:
+        """A penalty no higher than that of another way here stays so, whatever comes."""
+        others = passed.setdefault(place, [])
+        if any(ranks.at_most(one, penalty) for one in (*found, *others)):
+            return False
+        others.append(penalty)
+        return True
+
+    for penalty in _ascending(effects, ranks, worth):
+        found.append(penalty)
+        yield penalty
+
+
+def ranked(effects: Effects, ranks: Ranks) -> Iterator[tuple[int, Penalty]]:
+    """Every penalty that some path has, each one behind all that are lower.
+
+    With each comes its place: 1 for those of the front, else 1 more than the last one of the
+    places of lower penalties.
+    """
+    passed: set[tuple[Place, Penalty]] = set()
+
+    def worth(place: Place, penalty: Penalty) -> bool:
+        new = (place, penalty) not in passed
+        passed.add((place, penalty))
+        return new
+
+    places: dict[Penalty, int] = {}
+    for penalty in _ascending(effects, ranks, worth):
+        if penalty not in places:
+            lower = [place for one, place in places.items() if ranks.at_most(one, penalty)]
+            places[penalty] = 1 + max(lower, default=0)
+            yield places[penalty], penalty
+
+
+def with_penalty(effects: Effects, ranks: Ranks, wanted: Penalty) -> Product:
+    """The product in which just the paths of one penalty are accepted."""
+    fee = _fees(effects, ranks)
+
+    def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
+        joint, paid = memory
+        after, due = fee(row, joint)
+        total = tuple(map(add, paid, due)) if due else paid
+        return None if any(map(gt, total, wanted)) else (after, total)
+
+    found = explore(effects, enter, (effects.waiting, (0,) * len(ranks.ranks)))
+    ends = frozenset([end for end in found.ends if end[1][1] == wanted])
+    return replace(found, ends=ends)
+
+
+def _ascending(
+    effects: Effects, ranks: Ranks, worth: Callable[[Place, Penalty], bool]
+) -> Iterator[Penalty]:
+    """The penalties of paths in the order of ``ranks``; only what is ``worth`` it is extended.
+
+    Of partial paths with one penalty the longer ones come first, so goals are soon found.
+
+    Raises:
+        RulecError: R0616 if there are too many partial paths worth it.
+    """
+    room = room_for(effects.graph)
+    fee = _fees(effects, ranks)
+    known: dict[tuple[int, int, Joint], tuple[Joint, Penalty]] = {}
+    queue: list[tuple[Penalty, int, int, int, Joint]] = []
+    numbers = count()
+
+    def reach(layer: int, node: int, joint: Joint, paid: Penalty) -> None:
+        rows = effects.nodes[layer]
+        key = (id(rows), node, joint)
+        if key not in known:
+            known[key] = fee(rows[node], joint)
+        after, due = known[key]
+        total = tuple(map(add, paid, due)) if due else paid
+        heappush(queue, (total, -layer, next(numbers), node, after))
+
+    if effects.starts:
+        reach(0, effects.graph.start, effects.waiting, (0,) * len(ranks.ranks))
+    while queue:
+        penalty, earlier, _, node, joint = heappop(queue)
+        if not worth((-earlier, node, joint), penalty):
+            continue
+        room -= 1
+        if room < 0:
+            raise too_many(effects.graph)
+        if -earlier == len(effects.steps):
+            yield penalty
+            continue
+        for target, _ in effects.steps[-earlier][node]:
+            reach(1 - earlier, target, joint, penalty)
+
+
+def _fees(
+    effects: Effects, ranks: Ranks
+) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
+    """What the machines' states become at a node, and what is to be paid there, () for nothing."""
+    prices = [
+        (ranks.of(one.rule), ranks.weight(one.rule) * len(one.bindings))
+        for one in effects.instances
+    ]
+
+    def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:
+        after = tuple(map(getitem, row, joint))
+        if LOST not in after:
+            return after, ()
+        due = [0] * len(ranks.ranks)
+        for state, (rank, price) in zip(after, prices, strict=True):
+            if state == LOST:
+                due[rank] += price
+        return tuple([SAFE if state == LOST else state for state in after]), tuple(due)
+
+    return fee

@@ -1,0 +1,106 @@
+"""How bad it is to violate rules: penalties by levels of priority, and which is worse.
+
+The order of A. Censi et al., "Liability, Ethics, and Culture-Aware Behavior Specification using
+Rulebooks" (ICRA 2019), over the levels of a rulebook, with every hard rule above every soft one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.rulebook.model import Strength
+
+Penalty = tuple[int, ...]
+"""For each rank the summed weights of what is violated there, in units of ``Ranks``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rank:
+    """Levels that are equal, for rules of one strength; the level "" is that of rules without."""
+
+    strength: Strength
+    levels: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Ranks:
+    """The ranks that a rulebook's rules have, each one behind all that are above it.
+
+    ``above[i]`` are the indices of the ranks above ``ranks[i]``. Weights are counted in ``unit``,
+    of which each is a whole multiple.
+    """
+
+    ranks: tuple[Rank, ...]
+    above: tuple[frozenset[int], ...]
+    unit: Fraction
+
+    def of(self, rule: CompiledRule) -> int:
+        """The index of a rule's rank."""
+        return next(
+            index
+            for index, rank in enumerate(self.ranks)
+            if rank.strength == rule.strength and rule.level in rank.levels
+        )
+
+    def weight(self, rule: CompiledRule) -> int:
+        """What each violated binding of the rule adds to its rank."""
+        return int(rule.weight / self.unit)
+
+    def at_most(self, one: Penalty, other: Penalty) -> bool:
+        """Is one penalty as low as another, or lower?
+
+        It is if above every rank in which it is higher there is one in which it is lower. Adding
+        the same to both changes nothing, adding to one makes it no lower.
+        """
+        return all(
+            any(one[higher] < other[higher] for higher in self.above[index])
+            for index in range(len(one))
+            if one[index] > other[index]
+        )
+
+    def weights(self, penalty: Penalty) -> tuple[Fraction, ...]:
+        """The penalty as sums of weights."""
+        return tuple([part * self.unit for part in penalty])
+
+
+def ranks_of(rulebook: CompiledRulebook) -> Ranks:
+    """The ranks of a rulebook's rules.
+
+    In tuples of one number per rank, compared from left to right, what is lower by priority comes
+    first: a rank stands behind all above it, and among others as the rulebook names the levels.
+    """
+    order = rulebook.priorities
+    found = []
+    for strength in ("hard", "soft"):
+        used = {rule.level for rule in rulebook.rules if rule.strength == strength}
+        waiting = [level for level in (*rulebook.levels, "") if level in used]
+        while waiting:
+            top = next(one for one in waiting if not _any_above(one, waiting, order))
+            equal = [
+                one
+                for one in waiting
+                if one == top or ((one, top) in order and (top, one) in order)
+            ]
+            found.append(Rank(strength, tuple(equal)))
+            waiting = [one for one in waiting if one not in equal]
+    above = tuple(
+        frozenset(index for index, other in enumerate(found) if _is_above(other, rank, order))
+        for rank in found
+    )
+    weights = [rule.weight.denominator for rule in rulebook.rules]
+    return Ranks(tuple(found), above, Fraction(1, lcm(*weights)))
+
+
+def _is_above(one: Rank, other: Rank, order: frozenset[tuple[str, str]]) -> bool:
+    if one.strength != other.strength:
+        return one.strength == "hard"
+    (higher, *_), (lower, *_) = one.levels, other.levels
+    return (higher, lower) in order and (lower, higher) not in order
+
+
+def _any_above(level: str, others: Sequence[str], order: frozenset[tuple[str, str]]) -> bool:
+    return any((one, level) in order and (level, one) not in order for one in others)

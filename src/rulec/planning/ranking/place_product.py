@@ -1,0 +1,78 @@
+"""The product of graph and machines, seen as ways of staying in a place and of leaving it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from rulec.planning.product.cell_tracks import Places
+from rulec.planning.product.graph_product import Product
+
+
+@dataclass(frozen=True, slots=True)
+class Dwelling:
+    """The product nodes as numbers, in the order of layers.
+
+    ``nodes[i]`` is the node's index in layer ``layers[i]``, ``place[i]`` its place. ``stays[i]``
+    are the followers of the same place with the costs of going there, ``leaves[i]`` the others.
+    """
+
+    starts: tuple[int, ...]
+    ends: frozenset[int]
+    layers: tuple[int, ...]
+    nodes: tuple[int, ...]
+    place: tuple[int, ...]
+    stays: tuple[tuple[tuple[int, int], ...], ...]
+    leaves: tuple[tuple[tuple[int, int], ...], ...]
+
+    def stayed(self, entered: Collection[int]) -> frozenset[int]:
+        """Where one can be without leaving the place: what is given and what follows."""
+        reached, new = set(entered), list(entered)
+        while new:
+            for target, _ in self.stays[new.pop()]:
+                if target not in reached:
+                    reached.add(target)
+                    new.append(target)
+        return frozenset(reached)
+
+    def left(self, here: Collection[int]) -> dict[int, set[int]]:
+        """By place where one can be directly after leaving."""
+        entered: dict[int, set[int]] = {}
+        for one in here:
+            for target, _ in self.leaves[one]:
+                entered.setdefault(self.place[target], set()).add(target)
+        return entered
+
+
+def dwelling(product: Product, places: Places) -> Dwelling:
+    """A product's nodes by place."""
+    every = [(layer, node) for layer, counts in enumerate(product.counts) for node in counts]
+    number = {node: i for i, node in enumerate(every)}
+    place = [places[layer][node] for layer, (node, _) in every]
+    last = len(product.steps)
+    steps = [
+        [
+            (number[layer + 1, target], cost)
+            for target, cost in (product.steps[layer][node] if layer < last else ())
+        ]
+        for layer, node in every
+    ]
+    return Dwelling(
+        tuple([number[0, start] for start in product.counts[0]]),
+        frozenset([number[last, end] for end in product.ends]),
+        tuple([layer for layer, _ in every]),
+        tuple([node for _, (node, _) in every]),
+        tuple(place),
+        tuple(
+            [
+                tuple([one for one in row if place[one[0]] == here])
+                for row, here in zip(steps, place, strict=True)
+            ]
+        ),
+        tuple(
+            [
+                tuple([one for one in row if place[one[0]] != here])
+                for row, here in zip(steps, place, strict=True)
+            ]
+        ),
+    )

@@ -1,0 +1,63 @@
+"""Which rule rejects what: how many paths, how many that all other rules would let pass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from operator import getitem
+
+from rulec.planning.product.graph_product import Joint, Product, explore
+from rulec.planning.product.node_transformers import LOST, SAFE, Effect, Effects
+
+NOBODY = -1
+"""In place of a rule: none has been violated."""
+
+Blaming = tuple[Joint, int]
+"""The machines' states, and the one rule that has been violated so far, or NOBODY."""
+
+
+def violating(effects: Effects) -> dict[str, Product]:
+    """For every rule that some path violates the product in which these are accepted."""
+    rules = _rules(effects)
+    found = {}
+    for number, rule in enumerate(dict.fromkeys(rules)):
+        indices = [i for i, name in enumerate(rules) if name == rule]
+        product = _blaming(effects.of(indices), [number] * len(indices))
+        found[rule] = _blamed(product, number)
+    return {rule: product for rule, product in found.items() if product.ends}
+
+
+def violating_alone(effects: Effects) -> dict[str, Product]:
+    """For every rule that is the only one that some path violates the product of these paths."""
+    rules = _rules(effects)
+    numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
+    product = _blaming(effects, [numbers[rule] for rule in rules])
+    found = {rule: _blamed(product, number) for rule, number in numbers.items()}
+    return {rule: product for rule, product in found.items() if product.ends}
+
+
+def _rules(effects: Effects) -> list[str]:
+    return [one.rule.name for one in effects.instances]
+
+
+def _blaming(effects: Effects, of: Sequence[int]) -> Product:
+    """The paths that violate at most one rule; ``of`` says whose the instances are."""
+
+    def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
+        joint, blamed = memory
+        after = tuple(map(getitem, row, joint))
+        if LOST not in after:
+            return after, blamed
+        lost = {rule for state, rule in zip(after, of, strict=True) if state == LOST}
+        if len(lost | ({blamed} - {NOBODY})) > 1:
+            return None
+        (blamed,) = lost
+        # Whatever else becomes of this rule, it has been violated.
+        states = zip(after, of, strict=True)
+        return tuple([SAFE if rule == blamed else state for state, rule in states]), blamed
+
+    return explore(effects, enter, (effects.waiting, NOBODY))
+
+
+def _blamed(product: Product, rule: int) -> Product:
+    return replace(product, ends=frozenset([end for end in product.ends if end[1][1] == rule]))

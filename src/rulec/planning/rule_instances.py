@@ -1,0 +1,70 @@
+"""Rules applied to paths through a navigation graph."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import Place, RulecError
+from rulec.monitoring.online.carried_state import NO_PAST, Past
+from rulec.planning.partition_choice import in_terms_of
+from rulec.planning.product.graph_instances import Instance, instances
+from rulec.planning.scene_projection import fitted
+from rulec.rulebook.model import Strength
+from rulec.trace import TraceGraph
+from rulec.vocabulary import Vocabulary
+
+if TYPE_CHECKING:
+    from rulec.partition import NavigationGraph
+    from rulec.planning.trace_history import Before
+    from rulec.scenario import Obstacle
+
+
+def in_words(
+    graph: NavigationGraph,
+    traces: TraceGraph,
+    obstacles: Mapping[str, Obstacle],
+    vocabulary: Vocabulary,
+) -> TraceGraph:
+    """Traces of paths through a graph in the words of a vocabulary.
+
+    ``obstacles`` are the objects of the traces.
+    """
+    if graph.scenario.account is not None:
+        traces = fitted(vocabulary, traces, obstacles)
+    return in_terms_of(vocabulary, traces)
+
+
+def past_for(
+    graph: NavigationGraph,
+    paths: TraceGraph,
+    rules: CompiledRulebook,
+    strengths: Collection[Strength],
+    after: Before | None,
+) -> Past:
+    """What led up to a graph, as far as rules of these strengths remember. Raises RulecError."""
+    if after is None:
+        return NO_PAST
+    from rulec.planning.trace_history import past_of
+
+    return past_of(paths, after, rules, graph.step, strengths)
+
+
+def applied(
+    graph: NavigationGraph,
+    paths: TraceGraph,
+    rules: CompiledRulebook,
+    strengths: Collection[Strength],
+    past: Past,
+) -> list[Instance]:
+    """The rules of these strengths, bound to the objects of paths through a graph.
+
+    Raises RulecError as ``instances`` does, with the scenario as the place.
+    """
+    try:
+        return instances(paths, rules, graph.step, strengths, past)
+    except RulecError as error:
+        place = Place(graph.scenario.name)
+        raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None

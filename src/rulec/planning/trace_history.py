@@ -1,0 +1,115 @@
+"""The past of a graph of traces: a trace, or a monitor, that leads up to its first layer."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import islice
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.thresholds import exact
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.online.carried_state import Past
+from rulec.monitoring.online.replay import replayed
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.online.snapshot_file import read_saved
+from rulec.monitoring.state_validation import check_objects
+from rulec.planning.product.graph_instances import HARD
+from rulec.rulebook.model import Strength
+from rulec.trace import Trace, TraceGraph
+from rulec.trace.formats.trace_files import read_traces
+
+Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
+"""A trace, a monitor that has taken one, or that monitor's snapshot."""
+
+
+def past_of(
+    graph: TraceGraph,
+    before: Before,
+    rulebook: CompiledRulebook,
+    step_s: Fraction,
+    strengths: Collection[Strength] = HARD,
+) -> Past:
+    """What has been when a graph with this step begins, for rules of these strengths.
+
+    Its first layer is the state after the last one of what was before.
+
+    Raises:
+        RulecError: R0501 to R0508 if a trace does not fit the rulebook, R0510 if a snapshot is not
+            of these rules, R0511 if what was before does not lead up to the graph.
+    """
+    check_objects(graph.objects, rulebook.vocabulary)
+    monitor, place = _monitor(before, rulebook, step_s, strengths)
+    there = {
+        name: kind
+        for name, kind in graph.objects.items()
+        if name not in graph.present or graph.present[name][0] == 0
+    }
+    for name, kind in monitor.objects.items():
+        if there.get(name, kind) != kind:
+            raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
+    past = monitor.past(there)
+    return replace(
+        past, violations=tuple(one for one in past.violations if one.strength in strengths)
+    )
+
+
+def read_past(path: Path) -> Before:
+    """The one trace of a file, or a saved monitor's snapshot (.json). Raises RulecError."""
+    if path.suffix == ".json":
+        saved: Mapping[str, Any] = read_saved(path)
+        return saved
+    return only_trace(read_traces(path), Place(str(path)))
+
+
+def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:
+    """The one trace of a file; in place of a bad one there is what is wrong with it.
+
+    Raises:
+        RulecError: that, or R0511 if there are several.
+    """
+    found = list(islice(items, 2))
+    for one in found:
+        if isinstance(one, RulecError):
+            raise one
+    if len(found) > 1:
+        raise RulecError(
+            Diagnostic(
+                "R0511",
+                "there are several traces in this file; there is but one past",
+                place,
+                help="give a file with one trace",
+            )
+        )
+    (trace,) = found
+    assert isinstance(trace, Trace)
+    return trace
+
+
+def _monitor(
+    before: Before, rulebook: CompiledRulebook, step_s: Fraction, strengths: Collection[Strength]
+) -> tuple[Monitor, Place | None]:
+    rules = tuple(rule for rule in rulebook.rules if rule.strength in strengths)
+    if isinstance(before, Trace):
+        if exact(before.step_s) != step_s:
+            raise _no_way(
+                f"the past has steps of {number_in_words(exact(before.step_s))} s, "
+                f"the scenario's future of {number_in_words(step_s)} s",
+                before.place,
+            )
+        return replayed(before, replace(rulebook, rules=rules)), before.place
+    if not isinstance(before, Monitor):
+        return Monitor.restore(rulebook, before), None
+    known = {rule.name: rule.machine for rule in before.rulebook.rules}
+    if any(known.get(rule.name) != rule.machine for rule in rules):
+        raise _no_way(f"the past was judged by other rules than those of `{rulebook.name}`", None)
+    return before, None
+
+
+def _no_way(message: str, place: Place | None) -> RulecError:
+    way_out = "give a past that ends one step before the scenario begins, with the same objects"
+    return RulecError(Diagnostic("R0511", message, place, help=way_out))

@@ -1,0 +1,64 @@
+"""A rule's automaton for people: its states, and what leads from each to each, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.guards import edges
+from rulec.report.automata.guard_text import Wording
+from rulec.report.findings.source_excerpt import visible
+from rulec.vocabulary import Vocabulary
+
+Fate = Literal["open", "violated", "satisfied"]
+"""Is the verdict final in this state, and which?"""
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """Some steps from one state to another.
+
+    ``condition`` is what holds of the state of the world that is read, ``otherwise`` that this is
+    easier said as what the other transitions from there are not. ``accepted`` is the verdict on a
+    trace that ends with such a step.
+    """
+
+    source: int
+    target: int
+    condition: str
+    otherwise: bool
+    accepted: bool
+
+    @property
+    def label(self) -> str:
+        """The condition, as short as it can be said."""
+        return "otherwise" if self.otherwise else self.condition
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton:
+    """States from 0, where traces start, each with its fate; transitions from the open ones."""
+
+    fates: tuple[Fate, ...]
+    transitions: tuple[Transition, ...]
+
+
+def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
+    """The automaton of a compiled rule."""
+    wording = Wording(rule, vocabulary)
+    machine = rule.machine
+    fates: dict[int | None, Fate] = {machine.dead: "violated", machine.safe: "satisfied"}
+    return Automaton(
+        tuple(fates.get(state, "open") for state in range(len(machine.following))),
+        tuple(
+            Transition(
+                edge.source,
+                edge.target,
+                visible(wording.condition(edge.cubes)),
+                edge.otherwise,
+                edge.accepted,
+            )
+            for edge in edges(machine)
+        ),
+    )

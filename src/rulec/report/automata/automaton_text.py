@@ -1,0 +1,60 @@
+"""A rule's automaton as lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import wrap
+
+import click
+
+from rulec.report.automata.automaton_model import Automaton, Transition
+
+WORDS = {True: "accepted", False: "rejected"}
+
+MOST_LINES = 6
+"""Of a condition that takes more lines only the beginning is shown: nobody would read it."""
+
+_FINAL = {
+    "violated": "violated for good: whatever follows, the trace is rejected",
+    "satisfied": "satisfied for good: whatever follows, the trace is accepted",
+}
+
+
+def as_text(automaton: Automaton, width: int) -> str:
+    """A paragraph for each state; the last column is the verdict on a trace that ends there."""
+    number = len(automaton.fates)
+    head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
+    if automaton.transitions:
+        head += ", and is accepted or rejected as it says behind its last step"
+    lines = wrap(head, width)
+    for state, fate in enumerate(automaton.fates):
+        if fate != "open":
+            final = wrap(f"state {state}: {_FINAL[fate]}", width, subsequent_indent="  ")
+            lines += [click.style(line, fg=_COLORS[fate]) for line in final]
+            continue
+        lines.append(f"state {state}")
+        lines += _leaving(
+            [one for one in automaton.transitions if one.source == state], state, width
+        )
+    return "\n".join(lines)
+
+
+_COLORS = {"violated": "red", "satisfied": "green"}
+
+
+def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[str]:
+    ordered = [one for one in transitions if not one.otherwise]
+    ordered += [one for one in transitions if one.otherwise]
+    targets = ["stays" if one.target == state else f"to state {one.target}" for one in ordered]
+    room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
+    labels = [_broken(one.label, room) for one in ordered]
+    widest = max(len(line) for lines in labels for line in lines)
+    column = max(map(len, targets))
+    for one, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
+        yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[one.accepted]}"
+        yield from (f"  {line}" for line in rest)
+
+
+def _broken(label: str, room: int) -> list[str]:
+    lines = wrap(label, room, subsequent_indent="  ")
+    return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  … (all: --json)"]

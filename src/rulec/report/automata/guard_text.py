@@ -1,0 +1,172 @@
+"""Conditions on an automaton's edges in short words, and states as an example writes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.guards import Cube
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.diagnostics.phrases import any_of
+from rulec.logic.english.atom_phrases import comparison_text, number_text, terms_text
+from rulec.logic.formula import Atom, Comparison, Count, Quantity, Relation, atoms_of
+from rulec.report.findings.source_excerpt import visible
+from rulec.rulebook.model import ExampleState
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Quantity as DeclaredQuantity
+
+_DENIAL: dict[Relation, Relation] = {
+    "<": ">=",
+    ">=": "<",
+    "<=": ">",
+    ">": "<=",
+    "=": "!=",
+    "!=": "=",
+}
+
+_OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
+    "<": ("<=", -1),
+    "<=": ("<", 1),
+    ">": (">=", 1),
+    ">=": (">", -1),
+}
+"""`< 2` is `<= 1`."""
+
+_SIGN = re.compile(r"<=|>=|!=|<|>|=")
+
+
+class Wording:
+    """The words of one rule: its reads, and how it says its comparisons."""
+
+    def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
+        self._reads = rule.machine.reads
+        self._vocabulary = vocabulary
+        self._said: dict[tuple[object, ...], str] = {}
+        for one in atoms_of(rule.formula):
+            if isinstance(one, Comparison):
+                text = comparison_text(one)
+                for relation, limit in _alike(one):
+                    self._said[one.terms, relation, limit] = text
+                    self._said.setdefault((one.terms, _DENIAL[relation], limit), _denied(text))
+
+    def condition(self, cubes: Sequence[Cube]) -> str:
+        """What holds of exactly the letters of these cubes; ``true`` of all."""
+        texts = []
+        for cube in cubes:
+            literals = [
+                self._literal(read, allowed)
+                for read, allowed in zip(self._reads, cube, strict=True)
+                if len(allowed) < read.size
+            ]
+            simple = [f"({one})" if loose and len(literals) > 1 else one for one, loose in literals]
+            text = " and ".join(simple) or "true"
+            loose = len(literals) > 1 or any(one for _, one in literals)
+            texts.append(f"({text})" if loose and len(cubes) > 1 else text)
+        return " or ".join(texts) or "false"
+
+    def _literal(self, read: Read | NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
+        """The words for some digits of a read; do they need parentheses among others?"""
+        if isinstance(read, NumberRead):
+            return self._number(read, allowed)
+        if not read.values:
+            atom = str(Atom(read.name, read.variables))
+            return (atom if 1 in allowed else f"not {atom}"), False
+        return self._enumeration(read, allowed)
+
+    def _enumeration(self, read: Read, allowed: frozenset[int]) -> tuple[str, bool]:
+        declaration = self._vocabulary.declarations[read.name]
+        assert isinstance(declaration, Enumeration), "only an enumeration has values"
+        inside = [value for value in declaration.values if read.digit(value) in allowed]
+        outside = [value for value in declaration.values if read.digit(value) not in allowed]
+        if len(inside) == 1:
+            return str(Atom(read.name, read.variables, inside[0])), False
+        if len(outside) == 1:
+            return f"not {Atom(read.name, read.variables, outside[0])}", False
+        subject = Atom(read.name, read.variables)
+        if len(inside) <= len(outside):
+            return f"{subject} is {any_of(inside)}", True
+        if len(outside) == 2:
+            return f"{subject} is neither {outside[0]} nor {outside[1]}", True
+        return f"{subject} is none of {', '.join(outside)}", True
+
+    def _number(self, read: NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
+        left_out = [digit for digit in range(read.size) if digit not in allowed]
+        if len(left_out) == 1 and 0 < left_out[0] < read.size - 1:
+            lower, upper = read.thresholds[left_out[0] - 1], read.thresholds[left_out[0]]
+            if lower.limit == upper.limit:
+                return self._compared(read, "!=", lower.limit), False
+        texts = [self._run(read, run) for run in runs(sorted(allowed))]
+        return " or ".join(texts), len(texts) > 1 or " and " in texts[0]
+
+    def _run(self, read: NumberRead, run: range) -> str:
+        """The words for neighbouring digits."""
+        lower = read.thresholds[run[0] - 1] if run[0] else None
+        upper = read.thresholds[run[-1]] if run[-1] < len(read.thresholds) else None
+        if lower and upper and lower.limit == upper.limit:
+            return self._compared(read, "=", lower.limit)
+        bounds = []
+        if lower:
+            bounds.append(self._compared(read, ">=" if lower.inclusive else ">", lower.limit))
+        if upper:
+            bounds.append(self._compared(read, "<" if upper.inclusive else "<=", upper.limit))
+        return " and ".join(bounds)
+
+    def _compared(self, read: NumberRead, relation: Relation, limit: Fraction) -> str:
+        said = self._said.get((read.terms, relation, limit))
+        if said is not None:
+            return said
+        return f"{terms_text(read.terms)} {relation} {number_text(limit)}{self._unit(read)}"
+
+    def _unit(self, read: NumberRead) -> str:
+        match read.terms:
+            case ((_, Quantity(name)),):
+                declaration = self._vocabulary.declarations[name]
+                return f" {declaration.unit}" if isinstance(declaration, DeclaredQuantity) else ""
+        return ""
+
+    def state(self, state: ExampleState) -> str:
+        """A state of an example; what it does not mention has its default."""
+        facts = []
+        for (name, variables), value in state.items():
+            declaration = self._vocabulary.declarations[name]
+            if value == declaration.default:
+                continue
+            if isinstance(value, str):
+                facts.append(str(Atom(name, variables, value)))
+            elif isinstance(declaration, DeclaredQuantity):
+                number = number_text(Fraction(repr(float(value))))
+                facts.append(f"{Atom(name, variables)} = {number} {declaration.unit}")
+            else:
+                facts.append(f"{'' if value else 'not '}{Atom(name, variables)}")
+        return visible(" and ".join(facts)) or "true"
+
+
+def _alike(one: Comparison) -> Iterator[tuple[Relation, Fraction]]:
+    """The comparison, and the one that a machine may have made of it: counts are whole numbers."""
+    yield one.relation, one.limit
+    match one.terms:
+        case ((_, Count()),) if one.limit.denominator == 1 and one.relation in _OF_WHOLE_NUMBERS:
+            relation, step = _OF_WHOLE_NUMBERS[one.relation]
+            yield relation, one.limit + step
+
+
+def runs(numbers: Sequence[int]) -> list[range]:
+    """Ascending numbers as ranges of neighbours."""
+    found: list[range] = []
+    for number in numbers:
+        if found and found[-1].stop == number:
+            found[-1] = range(found[-1].start, number + 1)
+        else:
+            found.append(range(number, number + 1))
+    return found
+
+
+def _denied(text: str) -> str:
+    """The comparison that holds where this one does not."""
+    signs = _SIGN.findall(text)
+    if len(signs) != 1:
+        return f"not ({text})"
+    denial: Relation = _DENIAL[signs[0]]
+    return text.replace(signs[0], denial)

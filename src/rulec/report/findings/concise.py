@@ -1,0 +1,21 @@
+"""Diagnostics as a line each, ``file:line:column: code message``, as editors read them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rulec.diagnostics import Diagnostic
+from rulec.report.findings.source_excerpt import visible
+
+
+def as_lines(found: Iterable[Diagnostic]) -> str:
+    """A line for each; what has no place has no prefix either."""
+    return "\n".join(visible(f"{_where(one)}{one.code} {one.message}") for one in found)
+
+
+def _where(one: Diagnostic) -> str:
+    place = one.place
+    if place is None:
+        return ""
+    parts = [place.file, place.line, place.column]
+    return ":".join(str(part) for part in parts if part is not None) + ": "

@@ -1,0 +1,41 @@
+"""What was found in rulebooks, in the format that somebody asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.diagnostics import Diagnostic
+
+FORMATS = ("full", "concise", "json", "github", "sarif")
+
+
+def render(found: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
+    """Diagnostics as text; empty if the format has nothing to say about nothing.
+
+    Args:
+        found: the diagnostics.
+        wanted: one of FORMATS.
+        color: may there be ANSI colours?
+        complete: was everything read that had to be?
+    """
+    match wanted:
+        case "concise":
+            from rulec.report.findings.concise import as_lines
+
+            return as_lines(found)
+        case "json":
+            from rulec.report.findings.diagnostics_json import as_json
+
+            return as_json(found)
+        case "github":
+            from rulec.report.findings.github_annotations import as_annotations
+
+            return as_annotations(found)
+        case "sarif":
+            from rulec.report.findings.sarif import as_sarif
+
+            return as_sarif(found, complete=complete)
+        case _:
+            from rulec.report.findings.diagnostics_text import render_diagnostics
+
+            return render_diagnostics(found, color).rstrip("\n")

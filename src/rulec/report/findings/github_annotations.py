@@ -1,0 +1,42 @@
+"""Diagnostics as workflow commands, which GitHub shows beside the lines of a change.
+
+https://docs.github.com/en/actions/reference/workflows-and-actions/workflow-commands
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rulec.diagnostics import Diagnostic
+from rulec.report.findings.source_excerpt import visible
+
+
+def as_annotations(found: Iterable[Diagnostic]) -> str:
+    """A command for each diagnostic, a line long whatever stands in it."""
+    return "\n".join(_command(one) for one in found)
+
+
+def _command(one: Diagnostic) -> str:
+    properties: dict[str, object] = {}
+    if one.place is not None:
+        place = one.place
+        properties = {"file": place.file, "line": place.line, "endLine": place.end_line}
+        # Of a place over several lines GitHub takes no columns.
+        if place.end_line in (None, place.line):
+            properties |= {"col": place.column, "endColumn": place.end_column}
+    properties["title"] = f"{one.code}: {one.message}"
+    written = ",".join(
+        f"{name}={_property(str(value))}" for name, value in properties.items() if value is not None
+    )
+    notes = (f"note: {note}" for note in one.notes)
+    lines = [one.expected or one.message, *([f"help: {one.help}"] if one.help else []), *notes]
+    message = "\n".join(visible(line) for line in lines)
+    return f"::{one.severity} {written}::{_data(message)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(visible(text)).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,98 @@
+"""Diagnostics as SARIF 2.1.0, the exchange format of static analysis.
+
+https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from rulec.diagnostics import Diagnostic, Place
+from rulec.diagnostics.codes import EXPLANATIONS
+from rulec.report.findings.code_pages import as_markdown, as_plain_text
+from rulec.version import __version__
+
+SCHEMA = (
+    "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+)
+
+
+def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
+    """One run of rulec.
+
+    Args:
+        found: the results.
+        complete: was everything read that had to be?
+    """
+    codes = sorted({one.code for one in found})
+    run = {
+        "tool": {
+            "driver": {
+                "name": "rulec",
+                "version": __version__,
+                "rules": [_rule(code) for code in codes],
+            }
+        },
+        "columnKind": "unicodeCodePoints",
+        "invocations": [{"executionSuccessful": complete}],
+        "results": [_result(one, codes.index(one.code)) for one in found],
+    }
+    document = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+    return json.dumps(document, ensure_ascii=False, indent=2)
+
+
+def _rule(code: str) -> dict[str, Any]:
+    about = EXPLANATIONS[code]
+    return {
+        "id": code,
+        "shortDescription": {"text": about.title},
+        "fullDescription": {"text": about.why},
+        "help": {"text": as_plain_text(code), "markdown": as_markdown(code)},
+    }
+
+
+def _result(one: Diagnostic, index: int) -> dict[str, Any]:
+    sentences = [one.message, one.expected, one.help and f"help: {one.help}", *one.notes]
+    result: dict[str, Any] = {
+        "ruleId": one.code,
+        "ruleIndex": index,
+        "level": one.severity,
+        "message": {"text": "\n".join(sentence for sentence in sentences if sentence)},
+    }
+    if one.place is not None:
+        result["locations"] = [{"physicalLocation": _location(one.place)}]
+    if one.labels:
+        result["relatedLocations"] = [
+            {
+                "id": number,
+                "physicalLocation": _location(label.place),
+                "message": {"text": label.message},
+            }
+            for number, label in enumerate(one.labels)
+        ]
+    return result
+
+
+def _location(place: Place) -> dict[str, Any]:
+    location: dict[str, Any] = {"artifactLocation": {"uri": _uri(place.file)}}
+    if place.line is not None:
+        region = {
+            "startLine": place.line,
+            "startColumn": place.column,
+            "endLine": place.end_line,
+            "endColumn": place.end_column,
+        }
+        location["region"] = {name: number for name, number in region.items() if number is not None}
+    return location
+
+
+def _uri(file: str) -> str:
+    """A file's URI; relative to the working directory if the path is."""
+    path = Path(file)
+    if path.is_absolute():
+        return path.as_uri()
+    return quote(path.as_posix().encode("utf-8", "surrogateescape"))

@@ -1,0 +1,104 @@
+"""One line of a file with places underlined, whatever characters it holds."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.diagnostics.source_text import Place
+
+MAX_WIDTH = 100
+"""Terminal columns of a shown line; a longer one is cut around the place."""
+
+TAB = 4
+_LEAD = 30
+_REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A place to underline with ``sign``, and what to write beside it."""
+
+    place: Place
+    words: str
+    sign: str
+
+
+def visible(text: str) -> str:
+    """The text with control characters, line ends and reordering marks written as escapes."""
+    return text if text.isprintable() else "".join(_shown(character) for character in text)
+
+
+def _shown(character: str) -> str:
+    if character.isprintable():
+        return character
+    code = ord(character)
+    category = unicodedata.category(character)
+    if category in ("Cc", "Cs", "Zl", "Zp") or character in _REORDERING or character == "\ufeff":
+        return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
+    return character
+
+
+def _width(shown: str) -> int:
+    """Terminal columns: two for wide East Asian characters, none for combining ones."""
+    total = 0
+    for character in shown:
+        if unicodedata.category(character) in ("Mn", "Me", "Cf"):
+            continue
+        total += 2 if unicodedata.east_asian_width(character) in "WF" else 1
+    return total
+
+
+def excerpt_lines(marks: Sequence[Mark]) -> Iterator[tuple[str, str]]:
+    """The line that all marks share, then an underline for each; with each its mark's sign."""
+    excerpt = marks[0].place.excerpt
+    primary = next((mark for mark in marks if mark.sign == "^"), marks[0])
+    cells, first, cut_before, cut_after = _window(excerpt, primary.place)
+    before, after = "…" * cut_before, "…" * cut_after
+    yield before + "".join(cells) + after, ""
+    for mark in marks:
+        start = (mark.place.column or 1) - 1 - first
+        end = _end_column(mark.place, len(excerpt)) - 1 - first
+        begin = len(before) + _width("".join(cells[: max(0, start)]))
+        inside = cells[max(0, start) : max(0, end)]
+        length = max(1, _width("".join(inside)))
+        words = f" {visible(mark.words)}" if mark.words else ""
+        yield " " * begin + mark.sign * length + words, mark.sign
+
+
+def _end_column(place: Place, length: int) -> int:
+    """A place that goes on over further lines is underlined to its first line's end."""
+    if place.end_line is not None and place.line is not None and place.end_line > place.line:
+        return length + 1
+    return place.end_column or (place.column or 1) + 1
+
+
+def _window(excerpt: str, place: Place) -> tuple[list[str], int, bool, bool]:
+    """The characters to show, as shown, the index of the first, and whether either end is cut."""
+    column = (place.column or 1) - 1
+    # A hostile line may have millions of characters: look only at what can be shown.
+    start = max(0, column - MAX_WIDTH)
+    cells = [_cell(one) for one in excerpt[start : column + MAX_WIDTH]]
+    widths = [_width(cell) for cell in cells]
+    whole = start == 0 and len(excerpt) == len(cells)
+    if whole and sum(widths) <= MAX_WIDTH:
+        return cells, 0, False, False
+    here = column - start
+    first = here
+    lead = 0
+    while first > 0 and lead + widths[first - 1] <= _LEAD:
+        first -= 1
+        lead += widths[first]
+    if start == 0 and sum(widths[:here]) <= _LEAD * 2:
+        first = 0
+    last = first
+    room = MAX_WIDTH
+    while last < len(cells) and room >= widths[last]:
+        room -= widths[last]
+        last += 1
+    return cells[first:last], start + first, start + first > 0, start + last < len(excerpt)
+
+
+def _cell(character: str) -> str:
+    return " " * TAB if character == "\t" else _shown(character)

@@ -1,0 +1,87 @@
+"""The envelopes of maneuvers as a table, for trajectory planners that read columns."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from types import MappingProxyType
+from typing import IO
+
+from rulec.partition import Envelope, NavigationGraph, envelope
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.trace import Value
+from rulec.trace.formats.trace_files import Format
+
+COLUMNS = MappingProxyType(
+    {
+        "maneuver": int,
+        "cost": float,
+        "margin_s": float,
+        "layer": int,
+        "start_s": float,
+        "end_s": float,
+        "cell": int,
+        "surface": str,
+        "s_min": float,
+        "s_max": float,
+        "d_right": float,
+        "d_left": float,
+    }
+)
+"""The columns with the types of their values; in all rows of a maneuver the first three agree."""
+
+
+def write_envelopes(
+    graph: NavigationGraph,
+    maneuvers: Iterable[Maneuver],
+    stream: IO[bytes],
+    file: str,
+    form: Format,
+) -> None:
+    """Write the envelopes of maneuvers, which are numbered from 1.
+
+    Raises:
+        RulecError: R0706 if Parquet cannot be written here.
+    """
+    rows = _rows(graph, maneuvers)
+    if form == "csv":
+        from rulec.trace.formats.csv_table import write_csv
+
+        write_csv(rows, list(COLUMNS), stream)
+    elif form == "parquet":
+        from rulec.trace.arrow.parquet import write_parquet
+
+        write_parquet(rows, list(COLUMNS.items()), stream, file)
+    else:
+        for row in rows:
+            stream.write(f"{json.dumps(dict(zip(COLUMNS, row, strict=True)))}\n".encode())
+
+
+def _rows(
+    graph: NavigationGraph, maneuvers: Iterable[Maneuver]
+) -> Iterator[tuple[Value | None, ...]]:
+    for number, maneuver in enumerate(maneuvers, 1):
+        envelopes = envelope(graph, maneuver.nodes)
+        for layer, (cell, bounds) in enumerate(zip(maneuver.nodes, envelopes, strict=True)):
+            here = graph.layers[layer]
+            when = (layer, float(here.start_s), float(here.start_s + graph.step_s))
+            for stretch in stretches(bounds):
+                yield (
+                    number,
+                    maneuver.cost,
+                    maneuver.margin_s,
+                    *when,
+                    cell,
+                    here.cells[cell].surface,
+                    *map(float, stretch),
+                )
+
+
+def stretches(bounds: Envelope) -> Iterator[tuple[float, float, float, float]]:
+    """The stretches on which both bounds are constant: s from and to, then d right and left."""
+    right, left = dict(bounds.d_right), dict(bounds.d_left)
+    low = high = 0.0
+    for start, end in pairwise([*sorted({*right, *left}), bounds.s_max]):
+        low, high = right.get(start, low), left.get(start, high)
+        yield start, end, low, high

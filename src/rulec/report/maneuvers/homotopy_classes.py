@@ -1,0 +1,50 @@
+"""Homotopy classes of maneuvers, as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rulec.diagnostics import named
+from rulec.planning import Maneuvers
+from rulec.planning.ranking.homotopy import Classes, Variant
+from rulec.report.maneuvers import maneuver_lines
+from rulec.report.text.count_text import shown_count
+
+
+def as_data(found: Maneuvers, classes: Classes, variants: Sequence[Variant]) -> dict[str, Any]:
+    """The counts of classes, and representatives."""
+    return {
+        "total": classes.total,
+        "satisfying": classes.satisfying,
+        "divided": classes.divided,
+        "counting_steps": [rule.name for rule in found.counting_steps()],
+        "representatives": [
+            {"members": one.members, **maneuver_lines.as_data(found.graph, one.cheapest)}
+            for one in variants
+        ],
+    }
+
+
+def count_lines(found: Maneuvers, classes: Classes) -> list[str]:
+    """How many classes there are and how many satisfy; where verdicts differ within one, why."""
+    satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
+    lines = [f"classes     {satisfying} of {total} satisfying"]
+    if classes.divided:
+        counting = [rule.name for rule in found.counting_steps()]
+        why = f": {named(counting)} {'counts' if len(counting) == 1 else 'count'} steps"
+        lines.append(
+            f"            {shown_count(classes.divided)} of these depending on how long one stays"
+            + (why if counting else "")
+        )
+    return lines
+
+
+def blocks(found: Maneuvers, variants: Sequence[Variant]) -> list[str]:
+    """A block for every class: its cheapest satisfying member."""
+    lines = []
+    for number, one in enumerate(variants, 1):
+        many = f"{shown_count(one.members)} satisfying members" if one.members > 1 else "1 member"
+        lines += ["", f"{number}. {maneuver_lines.in_a_line(one.cheapest)}; class of {many}"]
+        lines += maneuver_lines.cell_lines(found.graph, one.cheapest)
+    return lines

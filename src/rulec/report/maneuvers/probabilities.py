@@ -1,0 +1,105 @@
+"""How probable it is that maneuvers keep rules, as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from math import prod
+from typing import Any
+
+from rulec.planning.probability.alternative_predictions import Otherwise
+from rulec.planning.probability.rule_probability import Chances, RuleChance
+from rulec.planning.probability.violation_events import MOST_WORLDS
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.count_text import shown_count
+from rulec.scenario import Scenario
+
+MOST_BINDINGS = 3
+"""For so many objects a rule's probability is said in text; JSON has them all."""
+
+
+def as_data(chances: Chances) -> dict[str, Any]:
+    """The probabilities as JSON has them."""
+    return {
+        "clear": float(chances.clear),
+        "every_hard_rule": _number(chances.hard),
+        "rules": [
+            {
+                "rule": one.rule.name,
+                "strength": one.rule.strength,
+                "kept": _number(one.kept),
+                "bindings": [
+                    {"binding": dict(each.binding), "kept": float(each.kept)}
+                    for each in one.bindings
+                ],
+            }
+            for one in chances.rules
+        ],
+    }
+
+
+def lines(chances: Chances) -> list[str]:
+    """The probabilities that are below 1, a line each."""
+    rows = [("nobody hits ego", _shown(chances.clear)), ("every hard rule", _shown(chances.hard))]
+    rows += [(one.rule.name, _of_rule(one)) for one in chances.rules if one.kept != 1]
+    width = max(len(name) for name, _ in rows)
+    return [f"   {name:{width}}  {what}" for name, what in rows]
+
+
+def summary(scenario: Scenario) -> Iterator[str]:
+    """A line on what was counted, if obstacles have several predictions."""
+    several = [one for one in scenario.obstacles if one.alternatives]
+    if several:
+        whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
+        how = f"the likeliest world is counted, with probability {likeliest(scenario):.4g}"
+        yield f"predictions {whose} several; {how}"
+
+
+def likeliest(scenario: Scenario) -> float:
+    """The probability that all obstacles do what is likeliest."""
+    return float(prod((one.weight for one in scenario.obstacles), start=Fraction(1)))
+
+
+def world_lines(worlds: Sequence[Otherwise]) -> Iterator[str]:
+    """A line for each prediction that is not an obstacle's likeliest."""
+    for one in worlds:
+        yield visible(
+            f"otherwise   {one.obstacle}, prediction {one.number + 1} "
+            f"({_shown(one.weight)}): {shown_count(one.traces)} maneuvers, "
+            f"{shown_count(one.satisfying)} satisfying"
+        )
+
+
+def worlds_as_data(worlds: Sequence[Otherwise]) -> list[dict[str, Any]]:
+    """The same as JSON has it."""
+    return [
+        {
+            "obstacle": one.obstacle,
+            "prediction": one.number + 1,
+            "weight": float(one.weight),
+            "traces": one.traces,
+            "satisfying": one.satisfying,
+        }
+        for one in worlds
+    ]
+
+
+def _of_rule(one: RuleChance) -> str:
+    if one.kept is None:
+        return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
+    each = [
+        f"{_shown(binding.kept)} for "
+        + ", ".join(f"{name} = {visible(item)}" for name, item in binding.binding.items())
+        for binding in one.bindings[:MOST_BINDINGS]
+    ]
+    if len(one.bindings) > MOST_BINDINGS:
+        each.append(f"and for {len(one.bindings) - MOST_BINDINGS:,} more")
+    return "; ".join([_shown(one.kept), *each])
+
+
+def _shown(number: Fraction | None) -> str:
+    return "not known" if number is None else f"{float(number):.4g}"
+
+
+def _number(number: Fraction | None) -> float | None:
+    return None if number is None else float(number)

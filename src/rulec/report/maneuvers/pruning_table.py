@@ -1,0 +1,67 @@
+"""Which rule prunes how many maneuvers, as a table and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rulec.planning import Maneuvers, Pruning
+from rulec.report.maneuvers import maneuver_lines
+from rulec.report.maneuvers.ranked_maneuvers import violation_as_data, when_lost
+from rulec.report.text.count_text import shown_count
+
+HEAD = ("rule", "violated by", "alone by", "for example")
+
+
+def as_data(found: Maneuvers, pruning: Pruning) -> dict[str, Any]:
+    """The counts, and the example with what it violates of this rule."""
+    example = None
+    if pruning.example is not None:
+        example = {
+            "violations": [
+                violation_as_data(found, one, pruning.rule) for one in pruning.violations
+            ],
+            **maneuver_lines.as_data(found.graph, pruning.example),
+        }
+    return {
+        "rule": pruning.rule.name,
+        "strength": pruning.rule.strength,
+        "violating": pruning.violating,
+        "alone": pruning.alone,
+        "example": example,
+    }
+
+
+def table(found: Maneuvers, prunings: Sequence[Pruning]) -> list[str]:
+    """A line for every rule that some maneuver violates, and the names of the others."""
+    rows = [HEAD, *(_row(found, one) for one in prunings if one.violating)]
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    lines = [
+        "  ".join(
+            [
+                row[0].ljust(widths[0]),
+                row[1].rjust(widths[1]),
+                row[2].rjust(widths[2]),
+                row[3],
+            ]
+        )
+        for row in rows
+    ]
+    idle = [one.rule.name for one in prunings if not one.violating]
+    if idle:
+        lines.append(f"violated by none: {', '.join(idle)}")
+    return lines if len(rows) > 1 else lines[1:]
+
+
+def _row(found: Maneuvers, pruning: Pruning) -> tuple[str, str, str, str]:
+    alone = "soft" if pruning.alone is None else shown_count(pruning.alone)
+    return pruning.rule.name, shown_count(pruning.violating), alone, _example(found, pruning)
+
+
+def _example(found: Maneuvers, pruning: Pruning) -> str:
+    assert pruning.example is not None, "something violates it"
+    first = pruning.violations[0]
+    moves = maneuver_lines.relations_in_time(
+        found.graph, pruning.example, tuple(first.binding.values())
+    )
+    return f"{moves}; {when_lost(found, first)}"

@@ -1,0 +1,84 @@
+"""Places for words, so that no two lie on each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+
+from rulec.report.pictures.drawing.marks import Words
+
+Rectangle = tuple[float, float, float, float]
+"""Left, top, right, bottom."""
+
+_ROOM = 4.0
+"""Between words and what is beside them, in px."""
+
+_LARGE = 0.6
+"""Of the largest room's size; such rooms are all as good."""
+
+_SHIFTS = (0.5, 0.25, 0.75, 0.1, 0.9)
+"""Where along a rectangle words are tried, as a part of the way that they can go."""
+
+
+@dataclass
+class Placing:
+    """The rectangles that are taken already."""
+
+    taken: list[Rectangle] = field(default_factory=list)
+
+    def take(self, words: Words) -> bool:
+        """Put words where they stand, if nothing is there."""
+        bounds = words.bounds
+        if any(_meet(bounds, other) for other in self.taken):
+            return False
+        self.taken.append(bounds)
+        return True
+
+    def first_free(self, choices: Iterable[Words]) -> list[Words]:
+        """The first of these that has its place to itself, taken; empty if none has."""
+        return list(islice(filter(self.take, choices), 1))
+
+    def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> Words | None:
+        """The first of the texts that fits into one of the rooms, upright if it can be.
+
+        Of the large rooms that in the middle is tried first. None if no text fits anywhere.
+        """
+        ordered = sorted(rooms, key=_preference(rooms))
+        for text in texts:
+            for turned in (False, True):
+                for room in ordered:
+                    for words in _within(text, room, turned=turned):
+                        if self.take(words):
+                            return words
+        return None
+
+
+def _preference(rooms: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool, float, float]]:
+    sizes = {room: (room[2] - room[0]) * (room[3] - room[1]) for room in rooms}
+    largest = max(sizes.values())
+    middle = (min(room[1] for room in rooms) + max(room[3] for room in rooms)) / 2
+
+    def rank(room: Rectangle) -> tuple[bool, float, float]:
+        small = sizes[room] < _LARGE * largest
+        return small, 0.0 if small else abs((room[1] + room[3]) / 2 - middle), -sizes[room]
+
+    return rank
+
+
+def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[Words]:
+    left, top, right, bottom = room
+    box = Words(text, (0, 0), "middle", turned=turned).bounds
+    spare_x = right - left - (box[2] - box[0]) - 2 * _ROOM
+    spare_y = bottom - top - (box[3] - box[1])
+    if spare_x < 0 or spare_y < 0:
+        return
+    for part in _SHIFTS:
+        x = left + _ROOM + (box[2] - box[0]) / 2 + part * spare_x
+        yield Words(text, (x, (top + bottom) / 2), "middle", turned=turned)
+
+
+def _meet(one: Rectangle, other: Rectangle) -> bool:
+    """Beside words some room is left, or two of them would read as one."""
+    beside = one[0] < other[2] + _ROOM and other[0] < one[2] + _ROOM
+    return beside and one[1] < other[3] and other[1] < one[3]

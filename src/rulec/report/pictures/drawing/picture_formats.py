@@ -1,0 +1,57 @@
+"""A drawing as the bytes of a file, in one of three formats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import wrap
+from typing import Literal, cast, get_args
+
+from rulec.report.automata.automaton_layout import CHARACTER
+from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, Picture, Words, stacked
+
+Format = Literal["svg", "png", "html"]
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """Pictures under one title, one for each moment, and what their colours mean."""
+
+    title: str
+    pictures: Sequence[Picture]
+    legend: Picture | None = None
+
+
+def format_of(file: str) -> Format:
+    """The format that a file's name asks for."""
+    ending = Path(file).suffix.lower().lstrip(".")
+    return cast("Format", ending) if ending in get_args(Format) else "svg"
+
+
+def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
+    """The file's content.
+
+    Raises:
+        RulecError: R0707 if a PNG cannot be made.
+    """
+    if form == "html":
+        from rulec.report.pictures.drawing.html_viewer import as_page
+
+        return as_page(drawing.title, drawing.pictures, drawing.legend).encode()
+    width = max(picture.width for picture in drawing.pictures)
+    lines = wrap(drawing.title, int((width - 2 * MARGIN) / CHARACTER))
+    words = tuple(
+        Words(line, (MARGIN, MARGIN + n * LINE_HEIGHT), style="strong")
+        for n, line in enumerate(lines)
+    )
+    head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, words)
+    below = [drawing.legend] if drawing.legend else []
+    whole = stacked(drawing.title, [head, *drawing.pictures, *below])
+    if form == "png":
+        from rulec.report.pictures.drawing.png import as_png
+
+        return as_png(whole, file)
+    from rulec.report.pictures.drawing.svg import as_svg
+
+    return f"{as_svg(whole)}\n".encode()

@@ -1,0 +1,108 @@
+"""A picture as PNG.
+
+The only file that knows matplotlib, which is installed on request.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.pictures.drawing.marks import Area, Line, Mark, Picture, Point, Words
+from rulec.report.pictures.drawing.styles import LIGHT, STYLES
+
+DOTS_PER_PX = 2
+"""So that it can be printed."""
+
+MOST_DOTS = 30_000
+"""A PNG that is larger either way is drawn with one dot a px, or not at all."""
+
+_POINTS = 72 / 96
+"""A px in points, in which matplotlib measures lines and letters."""
+
+
+def as_png(picture: Picture, file: str) -> bytes:
+    """The picture on light ground.
+
+    Raises:
+        RulecError: R0707 if matplotlib is missing, or the picture is too large.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        message = "PNG takes the package `matplotlib`, which is not installed"
+        way_out = "`pip install 'rulec[pictures]'`, or write SVG or HTML"
+        raise RulecError(Diagnostic("R0707", message, Place(file), help=way_out)) from None
+    largest = max(picture.width, picture.height)
+    if largest > MOST_DOTS:
+        message = f"the picture is {largest:,.0f} px long; as PNG it may have {MOST_DOTS:,}"
+        way_out = "write SVG or HTML, or draw fewer layers"
+        raise RulecError(Diagnostic("R0707", message, Place(file), help=way_out))
+    dots = DOTS_PER_PX if largest * DOTS_PER_PX <= MOST_DOTS else 1
+    figure = Figure((picture.width / 96, picture.height / 96), 96 * dots, facecolor=LIGHT["ground"])
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set_xlim(0, picture.width)
+    axes.set_ylim(picture.height, 0)
+    for order, mark in enumerate(picture.marks):
+        _draw(axes, mark, order)
+    stream = io.BytesIO()
+    FigureCanvasAgg(figure)
+    with warnings.catch_warnings():
+        # A letter that the font does not have is drawn as a box; nobody could do anything about it.
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
+        figure.savefig(stream, format="png", metadata={"Software": None})
+    return stream.getvalue()
+
+
+def _draw(axes: Any, mark: Mark, order: int) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+    from matplotlib.patheffects import withStroke
+
+    style = STYLES[mark.style]
+    stroke = LIGHT[style.stroke] if style.stroke else "none"
+    width = style.width * _POINTS
+    dash = (0, tuple(one * _POINTS for one in style.dash)) if style.dash else "solid"
+    match mark:
+        case Area(rings):
+            rounds = [_turning(ring, left=n == 0) for n, ring in enumerate(rings)]
+            path = Path.make_compound_path(*[Path([*one, one[0]], closed=True) for one in rounds])
+            fill = LIGHT[style.fill] if style.fill else "none"
+            axes.add_patch(
+                PathPatch(path, fc=fill, ec=stroke, lw=width, ls=dash, zorder=order, clip_on=False)
+            )
+        case Line(points):
+            xs, ys = zip(*points, strict=True)
+            axes.add_line(Line2D(xs, ys, color=stroke, lw=width, ls=dash, zorder=order))
+        case Words(text, (x, y), anchor, _, turned):
+            around = [withStroke(linewidth=width, foreground=stroke)] if style.halo else None
+            axes.text(
+                x,
+                y,
+                visible(text).replace("$", r"\$"),
+                color=LIGHT[style.fill],
+                size=12 * _POINTS,
+                family="DejaVu Sans Mono",
+                weight="bold" if style.bold else "normal",
+                ha={"start": "left", "middle": "center", "end": "right"}[anchor]
+                if not turned
+                else "center",
+                va="center",
+                rotation=90 if turned else 0,
+                zorder=order,
+                path_effects=around,
+            )
+
+
+def _turning(ring: Sequence[Point], *, left: bool) -> Sequence[Point]:
+    """The ring one way round: matplotlib leaves out what turns against its surroundings."""
+    area = sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairwise([*ring, ring[0]]))
+    return ring if (area > 0) == left else ring[::-1]

@@ -1,0 +1,176 @@
+"""A ribbon laid out: rows of values over time, violations at the state that decides them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from textwrap import wrap
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.report.automata.automaton_layout import CHARACTER, text_width
+from rulec.report.pictures.drawing.axis_ticks import ticks
+from rulec.report.pictures.drawing.label_placement import Placing
+from rulec.report.pictures.drawing.marks import (
+    LINE_HEIGHT,
+    MARGIN,
+    WIDTH,
+    Area,
+    Line,
+    Mark,
+    Picture,
+    Words,
+    rectangle,
+)
+from rulec.report.pictures.trace_ribbon import Ribbon, Row, extremes, in_words
+from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
+
+WIDEST_TITLE = 34
+
+_ROW = 24.0
+_COLOURS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Where a state begins, from left to right; states are ``step_s`` apart."""
+
+    left: float
+    states: int
+    step_s: float
+
+    def x(self, state: float) -> float:
+        return self.left + (WIDTH - MARGIN - self.left) * state / self.states
+
+
+def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
+    """The picture, with the violations in words below it."""
+    trace = found.trace
+    titles = [_title(row) for row in found.rows]
+    axis = _Axis(MARGIN + text_width(titles) + 10, len(trace.states), trace.step_s)
+    number = len(found.violations)
+    marks: list[Mark] = []
+    flags, top = _flags(found, axis, 4)
+    words: list[Mark] = []
+    y = top
+    for row, text in zip(found.rows, titles, strict=True):
+        words.append(Words(text, (axis.left - 10, y + _ROW / 2), "end"))
+        marks += _segments(row, axis, y) if row.values else _curve(row, axis, y)
+        words += _values(row, axis, y) if row.values else []
+        y += _ROW
+    marks += _violations(found, axis, top)
+    marks += words
+    marks += [*flags, *_times(axis, y)]
+    y += 2 * LINE_HEIGHT + 8
+    columns = int((WIDTH - 2 * MARGIN) / CHARACTER)
+    by_name = {rule.name: rule for rule in rules.rules}
+    explained: set[str] = set()
+    for n, violation in enumerate(found.violations[:MOST_VIOLATIONS], 1):
+        rule = by_name[violation.rule]
+        when = "" if violation.step is None else f", at {violation.step * trace.step_s:g} s"
+        told = [("ink", f"{in_a_line(violation, rule, rules.name)}{when}")]
+        if rule.name not in explained:
+            told.append(("faint", rule.says))
+            explained.add(rule.name)
+        marks.append(Words(str(n), (MARGIN, y), style="strong"))
+        for style, text in told:
+            for line in wrap(text, columns - 4):
+                marks.append(Words(line, (MARGIN + 4 * CHARACTER, y), style=style))
+                y += LINE_HEIGHT
+        y += 4
+    if number > MOST_VIOLATIONS:
+        marks.append(Words(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint"))
+        y += LINE_HEIGHT
+    if found.left_out:
+        more = f"{found.left_out:,} row{'s' * (found.left_out != 1)} of defaults left out"
+        marks.append(Words(more, (MARGIN, y), style="faint"))
+        y += LINE_HEIGHT
+    return Picture(trace.id, WIDTH, y, tuple(marks))
+
+
+def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[Words], float]:
+    """The violations' numbers above their states; and where the rows begin, below them."""
+    numbered = sorted((found.decisive(one), n) for n, one in enumerate(found.violations, 1))
+    flags: list[Words] = []
+    placing = Placing()
+    deepest = top
+    for state, group in groupby(numbered, key=lambda one: one[0]):
+        numbers = [n for _, n in group]
+        text = ", ".join(map(str, numbers[:4])) + (" …" if len(numbers) > 4 else "")
+        half = text_width([text]) / 2
+        x = min(max(axis.x(state), MARGIN + half), WIDTH - MARGIN - half)
+        for level in range(6):
+            words = Words(text, (x, top + level * LINE_HEIGHT + 8), "middle", "strong")
+            if placing.take(words):
+                flags.append(words)
+                deepest = max(deepest, words.at[1])
+                break
+    return flags, deepest + LINE_HEIGHT
+
+
+def _violations(found: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
+    """A thin line through all rows, a thick one in those of the objects in question."""
+    bottom = top + _ROW * len(found.rows)
+    for state in sorted({found.decisive(one) for one in found.violations}):
+        x = axis.x(state)
+        yield Line(((x, top - 5), (x, bottom + 4)), "moment")
+    for n, violation in enumerate(found.violations, 1):
+        x = axis.x(found.decisive(violation))
+        about = set(violation.binding.values())
+        for place, row in enumerate(found.rows):
+            if about & set(row.objects):
+                y = top + _ROW * place
+                yield Line(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")
+
+
+def _segments(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+    for run in row.runs:
+        if run.value is not None:
+            shape = rectangle(axis.x(run.first), y + 2, axis.x(run.last + 1), y + _ROW - 2)
+            style = f"value{row.values.index(run.value) % _COLOURS}"
+            when = f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
+            yield Area((shape,), style, f"{row.title}: {in_words(run.value)}, {when}")
+
+
+def _values(row: Row, axis: _Axis, y: float) -> Iterator[Words]:
+    """What the segments say, where there is room."""
+    for run in row.runs:
+        if run.value is not None:
+            left, right = axis.x(run.first), axis.x(run.last + 1)
+            text = in_words(run.value)
+            if text_width([text]) + 6 <= right - left:
+                yield Words(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
+
+
+def _curve(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+    """A quantity between its extremes."""
+    low, high = extremes(row)
+    scale = (_ROW - 8) / (high - low) if high > low else 0.0
+    bottom = y + _ROW - 4 if high > low else y + _ROW / 2
+    for there, group in groupby(row.runs, key=lambda run: run.value is not None):
+        if there:
+            points = [
+                (axis.x(state), bottom - (float(run.value or 0) - low) * scale)
+                for run in group
+                for state in (run.first, run.last + 1)
+            ]
+            yield Line(tuple(points), "curve", row.title)
+
+
+def _times(axis: _Axis, y: float) -> Iterator[Mark]:
+    end = axis.states * axis.step_s
+    yield Line(((axis.x(0), y + 2), (axis.x(axis.states), y + 2)), "axis")
+    for time in ticks(0, end, 10):
+        x = axis.x(time / axis.step_s)
+        yield Line(((x, y + 2), (x, y + 6)), "axis")
+        text = f"{time:g} s" if time == 0 else f"{time:g}"
+        yield Words(text, (min(x, WIDTH - text_width([text]) / 2), y + 14), "middle", "faint")
+
+
+def _title(row: Row) -> str:
+    """What a row is about; of a quantity its extremes, between which the curve runs."""
+    text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
+    if row.values:
+        return text
+    low, high = map(in_words, extremes(row))
+    return f"{text}: {low}" if low == high else f"{text}: {low} to {high}"

@@ -1,0 +1,121 @@
+"""A rulebook as a document for lawyers, in Markdown; ``html_page`` makes the page for a browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+
+from rulec.analysis.audit.rulebook_audit import articles_of
+from rulec.analysis.lineage.rule_lineage import Inheritance
+from rulec.report.rulebooks.book_rule import rule_heading, rule_section
+from rulec.report.rulebooks.book_sections import (
+    definitions_section,
+    left_out_section,
+    values_section,
+    words_section,
+)
+from rulec.report.text.heading_anchors import anchors
+from rulec.report.text.markdown import Block, Heading, code, escaped, table, written
+from rulec.rulebook.loader import Loaded
+from rulec.rulebook.model import Rulebook
+from rulec.version import __version__
+
+NO_ADVICE = (
+    "**This is no legal advice.** It paraphrases law so that a machine can read it. What counts is "
+    "the law itself."
+)
+
+CONTENTS = "Contents"
+
+_ENDS = {
+    "stutter": "judged as if its last state went on for ever",
+    "finite": "judged as it is: after its last state there is nothing",
+}
+
+
+def title_of(rulebook: Rulebook) -> str:
+    """Its title, or its name if it has none."""
+    return rulebook.title or rulebook.name
+
+
+def as_markdown(loaded: Loaded, inherited: Inheritance) -> str:
+    """The whole document."""
+    rulebook = loaded.rulebook
+    top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook), Heading(2, CONTENTS)]
+    body = list(_body(loaded, inherited))
+    index = Heading(2, "Index of provisions")
+    headings = [one for one in (*top, *body, index) if isinstance(one, Heading)]
+    names = anchors([one.text for one in headings])
+    places = {id(one): name for one, name in zip(headings, names, strict=True)}
+    contents = _contents([one for one in headings if one.level in (2, 3)], places)
+    rules = {one.text: places[id(one)] for one in headings if one.level == 3}
+    return written(
+        [*top, contents, *body, *_index(rulebook, inherited, index, rules), *_made_from(rulebook)]
+    )
+
+
+def _top(rulebook: Rulebook) -> Iterator[Block]:
+    law = f"{rulebook.law}, as of {rulebook.as_of}" if rulebook.as_of else rulebook.law
+    n_hard = sum(one.strength == "hard" for one in rulebook.rules)
+    yield NO_ADVICE
+    rows = [
+        ["rulebook", code(rulebook.name)],
+        ["law", escaped(law) if law else "none is named"],
+        ["shown as of", rulebook.at],
+        ["builds upon", ", then ".join(map(code, rulebook.extends)) or "no other rulebook"],
+        ["traffic", f"drives on the {rulebook.traffic}" if rulebook.traffic else "side not stated"],
+        ["a trace is", _ENDS[rulebook.semantics]],
+        ["rules", f"{n_hard:,} hard, {len(rulebook.rules) - n_hard:,} soft"],
+    ]
+    yield table(["about", "this rulebook"], rows)
+
+
+def _body(loaded: Loaded, inherited: Inheritance) -> Iterator[Block]:
+    rulebook = loaded.rulebook
+    yield Heading(2, "Rules")
+    yield (
+        "A hard rule must never be violated, a soft rule may yield to others. In the examples a "
+        "value in parentheses is not mentioned: it is the default."
+        if rulebook.rules
+        else "None."
+    )
+    for rule in rulebook.rules:
+        yield from rule_section(rule, inherited, rulebook.vocabulary)
+    yield from values_section(inherited, rulebook.at)
+    yield from definitions_section(inherited)
+    yield from left_out_section(inherited, rulebook.at)
+    yield from words_section(loaded)
+
+
+def _contents(headings: Sequence[Heading], places: Mapping[int, str]) -> str:
+    return "\n".join(
+        f"{'  ' * (one.level - 2)}- [{escaped(one.text)}](#{places[id(one)]})"
+        for one in headings
+        if one.text != CONTENTS or one.level != 2
+    )
+
+
+def _index(
+    rulebook: Rulebook, inherited: Inheritance, heading: Heading, places: Mapping[str, str]
+) -> Iterator[Block]:
+    yield heading
+    by_name = {one.name: one for one in rulebook.rules}
+    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    articles = articles_of(rulebook.rules, inherited)
+    if not articles:
+        yield "No provision is cited."
+    for book, cited in groupby(articles, key=lambda one: one.book):
+        yield f"{escaped(laws[book])}:"
+        rows = []
+        for one in cited:
+            links = (
+                f"[{code(name)}](#{places[rule_heading(by_name[name])]})" for name in one.rules
+            )
+            rows.append([escaped(one.cite), ", ".join(links)])
+        yield table(["provision", "rules"], rows)
+
+
+def _made_from(rulebook: Rulebook) -> Iterator[Block]:
+    names = ", ".join(code(one.name) for one in rulebook.sources)
+    yield "---"
+    yield f"Made by rulec {__version__} from {names}. {NO_ADVICE}"

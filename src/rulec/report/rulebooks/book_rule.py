@@ -1,0 +1,153 @@
+"""One rule in a document for lawyers, as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from difflib import unified_diff
+from textwrap import wrap
+
+from rulec.analysis.lineage.rule_lineage import Inheritance, RuleHistory
+from rulec.logic.bounds import speaks_of_seconds
+from rulec.logic.english.atom_phrases import amount, listed, number_text, spoken
+from rulec.logic.english.sentence import Phrase
+from rulec.logic.english.sentence_layout import lines
+from rulec.logic.printing import in_words
+from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
+from rulec.report.rulebooks.rule_provenance import standing
+from rulec.report.text.formula_lines import formula_lines
+from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
+from rulec.report.verdicts.state_table import state_table
+from rulec.rulebook.model import Example, Rule
+from rulec.syntax import tree
+from rulec.syntax.printer import clauses_of, print_in_force
+from rulec.vocabulary import Vocabulary
+
+WIDTH = 84
+"""The longest line of a formula: about what a printed page has."""
+
+CERTAINTY: Mapping[str, str] = {
+    "verified": "✔ verified in the law itself",
+    "secondary": "◐ taken from a secondary source",
+    "unverified": "✎ written from memory, not yet checked",
+    "": "? not stated",
+}
+
+_FORMULAS = ("when", "require", "unless")
+
+
+def rule_heading(rule: Rule) -> str:
+    """The heading of its section."""
+    return f"{rule.name} ({rule.cite})" if rule.cite else rule.name
+
+
+def rule_section(rule: Rule, inherited: Inheritance, vocabulary: Vocabulary) -> Iterator[Block]:
+    """All about a rule of the rulebook at the end of a chain."""
+    book = inherited.book
+    (history,) = [one for one in inherited.rules if one.name == rule.name]
+    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
+    yield Heading(3, rule_heading(rule))
+    if rule.says:
+        yield f"> {escaped(rule.says)}"
+    yield "\n".join(
+        f"- **{name}:** {text}" for name, text in _facts(rule, history, book, elsewhere)
+    )
+    yield Heading(4, "In plain English")
+    for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
+        yield _sentence(phrase)
+    yield Heading(4, "Formula")
+    yield from _formula(rule, history.rule)
+    yield Heading(4, "Examples")
+    if not rule.examples:
+        yield "None."
+    elif speaks_of_seconds(rule.formula):
+        yield f"The states are {amount(rule.step_s, 's')} apart."
+    for number, example in enumerate(rule.examples, 1):
+        yield from _example(example, number, vocabulary)
+    base = history.before(book)
+    if history.last.deed == "overridden" and history.last.book == book and base is not None:
+        yield Heading(4, f"What differs from {history.steps[-2].book}")
+        yield from _difference(base, history)
+
+
+def _facts(
+    rule: Rule, history: RuleHistory, book: str, elsewhere: str
+) -> Iterator[tuple[str, str]]:
+    yield "Provision", escaped(f"{rule.cite}{elsewhere}") if rule.cite else "none is cited"
+    hard = rule.strength == "hard"
+    weight = f"; weight {number_text(rule.weight)}" if not hard or rule.weight != 1 else ""
+    kind = "hard, it must never be violated" if hard else "soft, it may yield"
+    yield "Kind of rule", f"{kind}{weight}"
+    if rule.level:
+        yield "Level", code(rule.level)
+    objects = [f"every {spoken(one.type)} {code(one.name)}" for one in rule.variables]
+    yield "Speaks of", listed(objects) if objects else "the road user in question and the world"
+    yield "Certainty", CERTAINTY[rule.certainty]
+    if rule.source:
+        yield "Read in", linked(rule.source)
+    if rule.in_force_from or rule.in_force_until:
+        dates = print_in_force(tree.InForce(rule.in_force_from, rule.in_force_until))
+        yield "In force", dates.removeprefix("in force ")
+    yield "Origin", escaped(standing(history, book))
+
+
+def _sentence(phrase: Phrase) -> str:
+    first, *rest = lines(phrase)
+    items = [f"{'  ' * (one.depth - 1)}- {one.label} {escaped(one.text)}" for one in rest]
+    return escaped(first.text) + ("\n\n" + "\n".join(items) if items else "")
+
+
+def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
+    """As it is written, and as it is meant where that is something else."""
+    clauses = [] if written is None else clauses_of(written)
+    said = [(word, text) for word, text in clauses if word in _FORMULAS]
+    meant = [] if rule.condition is None else [("when", in_words(rule.condition))]
+    meant.append(("require", in_words(rule.required or rule.formula)))
+    meant += [("unless", f"{in_words(one.formula)} {one.scope}") for one in rule.exemptions]
+    yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
+    if said != meant:
+        yield "With definitions, options and parameters put in:"
+        yield fenced("\n".join(line for one in meant for line in _clause(*one)), "rulec")
+
+
+def _clause(word: str, text: str) -> list[str]:
+    """The lines of a clause, its word on the first of them."""
+    shown = f"{word} {text}"
+    if word in _FORMULAS:
+        return formula_lines(shown, WIDTH)
+    return wrap(shown, WIDTH, subsequent_indent="  ", break_long_words=False)
+
+
+def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[str]:
+    word = "allowed ✔" if example.accepts else "forbidden ✘"
+    name = f" ({escaped(example.label)})" if example.label else ""
+    also = listed([f"{code(one.name)}, a {spoken(one.type)}" for one in example.objects] or [""])
+    there = f" Also there: {also}." if also else ""
+    yield f"**Example {number}{name}: {word}**{there}"
+    shown = state_table(example, vocabulary)
+    rows = [[escaped(about), *map(escaped, cells)] for about, cells in shown.rows]
+    if rows:
+        yield table(["state", *map(str, range(shown.n_states))], rows)
+    else:
+        yield "Nothing is mentioned: everything has its default."
+
+
+def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:
+    assert history.rule is not None, "an overridden rule is there"
+    before, after = _by_word(base), _by_word(history.rule)
+    changed = [word for word in {**before, **after} if before.get(word) != after.get(word)]
+    told = history.last.clauses
+    yield f"Changed: {listed(told)}." if told else "Nothing: it says the same again."
+    if changed:
+        old = [line for word in changed for line in before.get(word, [])]
+        new = [line for word in changed for line in after.get(word, [])]
+        shown = list(unified_diff(old, new, lineterm="", n=len(old) + len(new)))
+        # The first three lines name files and lines, and there are none.
+        yield fenced("\n".join(shown[3:]), "diff")
+
+
+def _by_word(rule: tree.RuleItem) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for word, text in clauses_of(rule):
+        found.setdefault(word, []).extend(_clause(word, text))
+    return found

@@ -1,0 +1,186 @@
+"""Where everything in a rulebook comes from, and who extends whom, as trees and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from fnmatch import fnmatchcase
+from io import StringIO
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+from rich.tree import Tree
+
+from rulec.analysis.lineage.extension_forest import Branch
+from rulec.analysis.lineage.rule_lineage import (
+    Inheritance,
+    Member,
+    ProvisionHistory,
+    RuleHistory,
+    Setting,
+    Step,
+)
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.rulebooks.rule_provenance import standing
+from rulec.syntax import tree
+from rulec.syntax.printer import print_in_force
+
+_DEEDS = {
+    "declared": "declared by",
+    "overridden": "overridden by",
+    "softened": "softened by",
+    "dropped": "dropped by",
+    "silent": "passed over in silence by",
+}
+
+
+def chosen(inherited: Inheritance, pattern: str | None) -> Inheritance:
+    """Only the rules whose name a pattern matches, and no provisions; all without a pattern."""
+    if pattern is None:
+        return inherited
+    rules = tuple(one for one in inherited.rules if fnmatchcase(one.name, pattern))
+    return Inheritance(inherited.books, rules, ())
+
+
+def as_text(inherited: Inheritance, width: int, *, color: bool) -> str:
+    """The chain, the most general rulebook first, then its rules and provisions."""
+    chain: Tree | None = None
+    below: Tree | None = None
+    for book in inherited.books:
+        if below is None:
+            below = chain = Tree(_book(book))
+        else:
+            below = below.add(_book(book))
+    assert chain is not None, "a chain has at least one book"
+    trees = [chain]
+    if inherited.rules:
+        rules = Tree(Text("rules", "bold"))
+        for one in inherited.rules:
+            _rule(one, inherited.book, rules)
+        trees.append(rules)
+    for kind in ("option", "parameter", "definition"):
+        found = [one for one in inherited.provisions if one.kind == kind]
+        if found:
+            provisions = Tree(Text(f"{kind}s", "bold"))
+            for each in found:
+                _provision(each, inherited.book, provisions)
+            trees.append(provisions)
+    return "\n\n".join(_drawn(one, width, color=color) for one in trees)
+
+
+def forest_as_text(branches: Sequence[Branch], width: int, *, color: bool) -> str:
+    """A tree for each rulebook that extends none."""
+    return "\n".join(_drawn(_grown(one), width, color=color) for one in branches)
+
+
+def _grown(branch: Branch, above: Tree | None = None) -> Tree:
+    label = _book(branch.book, missing=above is None)
+    here = Tree(label) if above is None else above.add(label)
+    for one in branch.children:
+        _grown(one, here)
+    return here
+
+
+def _drawn(shown: Tree, width: int, *, color: bool) -> str:
+    stream = StringIO()
+    console = Console(
+        file=stream, width=width, force_terminal=color, no_color=not color, highlight=False
+    )
+    console.print(shown)
+    return "\n".join(line.rstrip() for line in stream.getvalue().splitlines())
+
+
+def _book(book: Member, *, missing: bool = False) -> Text:
+    label = Text(visible(book.name), "bold")
+    if book.title:
+        label.append(f"  {visible(book.title)}", "not bold")
+    since = f", as of {book.as_of}" if book.as_of else ""
+    details = [f"{book.law}{since}" if book.law else "", book.file]
+    if missing and book.extends:
+        details.append(f"extends {book.extends}, which is not here")
+    for one in filter(None, details):
+        label.append(f"\n{visible(one)}", "dim not bold")
+    return label
+
+
+def _rule(one: RuleHistory, book: str, rules: Tree) -> None:
+    gone = one.rule is None
+    label = Text(visible(one.name), "dim" if gone else "")
+    label.append(f"  {visible(standing(one, book))}", "dim" if one.last.book != book else "")
+    if one.rule is not None and one.rule.in_force is not None:
+        label.append(f"  {print_in_force(one.rule.in_force)}", "dim")
+    here = rules.add(label)
+    told = len(one.steps) == 2 and one.last.deed == "overridden"
+    for step in () if told else one.steps[:-1]:
+        here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
+
+
+def _detail(step: Step) -> str:
+    changed = f": {', '.join(step.clauses)}" if step.clauses else ""
+    return visible(f"{changed}{f', because {step.because}' if step.because else ''}")
+
+
+def _provision(one: ProvisionHistory, book: str, provisions: Tree) -> None:
+    current = next((each for each in one.settings if each.current), None)
+    label = Text(visible(one.head))
+    if current is None:
+        label.append("  no value in force", "dim")
+    else:
+        label.append(visible(f" = {current.text}{_when(current)}  "))
+        label.append(visible(_origin(current, book)), "dim")
+    here = provisions.add(label)
+    for each in one.settings:
+        if not each.current:
+            here.add(Text(visible(f"{each.text}{_when(each)}  {_origin(each, book)}"), "dim"))
+
+
+def _origin(setting: Setting, book: str) -> str:
+    return "own" if setting.book == book else f"from {setting.book}"
+
+
+def _when(setting: Setting) -> str:
+    if not setting.since and not setting.until:
+        return ""
+    return f" {print_in_force(tree.InForce(setting.since, setting.until))}"
+
+
+def as_json(inherited: Inheritance) -> str:
+    """The same as data."""
+    return json.dumps(
+        {
+            "rulebook": inherited.book,
+            "books": [asdict(one) for one in inherited.books],
+            "rules": [_rule_as_data(one) for one in inherited.rules],
+            "provisions": [asdict(one) for one in inherited.provisions],
+        },
+        ensure_ascii=False,
+        indent=2,
+    )
+
+
+def _rule_as_data(one: RuleHistory) -> dict[str, Any]:
+    steps = [
+        {
+            "book": step.book,
+            "deed": step.deed,
+            "clauses": list(step.clauses),
+            "because": step.because,
+        }
+        for step in one.steps
+    ]
+    return {"name": one.name, "gone": one.rule is None, "steps": steps}
+
+
+def forest_as_json(branches: Sequence[Branch]) -> str:
+    """Every rulebook, each behind the one that it extends."""
+    return json.dumps(
+        {"books": [asdict(one) for one in _members(branches)]}, ensure_ascii=False, indent=2
+    )
+
+
+def _members(branches: Sequence[Branch]) -> Iterator[Member]:
+    for one in branches:
+        yield one.book
+        yield from _members(one.children)

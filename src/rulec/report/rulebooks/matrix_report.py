@@ -1,0 +1,174 @@
+"""Many rulebooks side by side, as text, Markdown, a page, JSON or comma-separated values."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from textwrap import fill
+from typing import Any
+
+import click
+
+from rulec.analysis.diff.comparison_matrix import Matrix, Shared, pairs
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.rulebooks.diff_csv import table as csv_table
+from rulec.report.rulebooks.diff_text import WIDTH
+from rulec.report.text.markdown import code, escaped
+from rulec.report.text.markdown import table as markdown_table
+
+SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
+"""What stands behind a number of rules."""
+
+ABSENT, SILENT = ".", "/"
+
+RULES = (
+    "rules: rulebooks with the same letter forbid the same traces; small letters are soft rules, "
+    f"`{ABSENT}` is no such rule, `{SILENT}` a rule that was dropped or passed over in silence"
+)
+
+PAIRS = (
+    "pairs: how many rules of the rulebook on the left are the same as those of the one above (=), "
+    "stricter (+), laxer (-), neither (~), or undecided (?)"
+)
+
+TITLE = "Rulebooks compared"
+
+
+def render(found: Matrix, output_format: str) -> str:
+    """The matrix in one of the formats of differences."""
+    match output_format:
+        case "json":
+            return _as_json(found)
+        case "csv":
+            return _as_csv(found)
+        case "markdown":
+            return _as_markdown(found)
+        case "html":
+            from rulec.report.text.html_page import as_html
+
+            return as_html(_as_markdown(found), TITLE, "")
+        case _:
+            return _as_text(found)
+
+
+def _as_text(found: Matrix) -> str:
+    names = [book.name for book in found.books]
+    by_rule = [["", *names], *([rule.name, *_letters(rule, names)] for rule in found.shared)]
+    by_pair = [
+        ["", *names],
+        *([one, *(_cell(found, one, other) for other in names)] for one in names),
+    ]
+    blocks = [
+        fill(RULES, WIDTH),
+        _columns(by_rule),
+        fill(PAIRS, WIDTH),
+        _columns(by_pair),
+        _summary(found),
+    ]
+    return "\n\n".join(blocks)
+
+
+def _columns(rows: Sequence[Sequence[str]]) -> str:
+    shown = [[visible(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in shown
+    ]
+    return "\n".join([click.style(lines[0], bold=True), *lines[1:]])
+
+
+def _letters(rule: Shared, names: Sequence[str]) -> list[str]:
+    return [_letter(rule, name) for name in names]
+
+
+def _letter(rule: Shared, book: str) -> str:
+    if book not in rule.laws:
+        return SILENT if book in rule.remarks else ABSENT
+    letter = rule.letter(book)
+    return letter if rule.rules[book].strength == "hard" else letter.lower()
+
+
+def _cell(found: Matrix, one: str, other: str) -> str:
+    if one == other:
+        return ""
+    counted = found.counts(one, other)
+    parts = [f"{counted[kind]}{sign}" for kind, sign in SIGNS.items() if counted[kind]]
+    return " ".join(parts) or ABSENT
+
+
+def _summary(found: Matrix) -> str:
+    counted = Counter(len(set(rule.laws.values())) == 1 for rule in found.shared)
+    return (
+        f"{len(found.books):,} rulebooks, {len(found.shared):,} rules that two or more of them "
+        f"have, {counted[True]:,} of them the same in all"
+    )
+
+
+def _as_markdown(found: Matrix) -> str:
+    names = [book.name for book in found.books]
+    head = ["", *map(code, names)]
+    return "\n\n".join(
+        [
+            f"# {TITLE}",
+            f"{escaped(_summary(found))}.",
+            "## Rule by rule",
+            f"{RULES.partition(': ')[2].capitalize()}.",
+            markdown_table(
+                head,
+                [[code(rule.name), *map(escaped, _letters(rule, names))] for rule in found.shared],
+            ),
+            "## Pair by pair",
+            f"{escaped(PAIRS.partition(': ')[2].capitalize())}.",
+            markdown_table(
+                head,
+                [
+                    [code(one), *(escaped(_cell(found, one, other)) for other in names)]
+                    for one in names
+                ],
+            ),
+        ]
+    )
+
+
+def _as_csv(found: Matrix) -> str:
+    rows = [
+        (rule.name, one, other, rule.relation(one, other) or "")
+        for rule in found.shared
+        for one, other in pairs(found.books)
+        if one in rule.laws and other in rule.laws
+    ]
+    return csv_table([("rule", "first", "second", "relation"), *rows])
+
+
+def _as_json(found: Matrix) -> str:
+    document = {
+        "books": [{"name": book.name, "title": book.title, "at": book.at} for book in found.books],
+        "rules": [_rule(rule, [book.name for book in found.books]) for rule in found.rules],
+        "pairs": [
+            {"first": one, "second": other, **_counts(found, one, other)}
+            for one, other in pairs(found.books)
+        ],
+    }
+    return json.dumps(document, ensure_ascii=False, indent=2)
+
+
+def _rule(rule: Shared, names: Sequence[str]) -> dict[str, Any]:
+    return {
+        "rule": rule.name,
+        "books": [
+            {
+                "name": name,
+                "law": rule.letter(name) or None,
+                "strength": rule.rules[name].strength if name in rule.rules else None,
+                "because": rule.remarks[name].because if name in rule.remarks else None,
+            }
+            for name in names
+        ],
+    }
+
+
+def _counts(found: Matrix, one: str, other: str) -> dict[str, int]:
+    counted = found.counts(one, other)
+    return {kind: counted[kind] for kind in (*SIGNS, "only", "silent")}

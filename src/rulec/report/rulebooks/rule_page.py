@@ -1,0 +1,282 @@
+"""All about one rule: what it says, what it means, and what it does, as text and as data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from textwrap import wrap
+from typing import Any
+
+import click
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.logic.constant_folding import folded
+from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
+from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
+from rulec.logic.english.sentence_layout import in_one_line, lines
+from rulec.logic.formula import Constant, Unary, UnaryOperator
+from rulec.logic.printing import in_words
+from rulec.report.automata import automaton_text
+from rulec.report.automata.automaton_model import Automaton, automaton_of
+from rulec.report.automata.guard_text import Wording
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.formula_lines import formula_lines
+from rulec.rulebook.model import Rule, Variable
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.letter_witness import Witness
+from rulec.witnesses.shortest_traces import shortest_traces
+from rulec.witnesses.witness_objects import staged
+
+INDENT = "  "
+
+MOST_LISTED = 60
+"""A page lists the transitions of an automaton if they are no more than these."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShownTrace:
+    """A trace as an example says it: further objects, states, and ``remarks`` on what it cannot."""
+
+    objects: tuple[Variable, ...]
+    states: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RulePage:
+    """A rule with its automaton, and a trace that it accepts and one it rejects, if there are any.
+
+    The automaton is that for traces with steps of ``step_s``; None if it is the same for all.
+    """
+
+    rule: Rule
+    automaton: Automaton
+    accepted: ShownTrace | None
+    rejected: ShownTrace | None
+    step_s: Fraction | None
+
+
+def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RulePage:
+    """The page of a rule that has been compiled."""
+    traces = shortest_traces(compiled, vocabulary)
+    wording = Wording(compiled, vocabulary)
+    return RulePage(
+        rule,
+        automaton_of(compiled, vocabulary),
+        _shown(traces.accepted, rule, vocabulary, wording),
+        _shown(traces.rejected, rule, vocabulary, wording),
+        compiled.step_s,
+    )
+
+
+def _shown(
+    states: Sequence[Witness] | None, rule: Rule, vocabulary: Vocabulary, wording: Wording
+) -> ShownTrace | None:
+    if states is None:
+        return None
+    scene = staged(states, rule.variables, vocabulary)
+    if scene is not None:
+        return ShownTrace(scene.objects, tuple(map(wording.state, scene.states)))
+    facts = tuple(wording.state(state.facts) for state in states)
+    return ShownTrace((), facts, tuple(_remarks(states)))
+
+
+def _remarks(states: Sequence[Witness]) -> Iterator[str]:
+    """How many objects of the moment a state needs, those that the rule names included."""
+    for number, state in enumerate(states):
+        for count, size in state.counts:
+            noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
+            yield (
+                f"in state {number} there {'is' if size == 1 else 'are'} {size:,} {noun} "
+                f"{count.variable} for which {in_words(count.body)}"
+            )
+
+
+def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
+    """The rule as a sentence, without its exceptions."""
+    return sentence(
+        folded(rule.required or rule.formula),
+        [(variable.name, variable.type) for variable in rule.variables],
+        lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
+    )
+
+
+def restrictions_of(rule: Rule) -> list[Phrase]:
+    """When the rule applies, and its exceptions, as sentences; none of what an option rules out."""
+    found = [
+        exemption(formula, one.scope)
+        for one in rule.exemptions
+        if (formula := folded(one.formula)) != Constant(False)
+    ]
+    applies = None if rule.condition is None else folded(rule.condition)
+    if applies is None or applies == Constant(True):
+        return found
+    if applies == Constant(False):
+        return [
+            Phrase("it never counts, for its condition is false as options are set", Shape.CLAUSE)
+        ]
+    guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+    guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
+    return [condition(applies, guards=guards), *found]
+
+
+def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
+    phrases = [phrase_of(rule, vocabulary), *restrictions_of(rule)]
+    return "\n".join(in_english(phrase, width) for phrase in phrases)
+
+
+def _formula(rule: Rule, width: int) -> list[str]:
+    """The formula; one with exceptions as it is written, and then with them put in."""
+    whole = formula_lines(visible(in_words(rule.formula)), width)
+    if rule.required is None:
+        return whole
+    parts = [in_words(rule.required)]
+    parts += [f"when {in_words(rule.condition)}"] if rule.condition is not None else []
+    parts += [f"unless {in_words(one.formula)} {one.scope}" for one in rule.exemptions]
+    written = [line for part in parts for line in formula_lines(visible(part), width)]
+    return [*written, "that is", *whole]
+
+
+def head(rule: Rule, rulebook: str, width: int) -> str:
+    """Who the rule is and where it comes from, its own sentence included."""
+    lines = [click.style(_title(rule), bold=True)]
+    facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
+    column = max((len(name) for name, _ in facts), default=0)
+    for name, value in facts:
+        first, *rest = wrap(visible(value), max(20, width - column - 4)) or [""]
+        lines.append(f"{INDENT}{name:<{column}}  {first}")
+        lines += [f"{INDENT}{'':<{column}}  {line}" for line in rest]
+    return "\n".join(lines)
+
+
+def _title(rule: Rule) -> str:
+    variables = ", ".join(f"{one.name}: {one.type}" for one in rule.variables)
+    return f"{rule.strength} rule {rule.name}{f' ({variables})' if variables else ''}"
+
+
+def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
+    yield "cite", rule.cite
+    yield "says", rule.says
+    yield "source", rule.source
+    yield "certainty", rule.certainty
+    yield "level", rule.level
+    yield "weight", number_text(rule.weight) if rule.strength == "soft" or rule.weight != 1 else ""
+    since = f"from {rule.in_force_from}" if rule.in_force_from else ""
+    until = f"until {rule.in_force_until}" if rule.in_force_until else ""
+    yield "in force", f"{since} {until}".strip()
+    yield "rulebook", rule.book if rule.book != rulebook else ""
+
+
+def in_english(phrase: Phrase, width: int) -> str:
+    """The sentence with its lists, indented and broken to this width."""
+    shown = []
+    for line in lines(phrase):
+        indent = INDENT
+        if line.label:
+            indent += "    " * (line.depth - 1) + f"  {line.label:<3} "
+        blank = " " * len(indent)
+        texts = wrap(visible(line.text), max(20, width - len(indent)), break_long_words=False)
+        shown += [f"{indent if not n else blank}{text}" for n, text in enumerate(texts)]
+    return "\n".join(shown)
+
+
+def summary(rule: Rule, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
+    """The rule in brief."""
+    return f"{head(rule, rulebook, width)}\n\n{_sentences(rule, vocabulary, width)}"
+
+
+def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
+    """The whole page."""
+    formula = _formula(page.rule, width - len(INDENT))
+    automaton = (
+        automaton_text.as_text(page.automaton, width - len(INDENT))
+        if len(page.automaton.transitions) <= MOST_LISTED
+        else f"{len(page.automaton.fates):,} states and {len(page.automaton.transitions):,} "
+        "transitions; --automaton text lists them"
+    )
+    if page.step_s is not None:
+        automaton = f"for traces with steps of {amount(page.step_s, 's')}:\n{automaton}"
+    sections = [
+        ("in English", _sentences(page.rule, vocabulary, width)),
+        ("formula", _indented(formula)),
+        ("automaton", _indented(automaton.split("\n"))),
+        ("shortest traces", _indented(list(_examples(page)))),
+    ]
+    blocks = [f"{click.style(title, bold=True)}\n{text}" for title, text in sections]
+    return "\n\n".join([head(page.rule, rulebook, width), *blocks])
+
+
+def _indented(texts: Sequence[str]) -> str:
+    return "\n".join(f"{INDENT}{text}" for text in texts)
+
+
+def _examples(page: RulePage) -> Iterator[str]:
+    for word, trace, never in (
+        ("accept", page.accepted, "no trace is accepted: nothing can satisfy this rule"),
+        ("reject", page.rejected, "no trace is rejected: nothing can violate this rule"),
+    ):
+        if trace is None:
+            yield never
+            continue
+        objects = ", ".join(f"{one.name}: {one.type}" for one in trace.objects)
+        yield f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
+        yield from (f"  # where {remark}" for remark in trace.remarks)
+
+
+def as_json(
+    rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
+) -> str:
+    """An object with the rules, and of the one that has a page all that is on it."""
+    shown = [_as_data(rule, vocabulary) for rule in rules]
+    if page is not None:
+        shown[0] |= {
+            "automaton": {
+                "states": [
+                    {"state": state, "fate": fate}
+                    for state, fate in enumerate(page.automaton.fates)
+                ],
+                "transitions": [
+                    {
+                        "source": one.source,
+                        "target": one.target,
+                        "condition": one.condition,
+                        "otherwise": one.otherwise,
+                        "accepted": one.accepted,
+                    }
+                    for one in page.automaton.transitions
+                ],
+            },
+            "step_s": None if page.step_s is None else float(page.step_s),
+            "accepts": _trace_as_data(page.accepted),
+            "rejects": _trace_as_data(page.rejected),
+        }
+    return json.dumps({"rulebook": rulebook, "rules": shown}, ensure_ascii=False, indent=2)
+
+
+def _trace_as_data(trace: ShownTrace | None) -> dict[str, Any] | None:
+    if trace is None:
+        return None
+    objects = [{"name": one.name, "type": one.type} for one in trace.objects]
+    return {"objects": objects, "states": trace.states, "remarks": trace.remarks}
+
+
+def _as_data(rule: Rule, vocabulary: Vocabulary) -> dict[str, Any]:
+    return {
+        "name": rule.name,
+        "strength": rule.strength,
+        "variables": [{"name": one.name, "type": one.type} for one in rule.variables],
+        "cite": rule.cite,
+        "says": rule.says,
+        "source": rule.source,
+        "certainty": rule.certainty,
+        "level": rule.level,
+        "weight": float(rule.weight),
+        "in_force_from": rule.in_force_from,
+        "in_force_until": rule.in_force_until,
+        "book": rule.book,
+        "sentence": in_one_line(phrase_of(rule, vocabulary)),
+        "restrictions": [in_one_line(phrase) for phrase in restrictions_of(rule)],
+        "formula": in_words(rule.formula),
+    }

@@ -1,0 +1,30 @@
+"""What a rule is to the rulebook at the end of a chain, in a few words."""
+
+from __future__ import annotations
+
+from rulec.analysis.lineage.rule_lineage import RuleHistory, Step
+
+
+def standing(one: RuleHistory, book: str) -> str:
+    """Own, inherited, overriding, or gone, and why; ``book`` is the rulebook in question."""
+    last = one.last
+    because = f", because {last.because}" if last.because else ""
+    here = last.book == book
+    base = one.steps[-2].book if len(one.steps) > 1 else ""
+    match last.deed:
+        case "declared":
+            return "own" if here else f"inherited from {last.book}"
+        case "overridden" if here:
+            return f"overrides {base}: {_clauses(last)}"
+        case "overridden":
+            return f"inherited from {last.book}, which overrides {base}: {_clauses(last)}"
+        case "softened":
+            return f"softened{'' if here else f' by {last.book}'}{because}"
+        case "dropped":
+            return f"dropped{'' if here else f' by {last.book}'}{because}"
+        case "silent":
+            return f"silent{'' if here else f', as {last.book} is'}{because}"
+
+
+def _clauses(step: Step) -> str:
+    return ", ".join(step.clauses) if step.clauses else "nothing changes"

@@ -1,0 +1,172 @@
+"""How examples came out, and what they cover, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import click
+
+from rulec.automata.thresholds import exact
+from rulec.book_tests.edge_coverage import MissingEdge, RuleCoverage, percent
+from rulec.book_tests.example_runs import ExampleRun, Outcome, surprise
+from rulec.diagnostics import Diagnostic
+from rulec.logic.constant_folding import folded
+from rulec.logic.formula import Atom, Constant
+from rulec.logic.printing import in_words, number_in_words
+from rulec.report.findings.diagnostics_text import render_diagnostics
+from rulec.report.findings.source_excerpt import visible
+from rulec.rulebook.model import ExampleState
+from rulec.vocabulary import Quantity, Vocabulary
+
+MOST_MISSING = 5
+"""So many missing edges of a rule are shown; JSON has them all."""
+
+
+def render(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    wanted: str,
+    *,
+    color: bool,
+) -> str:
+    """The runs, with the coverage of each unless it is None, as ``full``, ``json`` or ``junit``."""
+    match wanted:
+        case "json":
+            from rulec.report.tests.example_json import as_json
+
+            return as_json(runs, covered)
+        case "junit":
+            from rulec.report.tests.junit import as_junit
+
+            return as_junit(runs, covered)
+        case _:
+            return as_text(runs, covered, color)
+
+
+def as_text(
+    runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
+) -> str:
+    """A line for each example, what there is to say about those that failed, and the numbers."""
+    lines = [_line(one, run.rulebook.name) for run in runs for one in run.outcomes]
+    problems = [
+        failure(one, run.rulebook.name) for run in runs for one in run.outcomes if not one.passed
+    ]
+    if problems:
+        lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
+    if covered is not None:
+        for run, rules in zip(runs, covered, strict=True):
+            lines += [
+                f"{run.rulebook.name} {line}"
+                for line in coverage_lines(rules, run.rulebook.vocabulary)
+            ]
+        together = percent(rule for rules in covered for rule in rules)
+        lines.append(f"coverage {as_percent(together)}")
+    return "\n".join([*lines, _summary(runs)])
+
+
+def failure(one: Outcome, rulebook: str) -> Diagnostic:
+    """The error about an example that fails in a rulebook, which may have inherited it."""
+    problem = replace(surprise(one), severity="error")
+    rule = one.rule
+    if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
+        why = "the rule's condition is false as options are set"
+        return replace(problem, help=f"{why}: set them, or leave the example out")
+    stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
+    if rule.book == rulebook and len(set(stands_in)) < 2:
+        return problem
+    variables = ", ".join(f"{each.name}: {each.type}" for each in rule.variables)
+    head = f"{rule.name} ({variables})" if variables else rule.name
+    return replace(
+        problem,
+        help="the example is inherited: undo what makes the rule another one here, or give it "
+        f"examples of this rulebook's own in `override rule {head} {{ … }}`",
+    )
+
+
+def shortcomings(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    threshold: float | None,
+    *,
+    fail_on_empty: bool,
+) -> list[str]:
+    """What is less than somebody asked for, in sentences."""
+    found = []
+    if fail_on_empty and not any(run.outcomes for run in runs):
+        found.append("there is no example to run")
+    if covered is not None and threshold is not None:
+        part = percent(rule for rules in covered for rule in rules)
+        if part < threshold:
+            found.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
+    return found
+
+
+def _line(one: Outcome, rulebook: str) -> str:
+    verdict = (
+        click.style("pass", fg="green") if one.passed else click.style("FAIL", fg="red", bold=True)
+    )
+    return f"{verdict}  {visible(f'{rulebook} {one.rule.name}/{one.name}')}"
+
+
+def _summary(runs: Sequence[ExampleRun]) -> str:
+    """The line that ends a run."""
+    outcomes = [one for run in runs for one in run.outcomes]
+    passed = sum(one.passed for one in outcomes)
+    word = "example" if len(outcomes) == 1 else "examples"
+    return f"{len(outcomes):,} {word}: {passed:,} passed, {len(outcomes) - passed:,} failed"
+
+
+def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
+    """A line for each rule with its numbers, and with it, indented, what is missing."""
+    for one in rules:
+        edges = f"{one.n_edges - len(one.missing_edges):,} of {one.n_edges:,} edges"
+        values = f"{one.n_values - len(one.missing_values):,} of {one.n_values:,} values of atoms"
+        lines = [f"{one.rule}: {edges}, {values} ({as_percent(percent([one]))})"]
+        for atom, value in one.missing_values:
+            lines.append(f"`{in_words(atom)}` is never {'true' if value else 'false'}")
+        lines += [
+            f"missing: {missing_example(edge, vocabulary)}"
+            for edge in one.missing_edges[:MOST_MISSING]
+        ]
+        if len(one.missing_edges) > MOST_MISSING:
+            more = len(one.missing_edges) - MOST_MISSING
+            lines.append(f"and {more:,} more; --output-format json has them all")
+        yield "\n  ".join(lines)
+
+
+def as_percent(number: float) -> str:
+    """A percentage that is 100 only if nothing is missing."""
+    return f"{min(number, 99.9) if number < 100 else 100:.1f} %"
+
+
+def missing_example(edge: MissingEdge, vocabulary: Vocabulary) -> str:
+    """The example that would take an edge, as it would be written in the rule.
+
+    What has its default is not said, unless it is a number. What cannot be written as facts stands
+    in a comment behind it.
+    """
+    states = "; ".join(
+        " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states
+    )
+    besides = "; ".join(
+        f"in state {number} {' and '.join(state.besides)}"
+        for number, state in enumerate(edge.states)
+        if state.besides
+    )
+    example = f"{'accept' if edge.accepted else 'reject'} {{ {states} }}"
+    return f"{example}  # where {besides}" if besides else example
+
+
+def _facts(state: ExampleState, vocabulary: Vocabulary) -> Iterator[str]:
+    for (name, variables), value in state.items():
+        declaration = vocabulary.declarations[name]
+        if isinstance(declaration, Quantity):
+            number = number_in_words(exact(float(value)))
+            yield f"{Atom(name, variables)} = {number} {declaration.unit}"
+        elif value == declaration.default:
+            continue
+        elif isinstance(value, str):
+            yield str(Atom(name, variables, value))
+        else:
+            yield f"{'' if value else 'not '}{Atom(name, variables)}"

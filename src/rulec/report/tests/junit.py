@@ -1,0 +1,63 @@
+"""How examples came out, as JUnit XML, which continuous integration reads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from xml.etree import ElementTree
+
+from rulec.book_tests.edge_coverage import RuleCoverage, percent
+from rulec.book_tests.example_runs import ExampleRun, Outcome
+from rulec.diagnostics.diagnostic import at
+from rulec.report.findings.diagnostics_text import render_diagnostics
+from rulec.report.tests.example_text import coverage_lines, failure
+
+_NOT_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 cannot hold, not even escaped (section 2.2)."""
+
+
+def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
+    """A suite for each rulebook, in it a case for each example."""
+    root = ElementTree.Element("testsuites", {"name": "rulec", **_counts(runs)})
+    for number, run in enumerate(runs):
+        suite = ElementTree.SubElement(
+            root, "testsuite", {"name": _text(run.rulebook.name), **_counts([run])}
+        )
+        if covered is not None:
+            properties = ElementTree.SubElement(suite, "properties")
+            part = f"{percent(covered[number]):.3f}"
+            ElementTree.SubElement(properties, "property", {"name": "coverage", "value": part})
+        for one in run.outcomes:
+            _case(suite, run.rulebook.name, one)
+        if covered is not None:
+            lines = coverage_lines(covered[number], run.rulebook.vocabulary)
+            said = ElementTree.SubElement(suite, "system-out")
+            said.text = _text("\n".join(lines))
+    ElementTree.indent(root)
+    written = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{written}'
+
+
+def _counts(runs: Sequence[ExampleRun]) -> dict[str, str]:
+    outcomes = [one for run in runs for one in run.outcomes]
+    failures = sum(not one.passed for one in outcomes)
+    return {"tests": str(len(outcomes)), "failures": str(failures), "errors": "0", "skipped": "0"}
+
+
+def _case(suite: ElementTree.Element, rulebook: str, one: Outcome) -> None:
+    attributes = {"classname": f"{rulebook}.{one.rule.name}", "name": one.name}
+    place = at(one.example.span)
+    if place is not None:
+        attributes |= {"file": place.file, "line": str(place.line)}
+    case = ElementTree.SubElement(
+        suite, "testcase", {name: _text(value) for name, value in attributes.items()}
+    )
+    if not one.passed:
+        problem = failure(one, rulebook)
+        said = {"type": problem.code, "message": _text(problem.message)}
+        element = ElementTree.SubElement(case, "failure", said)
+        element.text = _text(render_diagnostics([problem], summary=False))
+
+
+def _text(text: str) -> str:
+    return _NOT_XML.sub(lambda found: f"\\u{ord(found[0]):04x}", text)

@@ -1,0 +1,160 @@
+"""Where text goes: results to standard output, the rest to standard error, colour to terminals."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from shutil import get_terminal_size
+from time import monotonic
+from typing import TYPE_CHECKING, TextIO
+
+import click
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.files import written_whole
+from rulec.report.findings.diagnostics_text import render_diagnostics
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+
+REFRESH_S = 0.2
+
+PAGE_WIDTH = 100
+"""The width of a text that goes to no terminal."""
+
+
+def wants_color(stream: TextIO) -> bool:
+    """Is the stream a terminal, and has the user not asked for plain text (no-color.org)?"""
+    return stream.isatty() and not os.environ.get("NO_COLOR")
+
+
+def page_width() -> int:
+    """How wide a text on standard output is to be."""
+    if not sys.stdout.isatty():
+        return PAGE_WIDTH
+    return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
+
+
+def print_result(text: str) -> None:
+    """A line of the answer."""
+    if _bar is not None and sys.stdout.isatty():
+        _bar.show(text)
+    else:
+        click.echo(text, color=wants_color(sys.stdout))
+
+
+def put_result(text: str, output: str | None) -> None:
+    """The whole answer: into a file, without colour, if there is one, and to standard output else.
+
+    Raises RulecError R0702.
+    """
+    if output is None:
+        print_result(text)
+        return
+    with written_whole(Path(output)) as stream:
+        stream.write(f"{click.unstyle(text)}\n".encode())
+    print_result(f"wrote {output}")
+
+
+def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
+    """Errors and warnings, on standard error, with their number; nothing if there are none."""
+    if not diagnostics:
+        return
+    text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
+    print_aside(text.rstrip("\n"))
+
+
+class Complaints:
+    """Errors about one input after the other: of each kind the first are shown, then counted."""
+
+    def __init__(self, most: int = 10) -> None:
+        self._most = most
+        self._seen: Counter[str] = Counter()
+
+    def add(self, error: RulecError) -> None:
+        """Show an error, or count it if there have been many of its kind."""
+        for one in error.diagnostics:
+            self._seen[one.code] += 1
+            if self._seen[one.code] <= self._most:
+                print_diagnostics([one], summary=False)
+
+    def close(self) -> None:
+        """Say how many have not been shown."""
+        for code, count in self._seen.items():
+            if count > self._most:
+                print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
+
+
+def print_aside(text: str) -> None:
+    """Text on standard error, above the progress bar if there is one."""
+    # Where standard error cannot be written, the exit status has to do.
+    with suppress(OSError):
+        if _bar is not None:
+            _bar.show(text)
+        else:
+            click.echo(text, err=True, color=True)
+
+
+class _Bar:
+    """A progress bar, and text that scrolls away above it.
+
+    A terminal shows both at once, so the bar has to make room for the text. It does so a few times
+    a second, whatever the number of lines.
+    """
+
+    def __init__(self, bar: Progress, task: TaskID) -> None:
+        self._bar = bar
+        self._task = task
+        self._lines: list[str] = []
+        self._flushed = 0.0
+
+    def show(self, text: str) -> None:
+        self._lines.append(text)
+        if monotonic() - self._flushed > REFRESH_S:
+            self.flush()
+
+    def tell(self, done: float) -> None:
+        self._bar.update(self._task, completed=done)
+
+    def flush(self) -> None:
+        from rich.text import Text
+
+        if self._lines:
+            self._bar.console.print(Text.from_ansi("\n".join(self._lines)), soft_wrap=True)
+        self._lines.clear()
+        self._flushed = monotonic()
+
+
+_bar: _Bar | None = None
+
+
+@contextmanager
+def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]]:
+    """A progress bar on a terminal, nothing at all elsewhere.
+
+    Args:
+        what: what is going on.
+        total: how much there is to do; None if that is not known.
+
+    Yields:
+        A function that is told how much is done so far.
+    """
+    global _bar
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as live:
+        _bar = _Bar(live, live.add_task(what, total=total))
+        try:
+            yield _bar.tell
+        finally:
+            _bar.flush()
+            _bar = None

@@ -1,0 +1,110 @@
+"""Our own Markdown as one HTML page: for the screen, light or dark, and for paper; no scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from html import escape
+from itertools import pairwise
+from pathlib import Path
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from pygments import highlight
+from pygments.formatters import HtmlFormatter
+from pygments.lexer import Lexer
+from pygments.lexers.diff import DiffLexer
+
+from rulec.report.text.heading_anchors import anchors
+from rulec.report.text.pygments_lexer import RulecLexer
+
+_STYLE = Path(__file__).with_name("html_page.css")
+
+_LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
+
+
+def as_html(markdown: str, title: str, contents: str) -> str:
+    """The page.
+
+    Args:
+        markdown: what is on it; HTML in it is shown as text.
+        title: what the browser calls it.
+        contents: the heading below which the list of contents stands.
+    """
+    parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
+    tokens = parser.parse(markdown)
+    _name_headings(tokens)
+    _scope_cells(tokens)
+    body = parser.renderer.render(list(_wrapped(tokens, contents)), parser.options, {})
+    return (
+        "<!DOCTYPE html>\n"
+        '<html lang="en">\n'
+        "<head>\n"
+        '<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n'
+        f"<title>{escape(title)}</title>\n"
+        f"<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
+        "</head>\n"
+        f"<body>\n<main>\n{body}</main>\n</body>\n"
+        "</html>"
+    )
+
+
+def _highlighted(text: str, language: str, _: str) -> str:
+    lexer = _LEXERS.get(language)
+    if lexer is None:
+        return ""
+    # Classes, not colours, so that they follow the reader's theme.
+    shown = highlight(text, lexer(), HtmlFormatter(nowrap=True))
+    return str(shown)
+
+
+def _name_headings(tokens: Sequence[Token]) -> None:
+    """Every heading can be linked to."""
+    found = [
+        (token, "".join(child.content for child in inline.children or ()))
+        for token, inline in pairwise(tokens)
+        if token.type == "heading_open"
+    ]
+    for (token, _), name in zip(found, anchors([text for _, text in found]), strict=True):
+        token.attrSet("id", name)
+
+
+def _scope_cells(tokens: Sequence[Token]) -> None:
+    """The first cell of a row is the row's header, for who has the table read aloud."""
+    first = False
+    for token in tokens:
+        if token.type == "tr_open":
+            first = True
+        elif token.type == "th_open":
+            token.attrSet("scope", "col")
+        elif token.type == "td_open" and first:
+            token.tag = "th"
+            token.attrSet("scope", "row")
+        elif token.type == "td_close" and first:
+            token.tag = "th"
+            first = False
+
+
+def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:
+    """Wide tables and formulas scroll by themselves; the contents are for finding the way."""
+    below_contents = False
+    for token in tokens:
+        if token.type == "inline" and token.content == contents:
+            below_contents = True
+        opens_contents = below_contents and token.type == "bullet_list_open"
+        closes_contents = below_contents and token.type == "bullet_list_close" and not token.level
+        if opens_contents and not token.level:
+            yield _raw(f'<nav aria-label="{escape(contents)}">\n')
+        if token.type == "table_open":
+            yield _raw('<div class="wide" tabindex="0">\n')
+        yield token
+        if token.type == "table_close":
+            yield _raw("</div>\n")
+        if closes_contents:
+            below_contents = False
+            yield _raw("</nav>\n")
+
+
+def _raw(html: str) -> Token:
+    return Token("html_block", "", 0, content=html)

@@ -1,0 +1,79 @@
+"""Markdown (CommonMark with tables) in which any text means itself."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rulec.report.findings.source_excerpt import visible
+
+_SIGNS = re.compile(r"[\\`*_{}\[\]<>#|~!&]")
+_START = re.compile(r"\s*([-+=]|\d+(?=[.)]))")
+_ADDRESS = re.compile(r"https?://[^\s<>|\\`]+")
+
+
+def escaped(text: str) -> str:
+    """A text on one line, with whatever Markdown would take for a sign of its own escaped."""
+    plain = _SIGNS.sub(r"\\\g<0>", visible(text))
+    start = _START.match(plain)
+    if start is None:
+        return plain
+    # A list's dash, a heading's underline, or the number of a list's item.
+    cut = start.end(1) if start[1].isdigit() else start.start(1)
+    return f"{plain[:cut]}\\{plain[cut:]}"
+
+
+def linked(text: str) -> str:
+    """As ``escaped``, with addresses of pages as links."""
+    parts = []
+    end = 0
+    for found in _ADDRESS.finditer(text):
+        before = text[end : found.start()]
+        parts += [escaped(before) if before.strip() else before, f"<{found[0]}>"]
+        end = found.end()
+    rest = text[end:]
+    return "".join([*parts, escaped(rest) if rest.strip() else rest])
+
+
+def code(text: str) -> str:
+    """A name or a formula, in which a text may hold any sign; for tables as well."""
+    shown = visible(text).replace("|", r"\|")
+    longest = max((len(run) for run in re.findall("`+", shown)), default=0)
+    if not longest:
+        return f"`{shown}`"
+    fence = "`" * (longest + 1)
+    return f"{fence} {shown} {fence}"
+
+
+def fenced(text: str, language: str) -> str:
+    """Lines of code."""
+    longest = max((len(run) for run in re.findall("`+", text)), default=0)
+    fence = "`" * max(3, longest + 1)
+    return f"{fence}{language}\n{text}\n{fence}"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table; its cells are Markdown already."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading; ``text`` is plain."""
+
+    level: int
+    text: str
+
+
+Block = Heading | str
+"""A heading, or anything else as Markdown."""
+
+
+def written(blocks: Iterable[Block]) -> str:
+    """The page, without a line end behind it."""
+    return "\n\n".join(
+        f"{'#' * one.level} {escaped(one.text)}" if isinstance(one, Heading) else one
+        for one in blocks
+    )

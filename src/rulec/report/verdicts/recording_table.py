@@ -1,0 +1,141 @@
+"""What the vehicles of a recording did, as a table of rules and vehicles, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from textwrap import shorten
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import Judged, JudgedRecording
+from rulec.extraction.violation_tally import Tally
+from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.verdicts import verdict_report
+
+MOST_DEFAULTS = 4
+"""So many words that are taken by default are named for a rule; JSON has them all."""
+
+MOST_VEHICLES = 6
+LONGEST_RULE = 48
+
+
+def as_json(
+    one: Judged | NoDrive, judged: JudgedRecording, explained: Sequence[Explanation]
+) -> str:
+    """One line of JSON for a drive: as for any trace, and what became of the recording."""
+    recording = judged.recording
+    about = {"recording": recording.name, "mirrored": judged.mirrored}
+    if recording.remarks:
+        about["remarks"] = list(recording.remarks)
+    if isinstance(one, NoDrive):
+        return json.dumps({"trace": one.ego, **about, "why_not": one.why}, ensure_ascii=False)
+    drive = one.drive
+    if isinstance(one.answer, NotJudged):
+        data = json.loads(verdict_report.not_judged_as_json(one.answer))
+    else:
+        data = json.loads(verdict_report.as_json(one.answer, judged.rules, explained))
+        for violation in data["violations"]:
+            violation["time_s"] = drive.time_s(violation["step"])
+        by_rule = judged.by_default(drive.words)
+        for violation in data["violations"]:
+            violation["by_default"] = list(by_rule[violation["rule"]])
+    about |= {
+        "start_s": drive.start_s,
+        "step_s": drive.trace.step_s,
+        "by_default": _everything(judged, drive.words),
+    }
+    return json.dumps({**data, **about}, ensure_ascii=False)
+
+
+def as_text(judged: JudgedRecording, tally: Tally) -> str:
+    """The recording in a few lines, and the table of violations."""
+    recording = judged.recording
+    lines = [
+        f"recording   {recording.name}: {_drives(tally.judged)} in steps of {recording.step_s:g} s",
+        *_not_judged(tally.not_judged),
+    ]
+    if judged.mirrored:
+        before = "right" if recording.side == "left" else "left"
+        lines.append(
+            f"mirrored    recorded where traffic keeps to the {before}, "
+            f"judged as if it kept to the {recording.side}"
+        )
+    defaults = _everything(judged, tally.words or frozenset())
+    if defaults:
+        lines.append(f"by default  {_some(defaults)}: the recording does not say")
+    lines += [f"note        {remark}" for remark in recording.remarks]
+    lines += _table(judged, tally)
+    return "\n".join(visible(line) for line in lines)
+
+
+def _drives(count: int) -> str:
+    return f"{count:,} {'drive' if count == 1 else 'drives'}"
+
+
+def _not_judged(found: Sequence[NoDrive]) -> Iterator[str]:
+    reasons: dict[str, list[str]] = {}
+    for one in found:
+        reasons.setdefault(one.why, []).append(one.ego)
+    for why, egos in reasons.items():
+        yield f"not judged  {_vehicles(egos)}: {why}"
+
+
+def _vehicles(egos: Sequence[str]) -> str:
+    if len(egos) <= MOST_VEHICLES:
+        return ", ".join(egos)
+    return f"{', '.join(egos[:MOST_VEHICLES])} and {len(egos) - MOST_VEHICLES} more"
+
+
+def _everything(judged: JudgedRecording, words: frozenset[str]) -> list[str]:
+    """What rules read and these words leave out, in the order of the vocabulary."""
+    missing = {name for names in judged.by_default(words).values() for name in names}
+    return [name for name in judged.rules.vocabulary.declarations if name in missing]
+
+
+def _table(judged: JudgedRecording, tally: Tally) -> Iterator[str]:
+    if not tally.first_s:
+        return
+    defaults = judged.by_default(tally.words or frozenset())
+    rules = [rule for rule in judged.rules.rules if rule.name in tally.first_s]
+    titles = [shorten(_title(rule), LONGEST_RULE, placeholder=" …]") for rule in rules]
+    width = max(len("violated"), *map(len, titles))
+    yield ""
+    yield f"{'violated':<{width}}  {'':4}  {'drives':>7}  {'first':>8}  by"
+    for rule, title in zip(rules, titles, strict=True):
+        times = tally.first_s[rule.name]
+        who = sorted(times, key=lambda ego: times[ego])
+        first = f"{min(times.values()):g} s"
+        share = f"{len(times)}/{tally.judged}"
+        row = f"{title:<{width}}  {rule.strength}  {share:>7}  {first:>8}  {_vehicles(who)}"
+        yield row
+        if defaults[rule.name]:
+            yield f"  by default: {_some(defaults[rule.name])}"
+
+
+def _title(rule: CompiledRule) -> str:
+    return f"{rule.name} [{rule.cite}]" if rule.cite else rule.name
+
+
+def _some(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:MOST_DEFAULTS])
+    more = f" and {len(names) - MOST_DEFAULTS} more" if len(names) > MOST_DEFAULTS else ""
+    return f"{shown}{more}"
+
+
+def in_detail(
+    one: Judged, judged: JudgedRecording, explained: Sequence[Explanation], *, every_part: bool
+) -> str:
+    """The verdict on one drive, with explanations of its first violations; nothing without one."""
+    if not isinstance(one.answer, Verdict):
+        return ""
+    text = verdict_report.as_text(one.answer, judged.rules, explained, every_part=every_part)
+    return f"\n{text}"
+
+
+def summary(tally: Tally) -> str:
+    """The line that ends a run."""
+    line = verdict_report.summary(len(tally.satisfied), len(tally.violated), len(tally.not_judged))
+    return line.replace("traces", "drives").replace("trace", "drive")

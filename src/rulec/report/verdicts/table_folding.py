@@ -1,0 +1,130 @@
+"""What is shown of a long or wide explanation: what decides, and the states that there is room for.
+
+An explanation is folded where its table has too many parts, or is too wide; both on their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rulec.logic.bounds import BOOLEAN, operations_of
+from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.monitoring.explain.explanation import Part
+
+MOST_PARTS = 20
+"""Of a formula with more only those parts are shown that decide."""
+
+LEAST = 24
+"""So many characters of a part are shown, however deep inside the formula it is."""
+
+_CHAINED = (BinaryOperator.AND, BinaryOperator.OR)
+
+Titled = tuple[str, Part]
+"""A part and its text, indented and cut."""
+
+
+def titled(parts: Sequence[Part], widest: int) -> list[Titled]:
+    """All parts, their texts cut at so many characters."""
+    return [("  " * one.depth + cut(one.text, widest), one) for one in parts]
+
+
+def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
+    """The parts that decide, their titles cut at so many characters.
+
+    A part about a single state that is not cut is not taken apart: the facts say the rest. What is
+    joined by `and`, or by `or`, stands side by side.
+    """
+    return list(_folded(parts, 0, 0, widest))
+
+
+def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator[Titled]:
+    part = parts[at]
+    text = cut(part.text, max(widest - 2 * depth, LEAST))
+    yield "  " * depth + text, part
+    now = all(one.operator in BOOLEAN for one in operations_of(part.formula))
+    if now and text == part.text:
+        return
+    for operand in _operands(parts, at):
+        yield from _folded(parts, operand, depth + 1, widest)
+
+
+def cut(text: str, widest: int) -> str:
+    """So much of a text as fits into so many characters."""
+    return text if len(text) <= widest else f"{text[: widest - 1]}…"
+
+
+def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
+    """The deciding operands of a part, those of a chain instead of its links."""
+    for operand in range(at + 1, len(parts)):
+        if parts[operand].depth <= parts[at].depth:
+            return
+        if parts[operand].depth > parts[at].depth + 1 or not parts[operand].decides:
+            continue
+        if _is_link(parts[at], parts[operand]):
+            yield from _operands(parts, operand)
+        else:
+            yield operand
+
+
+def _is_link(part: Part, operand: Part) -> bool:
+    """Says the operand nothing to who sees its own operands below the part?"""
+    match part.formula, operand.formula:
+        case Binary(operator), Binary(inner):
+            return operator is inner and operator in _CHAINED
+        case Unary(UnaryOperator.NOT), Binary(inner):
+            return inner in BOOLEAN
+        case _:
+            return False
+
+
+def fitting(
+    columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int, room: int
+) -> list[range]:
+    """The columns that there is room for, each as the places of the states that it stands for.
+
+    If there is no room for all, neighbours that are alike become one. If that is not enough, the
+    decisive one and the one before it stay, and as many as possible of: the one before these, the
+    one behind them, the first, and those further back.
+    """
+    places = [range(n, n + 1) for n in range(len(columns))]
+    if sum(width(columns, states, one) for one in places) <= room:
+        return places
+    places = _merged(columns, states, decisive)
+    at = next(n for n, one in enumerate(places) if decisive in one)
+    needed = [one for one in (at, at - 1) if one >= 0]
+    chosen: list[int] = []
+    for one in dict.fromkeys([*needed, at - 2, at + 1, 0, *range(at - 3, 0, -1)]):
+        if 0 <= one < len(places):
+            room -= width(columns, states, places[one])
+            if room < 0 and one not in needed:
+                break
+            chosen.append(one)
+    return [places[one] for one in sorted(chosen)]
+
+
+def width(columns: Sequence[Sequence[str]], states: Sequence[int], places: range) -> int:
+    """So many characters a column takes, with the space before it."""
+    cells = (head(states, places), *columns[places[0]])
+    return 2 + max(len(cell) for cell in cells)
+
+
+def head(states: Sequence[int], places: range) -> str:
+    """The numbers of the states that a column stands for."""
+    first, last = states[places[0]], states[places[-1]]
+    return str(first) if first == last else f"{first}-{last}"
+
+
+def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
+    """Columns that are alike and whose states follow each other as one, the decisive one alone."""
+    found: list[range] = []
+    for place, column in enumerate(columns):
+        if (
+            place
+            and decisive not in (place, place - 1)
+            and states[place] == states[place - 1] + 1
+            and column == columns[place - 1]
+        ):
+            found[-1] = range(found[-1].start, place + 1)
+        else:
+            found.append(range(place, place + 1))
+    return found

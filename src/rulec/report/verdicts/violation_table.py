@@ -1,0 +1,231 @@
+"""An explained violation as a table of states, and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from itertools import groupby
+from operator import itemgetter
+from textwrap import wrap
+from typing import Any
+
+import click
+
+from rulec.automata.thresholds import exact
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.explain.explanation import Explanation, Fact
+from rulec.report.automata.guard_text import Wording, runs
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
+from rulec.trace import Value
+
+WIDTH = 100
+"""A wider table is folded, a longer sentence broken."""
+
+WIDEST = 60
+"""A part of the formula is cut at so many characters; what it is made of stands below it."""
+
+NARROW = 48
+"""The same where the table would be too wide."""
+
+WIDEST_NUMBER = 20
+"""A longer number is rounded."""
+
+MOST_CHANGES = 6
+"""So many different changes are shown that would have kept the rule."""
+
+MOST_SPANS = 12
+"""So many stretches of states that would have to say the same are listed."""
+
+MOST_OF_NAMES = 16
+"""So many characters of the names of counted objects are shown; JSON has them all."""
+
+INDENT = "    "
+
+
+def as_data(explanation: Explanation) -> dict[str, Any]:
+    """The explanation for JSON."""
+    return {
+        "book": explanation.rule.book,
+        "cite": explanation.rule.cite,
+        "says": explanation.rule.says,
+        "states": explanation.states,
+        "decisive": explanation.decisive,
+        "facts": [_as_data(fact) for fact in explanation.facts],
+        "parts": [
+            {
+                "formula": part.text,
+                "depth": part.depth,
+                "values": part.values,
+                "changed": part.changed,
+                "decides": part.decides,
+            }
+            for part in explanation.parts
+        ],
+        "repair": explanation.repair
+        and [{"state": number, "says": says} for number, says in _repaired(explanation)],
+    }
+
+
+def _as_data(fact: Fact) -> dict[str, Any]:
+    data = {"reads": fact.text, "values": fact.values, "changed": fact.changed}
+    data["decides"] = fact.decides
+    if fact.unit:
+        data["unit"] = fact.unit
+    if fact.objects is not None:
+        data["objects"] = fact.objects
+    return data
+
+
+def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
+    """The rule's sentence and the table; ``*`` marks what changed with the decisive state.
+
+    A large table is folded, unless ``every_part`` of it is wanted.
+    """
+    decisive = explanation.states.index(explanation.decisive)
+    table = _table(explanation, decisive, every_part)
+    columns = [
+        (head(explanation.states, places), *table.values[places[0]]) for places in table.columns
+    ]
+    widths = [max(len(cell) for cell in cells) for cells in columns]
+    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), WIDTH - len(INDENT))]
+    for row, title in enumerate(["state", *table.titles]):
+        cells = [
+            (click.style(cells[row], bold=True) if decisive in places else cells[row])
+            + " " * (width - len(cells[row]))
+            for places, cells, width in zip(table.columns, columns, widths, strict=True)
+        ]
+        lines.append(f"{INDENT}{title.ljust(table.title_width)}   {'  '.join(cells)}".rstrip())
+        if row in (0, table.n_facts):
+            rule = "─" * (table.title_width + 1 + sum(widths) + 2 * len(widths))
+            lines.append(f"{INDENT}{rule}")
+    return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation)])
+
+
+def _repair(explanation: Explanation) -> Iterator[str]:
+    """The least that would have had to be otherwise."""
+    if explanation.repair is None:
+        yield f"{INDENT}no trace of as many states keeps it"
+    changes = [
+        (_states(list(run)), visible(says))
+        for says, run in groupby(_repaired(explanation), key=itemgetter(1))
+    ]
+    for number, (states, says) in enumerate(changes[:MOST_CHANGES]):
+        line = f"{'and' if number else 'kept'} if {states}: {says}"
+        yield from wrap(line, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    if len(changes) > MOST_CHANGES:
+        yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
+
+
+def _states(run: Sequence[tuple[int, str]]) -> str:
+    """Which states have to say the same."""
+    numbers = [number for number, _ in run]
+    if len(numbers) == 1:
+        return f"state {numbers[0]} says"
+    spans = [f"{one[0]}-{one[-1]}" if len(one) > 1 else str(one[0]) for one in runs(numbers)]
+    if len(spans) > MOST_SPANS:
+        spans[MOST_SPANS:] = [f"… ({len(spans) - MOST_SPANS:,} more)"]
+    return f"states {', '.join(spans)} say"
+
+
+def _repaired(explanation: Explanation) -> Iterator[tuple[int, str]]:
+    """States by their numbers, and what they would have had to say."""
+    wording = Wording(explanation.rule, explanation.vocabulary)
+    for change in explanation.repair or ():
+        yield change.place, wording.condition(change.cubes)
+
+
+@dataclass(frozen=True)
+class _Table:
+    """The rows and the columns of the table.
+
+    The first ``n_facts`` rows are facts, the others parts. ``values`` are the cells of each state,
+    ``columns`` the places of the states that each column stands for.
+    """
+
+    titles: list[str]
+    n_facts: int
+    values: list[tuple[str, ...]]
+    columns: list[range]
+
+    @property
+    def title_width(self) -> int:
+        return max(len(title) for title in ("state", *self.titles))
+
+
+def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
+    """Titles are cut before states are left out."""
+    table = _rows(explanation, decisive, every_part, WIDEST)
+    if every_part:
+        return table
+    for widest in (WIDEST, NARROW):
+        table = _rows(explanation, decisive, every_part, widest)
+        room = WIDTH - len(INDENT) - table.title_width - 1
+        columns = fitting(table.values, explanation.states, decisive, room)
+        if columns == table.columns:
+            break
+    return replace(table, columns=columns)
+
+
+def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int) -> _Table:
+    """All states of the facts and parts to be shown, with titles that are no wider."""
+    whole = every_part or len(explanation.parts) <= MOST_PARTS
+    facts = [one for one in explanation.facts if whole or one.decides]
+    parts = (titled if whole else folded)(explanation.parts, widest)
+    cells = [_marked(_cells(one), decisive, one.changed) for one in facts]
+    cells += [[shown(value) for value in one.values] for _, one in parts]
+    return _Table(
+        [*(_title(one, widest) for one in facts), *(title for title, _ in parts)],
+        len(facts),
+        list(zip(*cells, strict=True)),
+        [range(n, n + 1) for n in range(len(explanation.states))],
+    )
+
+
+def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
+    """How much the table does not show, if anything."""
+    n_rows, n_states = len(table.titles), sum(len(places) for places in table.columns)
+    of_rows, of_states = len(explanation.facts) + len(explanation.parts), len(explanation.states)
+    words = [
+        f"{most - some} of {most} {what}"
+        for some, most, what in ((n_rows, of_rows, "rows"), (n_states, of_states, "states"))
+        if some < most
+    ]
+    if words:
+        yield f"{INDENT}… without {' and '.join(words)}: --every-part shows them"
+
+
+def _title(fact: Fact, widest: int) -> str:
+    text = cut(fact.text, widest)
+    return f"{text} in {visible(fact.unit)}" if fact.unit else text
+
+
+def _cells(fact: Fact) -> list[str]:
+    cells = [shown(value) for value in fact.values]
+    if fact.objects is None:
+        return cells
+    return [_with_names(cell, names) for cell, names in zip(cells, fact.objects, strict=True)]
+
+
+def _with_names(number: str, names: tuple[str, ...]) -> str:
+    """A count and whom it counts, as far as there is room."""
+    if not names:
+        return number
+    text = visible(", ".join(names))
+    return f"{number}: {cut(text, MOST_OF_NAMES)}"
+
+
+def _marked(cells: list[str], decisive: int, changed: bool) -> list[str]:
+    return [f"{cell}*" if n == decisive and changed else cell for n, cell in enumerate(cells)]
+
+
+def shown(value: Value) -> str:
+    """A value as a cell of a table."""
+    if isinstance(value, bool):
+        return "T" if value else "F"
+    if isinstance(value, str):
+        return visible(value)
+    text = number_in_words(exact(value)) if abs(value) < 10**WIDEST_NUMBER else ""
+    fits = 0 < len(text) <= WIDEST_NUMBER
+    return text if fits else f"{Decimal(value):.{WIDEST_NUMBER - 8}g}"

@@ -1,0 +1,99 @@
+"""Facts: what a vocabulary knows of every state, whatever the rules say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.rulebook.elaborate.elaboration import truth
+from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.names.scope import SIDES, BoundVariable, Scope
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.syntax import tree
+
+
+def fact_of(
+    item: tree.FactItem, declared: Declared, provisions: Provisions
+) -> tuple[Fact | None, list[Diagnostic]]:
+    """The fact as meant (None if it has a mistake), and what is wrong with it.
+
+    Its variables are not declared: they are of the types that what it says of them is about.
+    """
+    mistakes: list[Diagnostic] = []
+    formula = item.formula
+    if isinstance(formula, tree.Prefix) and formula.operator == "always" and not formula.bound:
+        # Facts hold always; one may say so.
+        formula = formula.operand
+    variables = _variables(_asked_for(formula, declared, provisions), declared, mistakes)
+    scope = Scope(
+        declared, provisions, variables, mistakes, in_moment=True, taken=frozenset(variables)
+    )
+    provisions.begin()
+    found = truth(formula, scope)
+    if found is None or mistakes:
+        return None, mistakes
+    typed = tuple(Variable(name, one.type) for name, one in variables.items() if one.type)
+    return Fact(typed, found, item.span), mistakes
+
+
+def _variables(
+    asked_for: Iterable[tuple[tree.Name, str]], declared: Declared, mistakes: list[Diagnostic]
+) -> dict[str, BoundVariable]:
+    found: dict[str, BoundVariable] = {}
+    for name, wanted in asked_for:
+        known = found.get(name.text)
+        if known is None or known.type is None or declared.fits(wanted, known.type):
+            found[name.text] = BoundVariable(wanted, name.span, name.text)
+        elif not declared.fits(known.type, wanted):
+            mistakes.append(_two_types(name, known, wanted))
+    return found
+
+
+def _asked_for(
+    formula: tree.Formula,
+    declared: Declared,
+    provisions: Provisions,
+    counted: frozenset[str] = frozenset(),
+) -> Iterator[tuple[tree.Name, str]]:
+    """Every object that the formula speaks of, with the type that is needed there.
+
+    ``counted`` are the variables of the counts around it, which are no objects of the fact's.
+    """
+    if isinstance(formula, tree.AtomUse):
+        wanted = _parameters(formula, declared, provisions)
+        if len(wanted) == len(formula.arguments):
+            for name, kind in zip(formula.arguments, wanted, strict=True):
+                if kind is not None and name.text not in counted:
+                    yield name, kind
+    elif isinstance(formula, tree.Aggregate):
+        counted |= {formula.variable.name.text}
+    for part in parts_of(formula):
+        yield from _asked_for(part, declared, provisions, counted)
+
+
+def _parameters(
+    use: tree.AtomUse, declared: Declared, provisions: Provisions
+) -> Sequence[str | None]:
+    """The types of what is asked for by this name; None for one that may be anything."""
+    name = use.name.text
+    definition = provisions.definitions.get(name)
+    if definition is not None:
+        kinds = [one.type.text if one.type else None for one in definition.parameters]
+        return [kind if kind in declared.types else None for kind in kinds]
+    item = declared.items.get(name) or declared.value_of.get(
+        SIDES[name]["right"] if name in SIDES else name
+    )
+    return () if item is None else item.parameters
+
+
+def _two_types(name: tree.Name, known: BoundVariable, wanted: str) -> Diagnostic:
+    return Diagnostic(
+        "R0302",
+        f"`{name.text}` cannot be both a `{known.type}` and a `{wanted}`",
+        name.span.place,
+        expected=f"here it has to be a `{wanted}`",
+        help="say the fact of objects of one type",
+        labels=(Label(known.span.place, f"here it has to be a `{known.type}`"),),
+    )

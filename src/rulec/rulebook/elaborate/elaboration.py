@@ -1,0 +1,327 @@
+"""From an expression as written to a formula or a number: the one place that checks types."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from rulec.diagnostics import Diagnostic
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Formula,
+    Quantity,
+    Same,
+    Unary,
+    UnaryOperator,
+)
+from rulec.logic.printing import term_in_words
+from rulec.rulebook.elaborate import elaboration_messages as say
+from rulec.rulebook.elaborate.bounds import bound_of
+from rulec.rulebook.elaborate.linear_arithmetic import (
+    Linear,
+    Number,
+    TooManyCasesError,
+    added,
+    combined,
+    compared,
+    divided,
+    either,
+    measured,
+    negated,
+    opposite,
+    scaled,
+)
+from rulec.rulebook.elaborate.literals import literal
+from rulec.rulebook.elaborate.macro_expansion import put_in
+from rulec.rulebook.elaborate.quantifiers import aggregate
+from rulec.rulebook.elaborate.size_limits import excess
+from rulec.rulebook.names.scope import Anything, Scope
+from rulec.rulebook.overlay import constant_messages
+from rulec.rulebook.overlay.parameter_values import parameter
+from rulec.syntax import tree
+
+_TEMPORAL = frozenset(
+    (
+        *("always", "never", "eventually", "next", "weak next"),
+        *("once", "historically", "previously", "weak previously"),
+        *("then", "until", "release", "weak until", "strong release", "since"),
+    )
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Object:
+    """An object, by the actual name of its variable."""
+
+    name: str
+
+
+Meaning = Formula | Number | Object | Anything
+
+
+def truth(node: tree.Formula, scope: Scope) -> Formula | None:
+    """The formula; None if it has a mistake, which is then reported."""
+    found = meaning(node, scope)
+    match found:
+        case None:
+            return None
+        case Anything():
+            return Constant(True)
+        case Number():
+            scope.report(say.number_for_truth(node, found, scope))
+            return None
+        case Object():
+            scope.report(say.object_for_truth(node, scope))
+            return None
+        case _:
+            return found
+
+
+def number(node: tree.Formula, scope: Scope) -> Number | None:
+    """The number; None if it has a mistake, which is then reported."""
+    found = meaning(node, scope)
+    match found:
+        case None | Anything():
+            return None
+        case Number():
+            return found
+        case _:
+            scope.report(say.no_number(node, found, scope))
+            return None
+
+
+def meaning(node: tree.Formula, scope: Scope) -> Meaning | None:
+    """What an expression means; None if it has a mistake, which is then reported.
+
+    Raises:
+        TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
+    """
+    with scope.provisions.one_deeper():
+        try:
+            match node:
+                case tree.AtomUse():
+                    return _name(node, scope)
+                case tree.Truth(value):
+                    return Constant(value)
+                case tree.Number():
+                    return literal(node, scope)
+                case tree.Prefix():
+                    return _prefix(node, scope)
+                case tree.Infix():
+                    return _infix(node, scope)
+                case tree.Compare():
+                    return _compare(node, scope)
+                case tree.Arithmetic():
+                    return _arithmetic(node, scope)
+                case tree.Minus(operand):
+                    inside = number(operand, scope)
+                    if inside is None:
+                        return None
+                    return Number(tuple((when, opposite(linear)) for when, linear in inside.cases))
+                case tree.Conditional(value, condition, otherwise):
+                    first, test = meaning(value, scope), truth(condition, scope)
+                    return _either(node, first, test, meaning(otherwise, scope), scope)
+                case tree.Aggregate():
+                    return aggregate(node, scope, truth)
+        except TooManyCasesError:
+            scope.report(say.too_many_cases(node))
+            return None
+
+
+def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
+    name = node.name.text
+    relation = scope.relations.get(name)
+    if relation is None and name in scope.variables:
+        scope.used.add(name)
+        if node.arguments:
+            scope.report(constant_messages.object_as_relation(node, scope))
+            return None
+        return Object(scope.variables[name].actual)
+    if isinstance(relation, Anything):
+        scope.used.add(name)
+        scope.used |= {one.text for one in node.arguments}
+        return relation
+    if relation is not None:
+        scope.used.add(name)
+        node = replace(node, name=replace(node.name, text=relation))
+        name = relation
+    kind = scope.provisions.overlay.kind_of(name)
+    if kind and node.arguments and kind != "definition":
+        scope.report(constant_messages.takes_no_object(node, kind, scope))
+        return None
+    if kind == "option":
+        return Constant(scope.provisions.options[name])
+    if kind == "parameter":
+        return parameter(node, scope, number)
+    if kind == "definition":
+        return put_in(node, scope, meaning)
+    found = scope.reference(node)
+    if isinstance(found, Quantity):
+        unit = scope.declared.unit_of(found.name)
+        if unit is None:
+            return None
+        return measured(found, unit.factor, unit.dimension, term_in_words(found))
+    return found
+
+
+def _prefix(node: tree.Prefix, scope: Scope) -> Formula | None:
+    operand = truth(node.operand, scope)
+    bound = bound_of(node, node.bound, scope, number)
+    if _out_of_place(node, node.operator, scope) or operand is None or bound is False:
+        return None
+    written = isinstance(node.operand, tree.Truth)
+    if node.operator == "not" and isinstance(operand, Constant) and not written:
+        return negated(operand)
+    return Unary(UnaryOperator(node.operator), operand, bound)
+
+
+def _infix(node: tree.Infix, scope: Scope) -> Formula | None:
+    left, right = truth(node.left, scope), truth(node.right, scope)
+    bound = bound_of(node, node.bound, scope, number)
+    if node.operator == "then" and isinstance(node.left, tree.Prefix):
+        for warning in _endless_phase(node.left):
+            scope.report(warning)
+    misplaced = _out_of_place(node, node.operator, scope)
+    if misplaced or left is None or right is None or bound is False:
+        return None
+    return Binary(BinaryOperator(node.operator), left, right, bound)
+
+
+def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -> bool:
+    if operator in _TEMPORAL and scope.in_moment:
+        scope.report(say.temporal_in_count(node))
+        return True
+    return False
+
+
+def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
+    """Who writes ``never p then q`` means ``never (p then q)``: ``never p`` has no end."""
+    if phase.operator in ("always", "never", "eventually") and not phase.grouped:
+        yield Diagnostic(
+            "R0311",
+            f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
+            phase.span.place,
+            expected=f"`{phase.operator}` binds tighter than `then`",
+            help=f"write `{phase.operator} (… then …)` to speak of the sequence",
+            severity="warning",
+        )
+
+
+def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
+    for side, other in ((node.left, node.right), (node.right, node.left)):
+        if isinstance(side, tree.AtomUse) and (item := scope.enumeration(side)) is not None:
+            scope.used |= {one.text for one in side.arguments}
+            scope.report(say.values_compared(node, side, item, other, scope))
+            return None
+    left, right = meaning(node.left, scope), meaning(node.right, scope)
+    if isinstance(left, Object) and isinstance(right, Object):
+        return _same(node, left, right, scope)
+    if isinstance(left, Anything) or isinstance(right, Anything):
+        return Anything()
+    if isinstance(left, Formula) and isinstance(right, Formula):
+        scope.report(say.truths_compared(node, scope))
+        return None
+    first = _as_number(node.left, left, node, scope)
+    second = _as_number(node.right, right, node, scope)
+    if first is None or second is None:
+        return None
+    if not _fit(node, first, second, scope):
+        return None
+    return _checked(compared(first, node.relation, second))
+
+
+def _checked(formula: Formula) -> Formula:
+    """The formula. Raises TooManyCasesError: conditions have doubled its parts too often."""
+    if excess(formula):
+        raise TooManyCasesError
+    return formula
+
+
+def _as_number(
+    node: tree.Formula, found: Meaning | None, around: tree.Compare, scope: Scope
+) -> Number | None:
+    if found is None or isinstance(found, Number):
+        return found
+    scope.report(say.not_comparable(node, found, around, scope))
+    return None
+
+
+def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> Formula | None:
+    if node.relation not in ("=", "!="):
+        scope.report(say.objects_have_no_order(node))
+        return None
+    if left.name == right.name:
+        same: Formula = Constant(True)
+    elif {left.name, right.name} & scope.counted:
+        same = Same(*sorted((left.name, right.name)))
+    else:
+        # The variables of a rule stand for distinct objects.
+        same = Constant(False)
+    return same if node.relation == "=" else negated(same)
+
+
+def _fit(node: tree.Formula, left: Number, right: Number, scope: Scope) -> bool:
+    one, other = left.dimension, right.dimension
+    if one is None or other is None or one == other:
+        return True
+    assert isinstance(node, tree.Compare | tree.Arithmetic | tree.Conditional), "these have sides"
+    scope.report(say.two_dimensions(node, left, right, scope))
+    return False
+
+
+def _arithmetic(node: tree.Arithmetic, scope: Scope) -> Number | None:
+    left, right = number(node.left, scope), number(node.right, scope)
+    if left is None or right is None:
+        return None
+    match node.operator:
+        case "+" | "-":
+            if not _fit(node, left, right, scope):
+                return None
+            sign = 1 if node.operator == "+" else -1
+            return combined(left, right, lambda one, other: added(one, other, sign))
+        case "*":
+            if _varies(left) and _varies(right):
+                scope.report(say.not_linear(node))
+                return None
+            return combined(left, right, _product)
+        case _:
+            if _varies(right):
+                scope.report(say.not_linear(node))
+                return None
+            if any(linear.constant == 0 for _, linear in right.cases):
+                scope.report(say.divided_by_zero(node))
+                return None
+            return combined(left, right, divided)
+
+
+def _varies(value: Number) -> bool:
+    return any(linear.coefficients for _, linear in value.cases)
+
+
+def _product(left: Linear, right: Linear) -> Linear:
+    if right.coefficients:
+        return scaled(right, left, first=True)
+    return scaled(left, right, first=False)
+
+
+def _either(
+    node: tree.Conditional,
+    value: Meaning | None,
+    condition: Formula | None,
+    otherwise: Meaning | None,
+    scope: Scope,
+) -> Meaning | None:
+    if value is None or condition is None or otherwise is None:
+        return None
+    if isinstance(value, Anything) or isinstance(otherwise, Anything):
+        return Anything()
+    if isinstance(value, Number) and isinstance(otherwise, Number):
+        return either(condition, value, otherwise) if _fit(node, value, otherwise, scope) else None
+    if isinstance(value, Object | Number) or isinstance(otherwise, Object | Number):
+        scope.report(say.two_kinds(node, value, otherwise, scope))
+        return None
+    chosen = Binary(BinaryOperator.AND, condition, value)
+    other = Binary(BinaryOperator.AND, negated(condition), otherwise)
+    return _checked(Binary(BinaryOperator.OR, chosen, other))

@@ -1,0 +1,327 @@
+"""What is said about numbers, truths and objects where another of them is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+
+from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
+from rulec.logic.formula import Formula
+from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.names.declaration_messages import unit_help
+from rulec.rulebook.names.scope import SIDES, Scope
+from rulec.syntax import tree
+from rulec.syntax.printer import print_formula
+from rulec.vocabulary import Enumeration
+from rulec.vocabulary.units import DIMENSIONS, Dimension, unit_refusal
+
+
+def kind_of(dimension: Dimension | None) -> str:
+    """What a number is of, in words."""
+    return "a number" if dimension is None else f"a {dimension.name}"
+
+
+def short(node: tree.Formula) -> str:
+    """An expression as it is written, cut where it is long."""
+    text = print_formula(node, "written")
+    return text if len(text) <= 40 else f"{text[:39]}…"
+
+
+def what_of(found: object) -> str:
+    """The kind of a meaning in words."""
+    if isinstance(found, Number):
+        return kind_of(found.dimension)
+    return "true or false" if isinstance(found, Formula) else "an object"
+
+
+def origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
+    """Where the names in an expression come from."""
+    match node:
+        case tree.AtomUse(name):
+            declared = scope.declared.spans.get(name.text)
+            laid = scope.provisions.overlay
+            provision = laid.changed_at.get(name.text) or laid.declared_at.get(name.text)
+            span = declared or (provision.span if provision else None)
+            if span is not None:
+                yield Label(span.place, f"`{name.text}` is declared here")
+        case tree.Arithmetic(_, left, right):
+            yield from origins(left, scope)
+            yield from origins(right, scope)
+        case tree.Minus(operand):
+            yield from origins(operand, scope)
+        case _:
+            return
+
+
+def _once(labels: Iterator[Label]) -> tuple[Label, ...]:
+    return tuple(dict.fromkeys(labels))
+
+
+def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnostic:
+    """A number where a formula needs something true or false."""
+    unit = ""
+    if isinstance(node, tree.AtomUse):
+        unit = scope.declared.unit_text(node.name.text)
+    inside = f" (in {unit})" if unit else ""
+    test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
+    return Diagnostic(
+        "R0313",
+        f"`{short(node)}` is {kind_of(found.dimension)}{inside} and cannot be true or false",
+        node.span.place,
+        expected="expected something that is true or false",
+        help=f"compare it, such as `{short(node)} {test}`",
+        labels=_once(origins(node, scope)),
+    )
+
+
+def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
+    """A variable where a formula needs something true or false."""
+    example = next(iter(scope.declared.about_one()), "p")
+    return Diagnostic(
+        "R0303",
+        f"`{short(node)}` is an object and cannot be true or false",
+        node.span.place,
+        expected="expected a signal or a value",
+        help=f"say something about it, such as `{example}({short(node)})`",
+    )
+
+
+def no_number(node: tree.Formula, found: object, scope: Scope) -> Diagnostic:
+    """Something true or false, or an object, where a number is needed."""
+    return Diagnostic(
+        "R0313",
+        f"`{short(node)}` is {what_of(found)}, not a number",
+        node.span.place,
+        expected="expected a number",
+        help="a number is a quantity, a parameter, a count, or such as `1.5 m`",
+        labels=_once(origins(node, scope)),
+    )
+
+
+def values_compared(
+    node: tree.Compare,
+    side: tree.AtomUse,
+    item: Enumeration,
+    other: tree.Formula,
+    scope: Scope,
+) -> Diagnostic:
+    """``surface = crossing``: an enumeration's value is an atom by itself."""
+    name = side.name.text
+    value = other.name.text if isinstance(other, tree.AtomUse) else ""
+    relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
+    arguments = f"({', '.join(one.text for one in side.arguments)})" if side.arguments else ""
+    if value not in item.values and not relative:
+        way_out = did_you_mean(value, item.values) or (
+            f"write {any_of([f'`{one}{arguments}`' for one in item.values])}"
+        )
+    else:
+        way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
+    return Diagnostic(
+        "R0303",
+        f"`{name}` is not compared: each of its values is true or false by itself",
+        node.span.place,
+        expected="expected the value alone",
+        help=way_out,
+        labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
+    )
+
+
+def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
+    """Both sides of a comparison are true or false."""
+    way_out = {
+        "=": "formulas are compared by `iff`",
+        "!=": "formulas are compared by `xor`",
+    }.get(node.relation, "numbers are compared, and objects by `=` and `!=`")
+    if isinstance(node.right, tree.Truth) and isinstance(node.left, tree.AtomUse):
+        holds = node.right.value == (node.relation == "=")
+        way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
+    return Diagnostic(
+        "R0313",
+        f"both sides of `{node.relation}` are true or false, not numbers",
+        node.span.place,
+        expected="expected two numbers",
+        help=way_out,
+        labels=_once(chain(origins(node.left, scope), origins(node.right, scope))),
+    )
+
+
+def not_comparable(
+    node: tree.Formula, found: object, around: tree.Compare, scope: Scope
+) -> Diagnostic:
+    """A side of a comparison that is no number."""
+    return Diagnostic(
+        "R0313",
+        f"`{short(node)}` is {what_of(found)}, not a number",
+        node.span.place,
+        expected=f"expected a number beside `{around.relation}`",
+        help="numbers are compared, and objects by `=` and `!=`",
+        labels=_once(origins(node, scope)),
+    )
+
+
+def two_dimensions(
+    node: tree.Compare | tree.Arithmetic | tree.Conditional,
+    left: Number,
+    right: Number,
+    scope: Scope,
+) -> Diagnostic:
+    """Numbers of two dimensions side by side."""
+    if isinstance(node, tree.Conditional):
+        first, second, sign = node.value, node.otherwise, "or"
+    else:
+        first, second = node.left, node.right
+        sign = node.relation if isinstance(node, tree.Compare) else node.operator
+    labels = [
+        Label(first.span.place, f"this is {kind_of(left.dimension)}"),
+        *origins(first, scope),
+        *origins(second, scope),
+    ]
+    one, other = kind_of(left.dimension), kind_of(right.dimension)
+    verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
+    message = f"`{short(first)}` is {one} and `{short(second)}` {other}"
+    return Diagnostic(
+        "R0312",
+        f"{message}: they cannot be {verb}",
+        second.span.place,
+        expected=f"this is {other}",
+        help=_unit_help(second, first, scope)
+        or _unit_help(first, second, scope)
+        or _kind_help(first, left, second, right),
+        labels=_once(iter(labels)),
+    )
+
+
+def _unit_help(node: tree.Formula, other: tree.Formula, scope: Scope) -> str:
+    """A number without its unit."""
+    if isinstance(node, tree.Number) and not node.unit and isinstance(other, tree.AtomUse):
+        unit = scope.declared.unit_text(other.name.text)
+        return f"write the unit, such as `{node.text} {unit}`" if unit else ""
+    return ""
+
+
+def _kind_help(first: tree.Formula, left: Number, second: tree.Formula, right: Number) -> str:
+    """What one could be multiplied with to become the other."""
+    if left.dimension is not None and right.dimension is not None:
+        for node, ratio in (
+            (second, left.dimension / right.dimension),
+            (first, right.dimension / left.dimension),
+        ):
+            if ratio == DIMENSIONS["time"]:
+                return f"a time makes them alike, such as `2 s * {_factor(node)}`"
+    return "check the names and the units"
+
+
+def _factor(node: tree.Formula) -> str:
+    text = short(node)
+    return f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
+
+
+def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
+    """``number if condition else truth``."""
+    return Diagnostic(
+        "R0313",
+        f"`{short(node.value)}` is {what_of(value)} and `{short(node.otherwise)}` "
+        f"{what_of(otherwise)}: they cannot stand for each other",
+        node.otherwise.span.place,
+        expected=f"this is {what_of(otherwise)}",
+        help="both sides of `if … else` are numbers, or both are true or false",
+        labels=_once(origins(node.value, scope)),
+    )
+
+
+def unknown_unit(node: tree.Number) -> Diagnostic:
+    """A unit that nobody knows, or that cannot be converted exactly."""
+    refusal = unit_refusal(node.unit)
+    if refusal is not None:
+        message = f"the unit `{node.unit}` cannot be used: {refusal.why}"
+        return Diagnostic("R0209", message, node.span.place, help=refusal.instead)
+    return Diagnostic(
+        "R0209",
+        f"there is no unit `{node.unit}`",
+        node.span.place,
+        expected="expected a unit of measure",
+        help=unit_help(node.unit),
+    )
+
+
+def too_long(node: tree.Number) -> Diagnostic:
+    """A number with more digits than anyone could mean."""
+    return Diagnostic(
+        "R0112",
+        "this number has too many digits",
+        node.span.place,
+        help="write at most 400 digits, and no exponent beyond 400",
+    )
+
+
+def not_linear(node: tree.Arithmetic) -> Diagnostic:
+    """A product of two numbers that vary, or a quotient by one."""
+    if node.operator == "*":
+        why = "two numbers that change from state to state cannot be multiplied"
+        wanted = "on one side"
+    else:
+        why = "a number that changes from state to state cannot be divided by"
+        wanted = "behind `/`"
+    return Diagnostic(
+        "R0314",
+        f"`{short(node)}`: {why}",
+        node.span.place,
+        expected=f"expected a fixed number {wanted}",
+        help="multiply and divide by fixed numbers and parameters only",
+    )
+
+
+def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
+    """A division by 0."""
+    return Diagnostic(
+        "R0314",
+        f"`{short(node)}` divides by 0",
+        node.right.span.place,
+        expected="expected a number other than 0",
+        help="check the divisor",
+    )
+
+
+def too_many_cases(node: tree.Formula) -> Diagnostic:
+    """A comparison with too many conditional numbers."""
+    return Diagnostic(
+        "R0323",
+        f"`{short(node)}` becomes too large, with parameters and conditions put in",
+        node.span.place,
+        help="use fewer numbers that have an `if`, or say it in several comparisons",
+    )
+
+
+def objects_have_no_order(node: tree.Compare) -> Diagnostic:
+    """``v < w`` of objects."""
+    return Diagnostic(
+        "R0313",
+        f"`{short(node.left)}` and `{short(node.right)}` are objects, which have no order",
+        node.span.place,
+        expected="expected `=` or `!=` between objects",
+        help="compare numbers of theirs",
+    )
+
+
+def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
+    """A temporal operator in a count's body or a parameter."""
+    return Diagnostic(
+        "R0319",
+        f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",
+        node.span.place,
+        expected="expected a formula about one state",
+        help="put the operator around it, or give the rule a variable",
+    )
+
+
+def unused_variable(node: tree.Aggregate) -> Diagnostic:
+    """A count's variable that its body says nothing about."""
+    name = node.variable.name.text
+    return Diagnostic(
+        "R0207",
+        f"the formula says nothing about `{name}`",
+        node.variable.span.place,
+        expected="not used behind it",
+        help="speak of it, or leave the variable out",
+        severity="warning",
+    )

@@ -1,0 +1,183 @@
+"""``unless`` and ``when``: what a rule exempts, and when.
+
+A rule that never lets a sequence happen guards a stretch of it: the phases between the first and
+the last, which only say where the sequence comes from and where it leads. Of a sequence of two
+phases the stretch is the last instant of the first and the first instant of the second; of a single
+phase, and of ``always``, it is the one instant. An exception exempts a sequence if it holds at the
+stretch's start, at its end, throughout it, or at some point of it. A sequence is counted against
+the rule if no exception exempts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import comb
+
+from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
+from rulec.rulebook.elaborate.linear_arithmetic import all_of, any_of, negated
+from rulec.rulebook.model import Exemption, ExemptionScope
+
+_AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL
+
+MOST_THROUGHOUT = 4
+"""Exceptions of one rule that have to hold throughout; the formula grows exponentially in them."""
+
+_MOST_WAYS = 2_000
+"""Ways for them to fail in one phase or the other; with many phases there are more of them."""
+
+
+class NoStretchError(Exception):
+    """A formula that is neither ``always`` nor ``never`` guards no stretch."""
+
+
+class BoundedPhaseError(Exception):
+    """What holds throughout phases whose length is bounded cannot be said."""
+
+
+class TooManyExceptionsError(Exception):
+    """Too many exceptions have to hold throughout."""
+
+
+def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
+    """The formula with its exceptions.
+
+    Raises:
+        NoStretchError: for another scope than ``initially`` of a formula that guards no stretch.
+        BoundedPhaseError: for ``throughout`` if a phase's length is bounded.
+        TooManyExceptionsError: if too many hold throughout.
+    """
+    inside = [one for one in exemptions if one.scope != "initially"]
+    initially = [one.formula for one in exemptions if one.scope == "initially"]
+    if inside:
+        formula = _with_stretch(formula, inside)
+    return any_of(iter([*initially, formula]))
+
+
+def _with_stretch(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
+    match formula:
+        case Unary(UnaryOperator.ALWAYS, operand):
+            exempt = any_of(one.formula for one in exemptions)
+            return replace(formula, operand=any_of(iter([exempt, operand])))
+        case Unary(UnaryOperator.NEVER, operand):
+            return replace(formula, operand=_counted(_phases(operand), exemptions))
+        case _:
+            raise NoStretchError
+
+
+@dataclass(frozen=True, slots=True)
+class _Phase:
+    """A phase, and how long it lasts; no bound for the last one."""
+
+    formula: Formula
+    bound: Bound | None = None
+
+
+def _phases(formula: Formula) -> list[_Phase]:
+    found: list[_Phase] = []
+    while isinstance(formula, Binary) and formula.operator is _THEN:
+        found.append(_Phase(formula.left, formula.bound))
+        formula = formula.right
+    return [*found, _Phase(formula)]
+
+
+def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
+    """The sequence of these phases as far as no exemption exempts it."""
+    denied: dict[ExemptionScope, list[Formula]] = {}
+    for one in exemptions:
+        denied.setdefault(one.scope, []).append(negated(one.formula))
+    if len(phases) == 1:
+        return all_of([phases[0].formula, *(negated(one.formula) for one in exemptions)])
+    throughout = denied.get("throughout", [])
+    if len(throughout) > MOST_THROUGHOUT:
+        raise TooManyExceptionsError
+    if throughout and any(phase.bound is not None for phase in phases):
+        raise BoundedPhaseError
+    if comb(len(phases) - 1 + len(throughout), len(throughout)) * 2 ** len(throughout) > _MOST_WAYS:
+        raise TooManyExceptionsError
+    at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
+    everywhere = all_of(denied.get("at some point", []))
+    if len(phases) == 2:
+        return _border(
+            phases, all_of([at_start, everywhere]), all_of([at_end, everywhere]), throughout
+        )
+    return _Inner(phases, at_start, at_end, everywhere).whole(frozenset(throughout))
+
+
+def _border(
+    phases: list[_Phase], before: Formula, behind: Formula, throughout: Sequence[Formula]
+) -> Formula:
+    """Of two phases: the last instant of the first, and the first one of the second."""
+    first, second = phases
+    ways = [
+        _ends(
+            first,
+            all_of([before, *now]),
+            all_of([second.formula, behind, *(one for one in throughout if one not in now)]),
+        )
+        for n in range(len(throughout) + 1)
+        for now in combinations(throughout, n)
+    ]
+    return any_of(iter(ways))
+
+
+def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
+    """The phase from now on, ``at_last`` in its last instant, ``behind`` in the one after it."""
+    if at_last == all_of([]):
+        return Binary(_THEN, phase.formula, behind, phase.bound)
+    if phase.bound is not None:
+        before = Unary(UnaryOperator.PREVIOUSLY, at_last)
+        return Binary(_THEN, phase.formula, all_of([before, behind]), phase.bound)
+    last = all_of([phase.formula, at_last, Unary(UnaryOperator.NEXT, behind)])
+    return Binary(_UNTIL, phase.formula, last)
+
+
+@dataclass(frozen=True, slots=True)
+class _Inner:
+    """A sequence of at least three phases; the inner ones are guarded.
+
+    ``at_start``, ``at_end``, ``everywhere`` have to hold at the first, the last, at all instants of
+    the stretch for the sequence to be counted.
+    """
+
+    phases: list[_Phase]
+    at_start: Formula
+    at_end: Formula
+    everywhere: Formula
+
+    def whole(self, somewhere: frozenset[Formula]) -> Formula:
+        """From the first instant; each of ``somewhere`` has to hold somewhere in the stretch."""
+        first = self.phases[0]
+        return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
+
+    def _enter(self, index: int, rest: frozenset[Formula]) -> Formula:
+        """From the first instant of a phase, with ``rest`` still to hold somewhere."""
+        if index == len(self.phases) - 1:
+            return self.phases[-1].formula
+        inside = self._inside(index, rest)
+        return all_of([self.at_start, inside]) if index == 1 else inside
+
+    def _inside(self, index: int, rest: frozenset[Formula]) -> Formula:
+        """From some instant of an inner phase on."""
+        phase = replace(
+            self.phases[index], formula=all_of([self.phases[index].formula, self.everywhere])
+        )
+        is_last = index == len(self.phases) - 2
+        if not rest:
+            at_last = self.at_end if is_last else all_of([])
+            return _ends(phase, at_last, self._enter(index + 1, rest))
+        ways: list[Formula] = []
+        ordered = sorted(rest, key=repr)
+        for n in range(len(ordered) + 1):
+            for now in combinations(ordered, n):
+                left = rest - frozenset(now)
+                onward = []
+                if not (is_last and left):
+                    step = Unary(UnaryOperator.NEXT, self._enter(index + 1, left))
+                    onward.append(all_of([self.at_end, step]) if is_last else step)
+                if now:
+                    onward.append(Unary(UnaryOperator.NEXT, self._inside(index, left)))
+                if onward:
+                    ways.append(all_of([*now, any_of(iter(onward))]))
+        return Binary(_UNTIL, phase.formula, all_of([phase.formula, any_of(iter(ways))]))

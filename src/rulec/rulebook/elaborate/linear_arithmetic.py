@@ -1,0 +1,237 @@
+"""Numbers in formulas: sums of quantities and counts, exact, with a dimension.
+
+A number may depend on conditions: ``1.5 m if built_up else 2 m`` is one number in two cases, of
+which exactly one holds at any time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice, product
+
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Formula,
+    Relation,
+    Term,
+    Unary,
+    UnaryOperator,
+)
+from rulec.logic.linear_comparison import comparison
+from rulec.vocabulary.units import Dimension
+
+MOST_CASES = 64
+"""More cases in one comparison are no condition that anyone could check by reading."""
+
+_LONGEST_TEXT = 50_000
+_MOST_BITS = 20_000
+"""Parameters that use another one twice double its text, or its digits."""
+
+SUM, PRODUCT, SIGN, PRIMARY = range(4)
+"""How tightly the outermost operator of a number's text binds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """A sum of coefficients times terms, and a constant, in base units.
+
+    ``dimension`` is None for a bare 0, which fits any. ``text`` is how a rulebook would say it,
+    ``binding`` how tightly its outermost operator binds.
+    """
+
+    coefficients: Mapping[Term, Fraction]
+    constant: Fraction
+    dimension: Dimension | None
+    text: str
+    binding: int = PRIMARY
+
+    def __post_init__(self) -> None:
+        """Raises TooManyCasesError."""
+        bits = max(self.constant.numerator.bit_length(), self.constant.denominator.bit_length())
+        if len(self.text) > _LONGEST_TEXT or bits > _MOST_BITS:
+            raise TooManyCasesError
+
+    def within(self, binding: int) -> str:
+        """The text, in parentheses if it binds less tightly."""
+        return self.text if self.binding >= binding else f"({self.text})"
+
+
+Conditions = tuple[Formula, ...]
+
+Case = tuple[Conditions, Linear]
+"""The conditions under which a number is this one; none for a number without cases."""
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number in cases that exclude one another, of which always one holds."""
+
+    cases: tuple[Case, ...]
+
+    @property
+    def dimension(self) -> Dimension | None:
+        """The dimension of all cases; None if all of them are a bare 0."""
+        found = (linear.dimension for _, linear in self.cases)
+        return next((one for one in found if one is not None), None)
+
+    @property
+    def is_constant(self) -> bool:
+        """Is it the same for all states?"""
+        return len(self.cases) == 1 and not self.cases[0][1].coefficients
+
+    @property
+    def text(self) -> str:
+        """As a rulebook would say it."""
+        if len(self.cases) == 1:
+            return self.cases[0][1].text
+        return " or ".join(linear.text for _, linear in self.cases)
+
+
+class TooManyCasesError(Exception):
+    """An expression has too many cases, or has otherwise grown beyond anything to be read."""
+
+
+def constant(value: Fraction, dimension: Dimension | None, text: str) -> Number:
+    """A number that is always the same."""
+    return Number((((), Linear({}, value, dimension, text)),))
+
+
+def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> Number:
+    """A number that a state gives, in units of ``factor`` base units."""
+    return Number((((), Linear({term: factor}, Fraction(0), dimension, text)),))
+
+
+def combined(left: Number, right: Number, combine: Callable[[Linear, Linear], Linear]) -> Number:
+    """An operation case by case. Raises TooManyCasesError."""
+    return _in_cases(
+        (both, combine(one, other)) for both, one, other in _pairs(left.cases, right.cases)
+    )
+
+
+def _pairs(
+    left: Sequence[Case], right: Sequence[Case]
+) -> Iterator[tuple[Conditions, Linear, Linear]]:
+    """The cases of two numbers side by side, without those that exclude each other."""
+    for (first, one), (second, other) in product(left, right):
+        both = (*first, *(condition for condition in second if condition not in first))
+        if not any(negated(condition) in first for condition in second):
+            yield both, one, other
+
+
+def _in_cases(cases: Iterable[Case]) -> Number:
+    found = Number(tuple(islice(cases, MOST_CASES + 1)))
+    if len(found.cases) > MOST_CASES:
+        raise TooManyCasesError
+    return found
+
+
+def either(condition: Formula, value: Number, otherwise: Number) -> Number:
+    """``value if condition else otherwise``. Raises TooManyCasesError."""
+    if isinstance(condition, Constant):
+        return value if condition.value else otherwise
+    sides = ((condition, value), (negated(condition), otherwise))
+    return _in_cases(
+        ((test, *(one for one in when if one != test)), linear)
+        for test, number in sides
+        for when, linear in number.cases
+        if negated(test) not in when
+    )
+
+
+def negated(formula: Formula) -> Formula:
+    """Its negation, without a double one."""
+    if isinstance(formula, Unary) and formula.operator is UnaryOperator.NOT:
+        return formula.operand
+    if isinstance(formula, Constant):
+        return Constant(not formula.value)
+    return Unary(UnaryOperator.NOT, formula)
+
+
+def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
+    """The sum or, with ``sign`` -1, the difference."""
+    terms = dict(left.coefficients)
+    for term, coefficient in right.coefficients.items():
+        terms[term] = terms.get(term, Fraction(0)) + sign * coefficient
+    return Linear(
+        {term: coefficient for term, coefficient in terms.items() if coefficient},
+        left.constant + sign * right.constant,
+        right.dimension if left.dimension is None else left.dimension,
+        f"{left.within(SUM)} {'+' if sign > 0 else '-'} {right.within(PRODUCT)}",
+        SUM,
+    )
+
+
+def scaled(linear: Linear, factor: Linear, *, first: bool) -> Linear:
+    """The product with a constant; ``first``: the constant is written first."""
+    one, other = (factor, linear) if first else (linear, factor)
+    return _times(linear, factor, f"{one.within(PRODUCT)} * {other.within(SIGN)}")
+
+
+def divided(linear: Linear, divisor: Linear) -> Linear:
+    """The quotient by a constant other than 0."""
+    text = f"{linear.within(PRODUCT)} / {divisor.within(SIGN)}"
+    inverse = Linear({}, 1 / divisor.constant, _inverse(divisor.dimension), "")
+    return _times(linear, inverse, text)
+
+
+def _inverse(dimension: Dimension | None) -> Dimension | None:
+    return None if dimension is None else dimension**-1
+
+
+def _times(linear: Linear, factor: Linear, text: str) -> Linear:
+    bare = linear.dimension is None or factor.dimension is None
+    dimension = None
+    if linear.dimension is not None and factor.dimension is not None:
+        dimension = linear.dimension * factor.dimension
+    by = factor.constant
+    terms = {} if bare else {term: value * by for term, value in linear.coefficients.items() if by}
+    return Linear(terms, linear.constant * by, dimension, text, PRODUCT)
+
+
+def opposite(linear: Linear) -> Linear:
+    """The number with the other sign."""
+    return Linear(
+        {term: -coefficient for term, coefficient in linear.coefficients.items()},
+        -linear.constant,
+        linear.dimension,
+        f"-{linear.within(SIGN)}",
+        SIGN,
+    )
+
+
+def compared(left: Number, relation: Relation, right: Number) -> Formula:
+    """``left relation right`` as a formula. Raises TooManyCasesError."""
+    cases = [
+        (both, added(one, other, -1), f"{one.text} {relation} {other.text}")
+        for both, one, other in _pairs(left.cases, right.cases)
+    ]
+    if len(cases) > MOST_CASES:
+        raise TooManyCasesError
+    return any_of(
+        all_of([*conditions, comparison(linear.coefficients, relation, -linear.constant, text)])
+        for conditions, linear, text in cases
+    )
+
+
+def all_of(formulas: Sequence[Formula]) -> Formula:
+    """Their conjunction; true if there are none."""
+    return _joined(BinaryOperator.AND, True, iter(formulas))
+
+
+def any_of(formulas: Iterator[Formula]) -> Formula:
+    """Their disjunction; false if there are none."""
+    return _joined(BinaryOperator.OR, False, formulas)
+
+
+def _joined(operator: BinaryOperator, neutral: bool, formulas: Iterator[Formula]) -> Formula:
+    whole: Formula | None = None
+    for one in formulas:
+        if one == Constant(not neutral):
+            return one
+        if one != Constant(neutral):
+            whole = one if whole is None else Binary(operator, whole, one)
+    return Constant(neutral) if whole is None else whole

@@ -1,0 +1,45 @@
+"""Numbers as written, with their units."""
+
+from __future__ import annotations
+
+import math
+import re
+from fractions import Fraction
+
+from rulec.rulebook.elaborate import elaboration_messages as say
+from rulec.rulebook.elaborate.linear_arithmetic import Number, constant
+from rulec.rulebook.names.scope import Scope
+from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS
+
+_LONGEST = 400
+"""Characters of a number; and what its exponent may be. Floats need fewer."""
+
+_EXPONENT = re.compile(r"[eE]([+-]?[0-9]+)$")
+
+
+def literal(node: tree.Number, scope: Scope) -> Number | None:
+    """A number with its unit; None if it has a mistake, which is then reported."""
+    value = exact_value(node, scope)
+    if value is None:
+        return None
+    if not node.unit:
+        return constant(value, None if value == 0 else DIMENSIONS["number"], node.text)
+    unit = scope.declared.unit(node.unit)
+    if unit is None:
+        scope.report(say.unknown_unit(node))
+        return None
+    return constant(value * unit.factor, unit.dimension, f"{node.text} {node.unit}")
+
+
+def exact_value(node: tree.Number, scope: Scope) -> Fraction | None:
+    """The number that is written, without its unit; None if it is too long, which is reported."""
+    exponent = _EXPONENT.search(node.text)
+    if len(node.text) <= _LONGEST and (exponent is None or abs(int(exponent[1])) <= _LONGEST):
+        value = Fraction(node.text)
+        if math.isfinite(float(node.text)):
+            return value
+    elif math.isfinite(float(node.text)):
+        scope.report(say.too_long(node))
+    # One that is too large has been reported where it was read.
+    return None

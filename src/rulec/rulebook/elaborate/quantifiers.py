@@ -1,0 +1,82 @@
+"""``some``, ``every`` and ``count`` over the objects of the moment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from rulec.logic.formula import Comparison, Count, Formula, Relation
+from rulec.logic.printing import in_words, term_in_words
+from rulec.rulebook.elaborate import elaboration_messages as say
+from rulec.rulebook.elaborate.linear_arithmetic import (
+    Number,
+    TooManyCasesError,
+    compared,
+    constant,
+    measured,
+    negated,
+)
+from rulec.rulebook.elaborate.size_limits import excess
+from rulec.rulebook.names.declaration_messages import twice, unknown_type
+from rulec.rulebook.names.scope import BoundVariable, Scope
+from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS
+
+_ONE = Fraction(1)
+
+
+def aggregate(
+    node: tree.Aggregate, scope: Scope, truth: Callable[[tree.Formula, Scope], Formula | None]
+) -> Formula | Number | None:
+    """A count, or the comparison that ``some`` and ``every`` are; None if there is a mistake.
+
+    ``truth`` gives the formula that the body means. Raises TooManyCasesError for a body that has
+    grown too large.
+    """
+    name, kind = node.variable.name, node.variable.type
+    assert kind is not None, "the grammar asks for a type"
+    known = kind.text in scope.declared.types
+    if not known and not scope.declared.may_know_type(kind.text):
+        scope.report(unknown_type(kind, list(scope.declared.types)))
+    if name.text in scope.variables:
+        scope.report(twice("variable", name, scope.variables[name.text].span))
+        return None
+    inner = _with_counted(node, scope, kind.text if known else None)
+    body = truth(node.body, inner)
+    if body is not None and name.text not in inner.used:
+        scope.report(say.unused_variable(node))
+    scope.used |= inner.used - {name.text}
+    if body is None or not known:
+        return None
+    if excess(body):
+        raise TooManyCasesError
+    term = Count(
+        inner.variables[name.text].actual,
+        kind.text,
+        negated(body) if node.kind == "every" else body,
+    )
+    count = measured(term, _ONE, DIMENSIONS["number"], term_in_words(term))
+    if node.kind == "count":
+        return count
+    relation: Relation = "<" if node.kind == "every" else ">="
+    found = compared(count, relation, constant(_ONE, DIMENSIONS["number"], "1"))
+    assert isinstance(found, Comparison), "a count varies"
+    return replace(found, text=f"{node.kind} {term.variable}: {kind.text} ({in_words(body)})")
+
+
+def _with_counted(node: tree.Aggregate, scope: Scope, kind: str | None) -> Scope:
+    """The view of the body, in which the variable stands for what is counted."""
+    written = node.variable.name.text
+    actual, number = written, 2
+    while actual in scope.taken:
+        actual, number = f"{written}_{number}", number + 1
+    variable = BoundVariable(kind, node.variable.span, actual)
+    return replace(
+        scope,
+        variables={**scope.variables, written: variable},
+        counted=scope.counted | {actual},
+        taken=scope.taken | {actual},
+        in_moment=True,
+        used=set(),
+    )

@@ -1,0 +1,205 @@
+"""From a rule as written to a rule as meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.logic.bounds import NotAMultipleError, in_steps
+from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.rulebook.elaborate import exemption_messages as say
+from rulec.rulebook.elaborate import rule_messages
+from rulec.rulebook.elaborate.elaboration import number, truth
+from rulec.rulebook.elaborate.exemptions import (
+    BoundedPhaseError,
+    NoStretchError,
+    TooManyExceptionsError,
+    exempted,
+)
+from rulec.rulebook.elaborate.linear_arithmetic import negated
+from rulec.rulebook.elaborate.literals import exact_value
+from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, excess
+from rulec.rulebook.elaborate.step_messages import no_multiple
+from rulec.rulebook.examples.example_elaboration import example_of
+from rulec.rulebook.model import Exemption, Rule, Variable
+from rulec.rulebook.names.rule_variables import variables_of
+from rulec.rulebook.names.scope import Scope
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
+from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS
+
+
+def translate_rule(
+    entry: RuleEntry, declared: Declared, provisions: Provisions, levels: Sequence[str] | None
+) -> tuple[Rule | None, list[Diagnostic]]:
+    """The rule as meant (None if it has a mistake), its mistakes and warnings.
+
+    ``levels`` are those of the rulebook's priorities; None if they are not known for sure.
+    """
+    item = entry.item
+    mistakes: list[Diagnostic] = []
+    variables = variables_of(item.variables, declared, mistakes)
+    scope = Scope(declared, provisions, variables, mistakes, taken=frozenset(variables))
+    provisions.begin()
+    parts = _parts_of(item, scope)
+    formula = None if parts is None else _formula(item, parts, scope)
+    if item.complete and formula is not None:
+        mistakes += _unused(item, scope)
+    if item.level is not None and levels is not None and item.level.text not in levels:
+        scope.report(rule_messages.no_level(item.level, levels))
+    weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
+    if item.weight is not None and weight == 0:
+        scope.report(rule_messages.weightless(item.weight))
+    sound = len(mistakes)
+    examples = [example_of(example, formula, scope) for example in item.examples]
+    misfit = next((one for one in mistakes[sound:] if one.severity == "error"), None)
+    if misfit is not None and entry.changed is not None and entry.examples_from is not entry.book:
+        # What is wrong with the rest of the rule may be why.
+        clean = formula is not None and not any(one.severity == "error" for one in mistakes[:sound])
+        mistakes[sound:] = [rule_messages.misfit(entry.changed, misfit)] if clean else []
+    step = _step_of(entry.examples_from, scope)
+    if (
+        parts is None
+        or formula is None
+        or weight is None
+        or any(one.severity == "error" for one in mistakes)
+    ):
+        return None, [_with_change(one, entry) for one in mistakes]
+    dates = item.in_force or tree.InForce()
+    rule = Rule(
+        item.name.text,
+        item.strength or "hard",
+        tuple(Variable(one.name.text, one.type.text) for one in item.variables if one.type),
+        formula,
+        item.cite.value if item.cite else "",
+        item.says.value if item.says else "",
+        tuple(examples),
+        item.span,
+        item.level.text if item.level else "",
+        weight,
+        item.source.value if item.source else "",
+        item.certainty,
+        dates.since,
+        dates.until,
+        entry.book.name.text if entry.book.name else "",
+        step,
+        parts.required if parts.exemptions or parts.condition else None,
+        parts.exemptions,
+        parts.condition,
+    )
+    if rule.examples:
+        try:
+            in_steps(formula, step)
+        except NotAMultipleError as error:
+            return None, [*mistakes, no_multiple(rule, error)]
+    return rule, mistakes
+
+
+def _step_of(file: tree.File, scope: Scope) -> Fraction:
+    """How far the states of a rulebook's examples are apart, in seconds."""
+    if file.step is None:
+        return Fraction(1)
+    found = number(file.step.amount, scope)
+    if found is None:
+        return Fraction(1)
+    step = found.cases[0][1].constant
+    if found.dimension != DIMENSIONS["time"] or step <= 0:
+        scope.report(rule_messages.no_step(file.step))
+        return Fraction(1)
+    return step
+
+
+def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
+    """A mistake in what a rule inherits, with the line that changed the rule."""
+    changed = None if entry.changed is None else entry.changed.span.place
+    if changed is None or mistake.place is None or mistake.place.file == changed.file:
+        return mistake
+    return replace(mistake, labels=(*mistake.labels, Label(changed, "the rule is changed here")))
+
+
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """What a rule requires, what it exempts, and when it is in force."""
+
+    required: Formula
+    exemptions: tuple[Exemption, ...]
+    condition: Formula | None
+
+
+def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
+    """The parts of a rule's formula; None if one has a mistake, which is then reported."""
+    try:
+        required = None if item.require is None else truth(item.require, scope)
+        found = [(truth(one.formula, scope), one.scope or "throughout") for one in item.unless]
+        condition = None if item.when is None else truth(item.when, scope)
+    except TooDeepError:
+        scope.report(rule_messages.too_deep("formula", item.name))
+        return None
+    except TooLargeError:
+        scope.report(rule_messages.too_large("formula", item.name))
+        return None
+    exemptions = tuple(Exemption(formula, when) for formula, when in found if formula is not None)
+    whole = len(exemptions) == len(found) and (condition is not None or item.when is None)
+    # What depends on an option alone says nothing once that is known.
+    exemptions = tuple(one for one in exemptions if one.formula != Constant(False))
+    condition = None if condition == Constant(True) else condition
+    return None if required is None or not whole else _Parts(required, exemptions, condition)
+
+
+def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
+    """All of it as one formula; None if it has a mistake, which is then reported."""
+    formula = _with_exceptions(item, parts, scope)
+    match "" if formula is None else excess(formula):
+        case "deep":
+            scope.report(rule_messages.too_deep("formula", item.name))
+            return None
+        case "large":
+            scope.report(rule_messages.too_large("formula", item.name))
+            return None
+    return formula
+
+
+def _with_exceptions(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
+    formula, exemptions = parts.required, list(parts.exemptions)
+    if parts.condition is not None:
+        if _guards_a_stretch(formula):
+            exemptions.append(Exemption(negated(parts.condition), "at some point"))
+        else:
+            formula = Binary(BinaryOperator.IMPLIES, parts.condition, formula)
+    try:
+        return exempted(formula, exemptions)
+    except NoStretchError:
+        wrong = next(one for one in item.unless if one.scope != "initially")
+        require = None if item.require is None else item.require.span
+        scope.report(say.no_stretch(wrong, wrong.scope or "", require))
+    except BoundedPhaseError:
+        scope.report(say.bounded_phase(_throughout(item)))
+    except TooManyExceptionsError:
+        scope.report(say.too_many_exceptions(_throughout(item)))
+    return None
+
+
+def _throughout(item: tree.RuleItem) -> tree.Unless:
+    return [one for one in item.unless if one.scope in (None, "throughout")][-1]
+
+
+def _guards_a_stretch(formula: Formula) -> bool:
+    guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+    return isinstance(formula, Unary) and formula.operator in guarding
+
+
+def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
+    for one in item.variables:
+        if one.name.text not in scope.used:
+            yield Diagnostic(
+                "R0207",
+                f"the formula of `{item.name.text}` says nothing about `{one.name.text}`",
+                one.span.place,
+                expected="not used in `require`",
+                help="leave the variable out, or speak of it",
+                severity="warning",
+            )

@@ -1,0 +1,79 @@
+"""Examples that speak of states which cannot be, because a fact holds in every state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.diagnostic import at
+from rulec.logic.kleene import Unknown, holds
+from rulec.logic.printing import in_words
+from rulec.logic.renaming import renamed
+from rulec.logic.required_inputs import asked
+from rulec.rulebook.model import Example, ExampleState, Fact, Rule
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.object_choices import choices
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a state of an example says, and the defaults of what else a rule reads.
+
+    What neither of them speaks of is not known. ``read`` are those: declarations and objects.
+    """
+
+    said: ExampleState
+    read: frozenset[tuple[str, tuple[str, ...]]]
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+
+    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """The value of a signal or an enumeration."""
+        found = self.said.get((name, items))
+        if found is None and (name, items) in self.read:
+            found = self.vocabulary.declarations[name].default
+        return Unknown(name, items) if found is None else found
+
+    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The value of a quantity."""
+        found = self.value(name, items)
+        # A number's decimals are what is written.
+        return found if isinstance(found, Unknown) else Fraction(repr(found))
+
+
+def contradicted(rule: Rule, facts: Sequence[Fact], vocabulary: Vocabulary) -> Iterator[Diagnostic]:
+    """One mistake (R0306) for each state of the rule's examples that contradicts a fact."""
+    for example in rule.examples if facts else ():
+        objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
+        read = frozenset(
+            (one.name, one.arguments) for one in asked(rule.formula, objects, vocabulary.is_subtype)
+        )
+        for number, state in enumerate(example.states):
+            broken = _broken(Told(state, read, objects, vocabulary), facts)
+            if broken is not None:
+                yield _no_state(example, number, *broken)
+
+
+def _broken(state: Told, facts: Sequence[Fact]) -> tuple[Fact, str] | None:
+    """The first fact that does not hold, and how it is said of the objects."""
+    for fact in facts:
+        names = [variable.name for variable in fact.variables]
+        types = [variable.type for variable in fact.variables]
+        for chosen in choices(types, state.objects, state.vocabulary):
+            bound = dict(zip(names, chosen, strict=True))
+            if holds(fact.formula, bound, state) is False:
+                return fact, in_words(renamed(fact.formula, bound))
+    return None
+
+
+def _no_state(example: Example, number: int, fact: Fact, said: str) -> Diagnostic:
+    spans = example.state_spans
+    return Diagnostic(
+        "R0306",
+        f"this state cannot be: `{said}` holds in every state",
+        spans[number].place if spans else at(example.span),
+        help="correct the state; or the fact, if there can be such states",
+        labels=(Label(fact.span.place, "what holds in every state"),) if fact.span else (),
+    )

@@ -1,0 +1,121 @@
+"""A rule's examples as meant: the values that each state gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rulec.diagnostics import Span
+from rulec.logic.formula import (
+    Atom,
+    Formula,
+    Quantity,
+)
+from rulec.logic.required_inputs import asked
+from rulec.rulebook.elaborate.literals import literal
+from rulec.rulebook.examples import example_messages as say
+from rulec.rulebook.model import Example, ExampleState, Variable
+from rulec.rulebook.names.declaration_messages import twice, unknown_type
+from rulec.rulebook.names.scope import BoundVariable, Scope
+from rulec.syntax import tree
+
+Key = tuple[str, tuple[str, ...]]
+"""A declaration, and the objects that it is asked about."""
+
+
+def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> Example:
+    """The example; what is wrong with it is reported."""
+    variables = dict(scope.variables)
+    for one in example.objects:
+        name, kind = one.name, one.type
+        assert kind is not None, "the grammar asks for a type"
+        known = kind.text in scope.declared.types
+        if not known and not scope.declared.may_know_type(kind.text):
+            scope.report(unknown_type(kind, list(scope.declared.types)))
+        if name.text in variables:
+            scope.report(twice("object", name, variables[name.text].span))
+        variables[name.text] = BoundVariable(kind.text if known else None, one.span, name.text)
+    inside = replace(scope, variables=variables, used=set())
+    kinds = {name: one.type for name, one in variables.items() if one.type is not None}
+    needed: dict[Key, Atom | Quantity] = {}
+    if formula is not None:
+        for what in asked(formula, kinds, scope.declared.fits):
+            if scope.declared.items[what.name].default is None:
+                needed.setdefault((what.name, what.arguments), what)
+    return Example(
+        example.accepts,
+        tuple(_state(state, needed, inside) for state in example.states),
+        example.label,
+        tuple(Variable(one.name.text, one.type.text) for one in example.objects if one.type),
+        example.span,
+        tuple(state.span for state in example.states),
+    )
+
+
+def _state(
+    state: tree.ExampleState, needed: Mapping[Key, Atom | Quantity], scope: Scope
+) -> ExampleState:
+    said: dict[Key, bool | str | float] = {}
+    places: dict[Key, Span] = {}
+    unclear = False
+    for fact in state.literals:
+        found = _named(fact.atom, scope)
+        value = None if found is None else _value(fact, found, scope)
+        if found is None or value is None:
+            unclear = True
+            continue
+        key = (found.name, found.arguments)
+        if said.setdefault(key, value) != value:
+            scope.report(say.contradiction(fact, found, places[key]))
+        places.setdefault(key, fact.span)
+    missing = [what for key, what in needed.items() if key not in said]
+    if missing and not unclear:
+        scope.report(say.left_open(state, missing[0], scope.declared))
+    return said
+
+
+def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
+    """What a fact is about; None if it has a mistake, which is reported."""
+    kind = scope.provisions.overlay.kind_of(use.name.text)
+    if kind and scope.behind(use.name.text) is None:
+        scope.report(say.no_fact(use, kind, scope.provisions.overlay.declared_at[use.name.text]))
+        return None
+    return scope.reference(use)
+
+
+def _value(
+    fact: tree.StateLiteral, found: Atom | Quantity, scope: Scope
+) -> bool | str | float | None:
+    """What a fact says of the thing it names; None if it has a mistake, which is reported."""
+    if isinstance(found, Quantity):
+        return _number(fact, found, scope)
+    if fact.value is not None:
+        scope.report(say.not_a_number(fact, found, scope.declared))
+        return None
+    if found.value is not None and fact.negated:
+        scope.report(say.denied(fact, found, scope.declared))
+        return None
+    return not fact.negated if found.value is None else found.value
+
+
+def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | None:
+    """A quantity's value, in the unit of its declaration."""
+    unit = scope.declared.unit_of(found.name)
+    if fact.value is None:
+        scope.report(say.without_number(fact, found, scope.declared))
+        return None
+    minus = isinstance(fact.value, tree.Minus)
+    node = fact.value.operand if isinstance(fact.value, tree.Minus) else fact.value
+    assert isinstance(node, tree.Number), "the grammar has no other"
+    given = literal(node, scope)
+    if given is None or unit is None:
+        return None
+    if given.dimension not in (None, unit.dimension):
+        scope.report(say.other_dimension(fact, found, given, unit))
+        return None
+    try:
+        value = float(given.cases[0][1].constant / unit.factor)
+    except OverflowError:
+        scope.report(say.too_large(fact, found, unit))
+        return None
+    return -value if minus else value

@@ -1,0 +1,138 @@
+"""What is said about states of examples."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import Diagnostic, Label, Span, any_of
+from rulec.logic.formula import Atom, Quantity
+from rulec.logic.printing import term_in_words
+from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.syntax import tree
+from rulec.syntax.printer import print_formula
+from rulec.vocabulary import Enumeration
+from rulec.vocabulary.units import Unit
+
+
+def denied(fact: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagnostic:
+    """``not`` before an enumeration's value."""
+    item = declared.items[atom.name]
+    assert isinstance(item, Enumeration), "only enumerations have values"
+    others = [
+        f"`{Atom(atom.name, atom.arguments, value)}`"
+        for value in item.values
+        if value != atom.value
+    ]
+    return Diagnostic(
+        "R0310",
+        f"a state says which value `{_subject(atom)}` has, not which it lacks",
+        fact.span.place,
+        expected="expected a value",
+        help=f"write {any_of(others)}" if others else f"`{atom}` always holds",
+        labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
+    )
+
+
+def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -> Diagnostic:
+    """Two values in one state."""
+    if isinstance(what, Atom) and what.value is None:
+        message = f"`{what}` cannot be both true and false in one state"
+    else:
+        message = f"`{_subject(what)}` cannot have two values in one state"
+    return Diagnostic(
+        "R0306",
+        message,
+        fact.span.place,
+        expected="this contradicts what was said before",
+        help="keep one of them, or put a `;` between two states",
+        labels=(Label(first.place, "said before"),),
+    )
+
+
+def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: Declared) -> Diagnostic:
+    """Something that the formula needs, that has no default, and that the state does not say."""
+    item = declared.items[what.name]
+    if isinstance(what, Quantity):
+        ways = [f"`{term_in_words(what)} = … {declared.unit_text(what.name)}`"]
+    elif isinstance(item, Enumeration):
+        ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
+    else:
+        ways = [f"`{what}`", f"`not {what}`"]
+    return Diagnostic(
+        "R0307",
+        f"this state leaves open `{_subject(what)}`, which the formula needs",
+        state.span.place,
+        expected=f"expected {any_of(ways)}",
+        help="say it in this state, or give its declaration a default",
+        labels=(Label(declared.spans[what.name].place, f"`{what.name}` has no default"),),
+    )
+
+
+def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
+    """An option, a parameter or a definition in a state."""
+    return Diagnostic(
+        "R0303",
+        f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} of the rulebook, no fact "
+        "about a state",
+        use.span.place,
+        expected="expected a signal, a value or a quantity",
+        help="name the facts themselves",
+        labels=(Label(declared.span.place, f"`{use.name.text}` is declared here"),),
+    )
+
+
+def without_number(fact: tree.StateLiteral, what: Quantity, declared: Declared) -> Diagnostic:
+    """A quantity without a value."""
+    unit = declared.unit_text(what.name)
+    return Diagnostic(
+        "R0313",
+        f"`{term_in_words(what)}` is a number (in {unit}) and cannot be true or false",
+        fact.span.place,
+        expected="expected its value",
+        help=f"write `{term_in_words(what)} = 5 {unit}`",
+        labels=(Label(declared.spans[what.name].place, f"`{what.name}` is declared here"),),
+    )
+
+
+def not_a_number(fact: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagnostic:
+    """A number for what is true or false."""
+    return Diagnostic(
+        "R0313",
+        f"`{atom}` is true or false and has no number",
+        fact.span.place,
+        expected=f"expected `{atom}`",
+        help=f"write `{atom}` or, for a signal, `not {atom}`",
+        labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
+    )
+
+
+def other_dimension(
+    fact: tree.StateLiteral, what: Quantity, given: Number, unit: Unit
+) -> Diagnostic:
+    """A value in a unit of another dimension."""
+    assert fact.value is not None, "only a value has a unit"
+    found = given.dimension.name if given.dimension else "number"
+    return Diagnostic(
+        "R0312",
+        f"`{term_in_words(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
+        f"a {found}",
+        fact.value.span.place,
+        expected=f"expected a {unit.dimension.name}",
+        help=f"write it in {unit.text}",
+    )
+
+
+def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic:
+    """A value beyond all numbers that a trace can have."""
+    assert fact.value is not None, "only a value can be too large"
+    return Diagnostic(
+        "R0112",
+        f"this number is too large for `{term_in_words(what)}`, which counts in {unit.text}",
+        fact.value.span.place,
+        help=f"write a number below 1e308 {unit.text}",
+    )
+
+
+def _subject(what: Atom | Quantity) -> str:
+    return (
+        term_in_words(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))
+    )

@@ -1,0 +1,158 @@
+"""Rulebooks and vocabularies, many at once: which files are meant, and what is to say of each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import NoReturn
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.rulebook.files.check_cache import Question, recall, remember
+from rulec.rulebook.files.search_path import (
+    BY_PATH,
+    available_rulebooks,
+    available_vocabularies,
+    find_rulebook,
+    read_bytes,
+    suggest,
+)
+
+_STANDARD_INPUT = Path("standard input")
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """The files that were checked, what was found in them, and why others could not be read."""
+
+    files: tuple[str, ...]
+    findings: tuple[Diagnostic, ...]
+    unread: tuple[Diagnostic, ...]
+
+
+def check(
+    references: Iterable[str],
+    standard_input: Callable[[], bytes],
+    search_path: Sequence[Path] = (),
+    at: str = "",
+    *,
+    recalls: bool = False,
+) -> Checked:
+    """Check what the references mean, each file once, and say each finding once.
+
+    Args:
+        references: names of rulebooks and vocabularies, paths of files, folders, ``-``.
+        standard_input: the text that ``-`` stands for. It finds vocabularies as a file of the
+            working directory would.
+        search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
+            today.
+        recalls: may findings come from the cache where nothing has changed, and go there?
+    """
+    files: dict[str, str] = {}
+    findings: dict[tuple[object, ...], Diagnostic] = {}
+    unread: list[Diagnostic] = []
+    for path in _meant(references, search_path, unread):
+        try:
+            data = standard_input() if path is _STANDARD_INPUT else read_bytes(path)
+        except RulecError as error:
+            unread += error.diagnostics
+            continue
+        identity = os.path.realpath(path)
+        if identity in files:
+            continue
+        files[identity] = str(path)
+        for one in _findings(path, data, search_path, at, recalls=recalls):
+            findings.setdefault(_identity(one), one)
+    return Checked(tuple(files.values()), tuple(findings.values()), tuple(unread))
+
+
+def _findings(
+    path: Path, data: bytes, search_path: Sequence[Path], at: str, *, recalls: bool
+) -> tuple[Diagnostic, ...]:
+    place = "" if path is _STANDARD_INPUT else str(path)
+    folders = tuple(str(folder) for folder in search_path)
+    today = date.today().isoformat()  # noqa: DTZ011 - the reader's own day
+    question = Question(str(path), place, data, folders, at, today)
+    known = recall(question) if recalls else None
+    if known is not None:
+        return known
+    from rulec.rulebook.loader import diagnose  # takes longer than to recall
+
+    diagnosis = diagnose(str(path), data, path, search_path, at)
+    if recalls and diagnosis.dependencies is not None:
+        remember(question, diagnosis.findings, diagnosis.dependencies)
+    return diagnosis.findings
+
+
+def _meant(
+    references: Iterable[str], search_path: Sequence[Path], unread: list[Diagnostic]
+) -> Iterator[Path]:
+    for reference in references:
+        if reference == "-":
+            yield _STANDARD_INPUT
+            continue
+        try:
+            yield from find_sources(reference, search_path)
+        except RulecError as error:
+            unread += error.diagnostics
+
+
+def _identity(one: Diagnostic) -> tuple[object, ...]:
+    """A vocabulary's mistakes are found again by every rulebook that uses it, by another path."""
+    place = one.place
+    where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
+    return one.code, one.message, where
+
+
+def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]:
+    """The files that are meant by a rulebook's or a vocabulary's name, by a path, or by a folder.
+
+    A folder stands for every ``.rules`` file in it and below it, hidden folders left out. A path
+    that leads nowhere is returned as it is; reading it tells why.
+
+    Raises:
+        RulecError: R0703 for an unknown name, R0701 for a folder without any such file.
+    """
+    is_path = "/" in reference or reference.endswith(".rules")
+    if not is_path:
+        rulebooks = available_rulebooks(search_path)
+        vocabularies = {path.stem: path for path in available_vocabularies(search_path)}
+        if reference in rulebooks:
+            return [find_rulebook(reference, search_path)]
+        if reference in vocabularies:
+            return [vocabularies[reference]]
+    if os.path.isdir(reference):  # noqa: PTH112 - Path raises on a null character
+        return _in_folder(reference)
+    if not is_path:
+        raise RulecError(_nothing_called(reference, [*rulebooks, *vocabularies]))
+    return [Path(reference)]
+
+
+def _in_folder(folder: str) -> list[Path]:
+    found: list[Path] = []
+    for here, inner, names in os.walk(folder, onerror=_locked):
+        inner[:] = sorted(name for name in inner if not name.startswith("."))
+        found += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
+    if not found:
+        message = "there is no rulebook and no vocabulary in this folder"
+        way_out = "give a folder with files whose names end in `.rules`"
+        raise RulecError(Diagnostic("R0701", message, Place(folder), help=way_out))
+    return found
+
+
+def _locked(problem: OSError) -> NoReturn:
+    message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
+    place = Place(os.fsdecode(problem.filename))
+    raise RulecError(Diagnostic("R0701", message, place, help="check its permissions"))
+
+
+def _nothing_called(name: str, known: Sequence[str]) -> Diagnostic:
+    return Diagnostic(
+        "R0703",
+        f"there is no rulebook, vocabulary or folder `{name}`",
+        help=suggest(name, known),
+        notes=(BY_PATH,),
+    )

@@ -1,0 +1,109 @@
+"""Many files in their canonical form: which are meant, and what becomes of each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.files import written_whole
+from rulec.rulebook.files.batch_check import find_sources
+from rulec.rulebook.files.search_path import read_bytes
+from rulec.syntax import decode
+from rulec.syntax.formatting import format_source
+
+
+@dataclass(frozen=True, slots=True)
+class Formatted:
+    """A file as it is and as it should be; ``path`` is None for standard input."""
+
+    name: str
+    path: Path | None
+    before: bytes
+    after: bytes
+
+    @property
+    def changed(self) -> bool:
+        """Is it not in canonical form?"""
+        return self.before != self.after
+
+
+def format_files(
+    references: Iterable[str], search_path: Sequence[Path] = ()
+) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
+    """The files that paths mean, each once, and why others could not be formatted.
+
+    Nothing is written. A folder stands for every ``.rules`` file in it and below it, hidden folders
+    left out. ``search_path`` is for who gives a name instead.
+
+    Raises:
+        FormattingError: a mistake in rulec.
+    """
+    done: dict[str, Formatted] = {}
+    refused: list[Diagnostic] = []
+    for reference in references:
+        try:
+            paths = _at(reference, search_path)
+        except RulecError as error:
+            refused += error.diagnostics
+            continue
+        for path in paths:
+            identity = os.path.realpath(path)
+            if identity in done:
+                continue
+            try:
+                done[identity] = formatted(str(path), path, read_bytes(path))
+            except RulecError as error:
+                refused += error.diagnostics
+    return tuple(done.values()), tuple(refused)
+
+
+def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
+    """The files at a path. Names are not looked up: what they mean is often another's file."""
+    if "/" not in reference and not os.path.lexists(reference):
+        elsewhere = _named(reference, search_path)
+        if elsewhere is not None:
+            message = "there is no such file or folder, only a name"
+            way_out = f"give the path that it stands for, `{elsewhere}`"
+            raise RulecError(Diagnostic("R0701", message, Place(reference), help=way_out))
+    if "/" in reference:
+        return find_sources(reference)
+    is_folder = os.path.isdir(reference)  # noqa: PTH112 - Path raises on a null character
+    return find_sources(f"{reference}/" if is_folder else f"./{reference}")
+
+
+def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
+    try:
+        (found,) = find_sources(reference, search_path)
+    except RulecError:
+        return None
+    return None if found == Path(reference) else found
+
+
+def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
+    """One file. Raises RulecError with its mistakes, or FormattingError, a mistake in rulec."""
+    return Formatted(name, path, data, format_source(decode(name, data)).encode())
+
+
+def replace_files(files: Sequence[Formatted]) -> tuple[Diagnostic, ...]:
+    """Write the files that change, each whole or not at all; why some could not be."""
+    refused: list[Diagnostic] = []
+    for file in files:
+        if file.path is None or not file.changed:
+            continue
+        try:
+            _replace(file.path, file.after)
+        except RulecError as error:
+            refused += error.diagnostics
+    return tuple(refused)
+
+
+def _replace(path: Path, data: bytes) -> None:
+    if not path.is_file():
+        way_out = "give `-` to have standard input formatted to standard output"
+        message = "the file cannot be written: it is no ordinary file"
+        raise RulecError(Diagnostic("R0702", message, Place(str(path)), help=way_out))
+    with written_whole(path) as stream:
+        stream.write(data)

@@ -1,0 +1,162 @@
+"""What a check found, kept until a file that it depends on is another.
+
+Checking a rulebook means parsing it and all that it builds upon; asking whether any of that has
+changed means reading the files alone. What is kept are diagnostics, one small file for each
+rulebook, in the user's cache folder. Anything odd about it, and the check is made anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.files import written_whole
+from rulec.resources import package_files
+from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
+from rulec.version import __version__
+
+MOST_FILES = 1000
+"""Of so many rulebooks the findings are kept; the ones longest unused go first."""
+
+MOST_CHARACTERS = 1_000_000
+"""Findings that would take more are not kept: each of them has the line that it is about."""
+
+_WORDS = 200
+"""About so many characters a finding has of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What was checked: all that the findings depend on but other files.
+
+    ``name`` is what messages call the file, ``path`` where it is (empty for standard input),
+    ``day`` the day whose law it is where the rulebook does not say.
+    """
+
+    name: str
+    path: str
+    data: bytes
+    search_path: tuple[str, ...]
+    at: str
+    day: str
+
+    def place(self) -> str:
+        """A name for what is kept, the same when only the contents are others."""
+        parts = (self.name, self.path, str(Path.cwd()), self.at, *self.search_path)
+        return sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:40]
+
+    def stamp(self) -> list[str]:
+        """What has to be as it was."""
+        return [sha256(self.data).hexdigest(), self.day, __version__, _program()]
+
+
+def cache_folder() -> Path | None:
+    """Where findings are kept: ``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder.
+
+    None if there is no such place.
+    """
+    own = os.environ.get("RULEC_CACHE_DIR")
+    if own:
+        return Path(own)
+    shared = os.environ.get("XDG_CACHE_HOME", "")
+    if Path(shared).is_absolute():
+        return Path(shared, "rulec")
+    try:
+        return Path.home() / ".cache" / "rulec"
+    except RuntimeError:
+        return None
+
+
+def recall(question: Question) -> tuple[Diagnostic, ...] | None:
+    """What was found when the same was last asked; None if that is not known any more."""
+    folder = cache_folder()
+    if folder is None:
+        return None
+    kept = folder / f"{question.place()}.json"
+    try:
+        data = json.loads(kept.read_bytes())
+        if data["stamp"] != question.stamp():
+            return None
+        search_path = [Path(each) for each in question.search_path]
+        if not all(_as_it_was(Dependency(**one), search_path) for one in data["dependencies"]):
+            return None
+        found = tuple(_diagnostic(one) for one in data["findings"])
+    except (OSError, ValueError, TypeError, LookupError):
+        return None
+    with suppress(OSError):
+        os.utime(kept)
+    return found
+
+
+def remember(
+    question: Question, findings: Sequence[Diagnostic], dependencies: Sequence[Dependency]
+) -> None:
+    """Keep what was found. Where that cannot be, the next check takes longer, and that is all."""
+    folder = cache_folder()
+    if folder is None or _size(findings) > MOST_CHARACTERS:
+        return
+    data = {
+        "stamp": question.stamp(),
+        "dependencies": [asdict(one) for one in dependencies],
+        "findings": [asdict(one) for one in findings],
+    }
+    with suppress(OSError, RulecError, ValueError):
+        folder.mkdir(parents=True, exist_ok=True)
+        with written_whole(folder / f"{question.place()}.json") as stream:
+            stream.write(json.dumps(data).encode())
+        _tidy(folder)
+
+
+def _size(findings: Sequence[Diagnostic]) -> int:
+    """How many characters of sources the findings quote, with some for their own words."""
+    places = [place for one in findings for place in (one.place, *[x.place for x in one.labels])]
+    return sum(_WORDS + len(place.excerpt) for place in places if place is not None)
+
+
+def _as_it_was(one: Dependency, search_path: Sequence[Path]) -> bool:
+    user = Path(one.user) if one.user else None
+    locate = locate_base if one.kind == "base" else locate_vocabulary
+    path = locate(one.name, user, search_path)
+    if path is None or str(path) != one.path:
+        return False
+    try:
+        return sha256(read_bytes(path)).hexdigest() == one.sha256
+    except RulecError:
+        return False
+
+
+def _diagnostic(data: dict[str, Any]) -> Diagnostic:
+    place = data["place"]
+    labels = tuple(Label(Place(**one["place"]), one["message"]) for one in data["labels"])
+    return Diagnostic(
+        data["code"],
+        data["message"],
+        None if place is None else Place(**place),
+        data["expected"],
+        data["help"],
+        labels,
+        tuple(data["notes"]),
+        data["severity"],
+    )
+
+
+def _program() -> str:
+    """Changes with rulec itself, also in a checkout that is being worked on."""
+    seen = sha256()
+    for path, status in package_files():
+        seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())
+    return seen.hexdigest()
+
+
+def _tidy(folder: Path) -> None:
+    kept = list(folder.glob("*.json"))
+    if len(kept) > MOST_FILES:
+        for path in sorted(kept, key=lambda one: one.stat().st_mtime)[: len(kept) // 2]:
+            path.unlink(missing_ok=True)

@@ -1,0 +1,122 @@
+"""The rulebooks that a rulebook extends, read from their files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, Label, RulecError
+from rulec.rulebook.files.search_path import Dependency, find_base, is_same_file, read_bytes
+from rulec.rulebook.model import SourceFile
+from rulec.syntax import decode, parse, tree
+
+MOST_BASES = 50
+"""Far more than any family of laws has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Book:
+    """A rulebook's tree, and where it was read; None if that is nowhere."""
+
+    file: tree.File
+    path: Path | None
+
+
+@dataclass(slots=True)
+class Bases:
+    """The rulebooks that one extends, the most general first; what was wrong on the way.
+
+    ``failed``: one of them could not be read.
+    """
+
+    books: list[Book] = field(default_factory=list)
+    sources: list[SourceFile] = field(default_factory=list)
+    mistakes: list[Diagnostic] = field(default_factory=list)
+    dependencies: list[Dependency] = field(default_factory=list)
+    failed: bool = False
+
+
+def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) -> Bases:
+    """Follow the ``extends`` lines up to a rulebook that extends no other."""
+    found = Bases()
+    here = Book(file, path)
+    way = [here]
+    while here.file.extends is not None:
+        line = here.file.extends
+        try:
+            above = find_base(line.name.text, line.name.span, here.path, search_path)
+            first = next((one for one in way if _is(one, above)), None)
+            if first is not None or len(way) > MOST_BASES:
+                wrong = _too_many(line) if first is None else _circle(line, way)
+                found.mistakes.append(wrong)
+                found.failed = True
+                break
+            data = read_bytes(above, line.name.span)
+            source = decode(str(above), data)
+        except RulecError as error:
+            found.mistakes += error.diagnostics
+            found.failed = True
+            break
+        parsed, mistakes = parse(source)
+        if parsed.kind == "vocabulary" and parsed.name is not None:
+            found.mistakes.append(_is_a_vocabulary(line))
+            found.failed = True
+            break
+        found.mistakes += mistakes
+        record = source_file(above.name, data)
+        found.sources.append(record)
+        user = str(here.path or "")
+        needed = Dependency("base", line.name.text, user, str(above), record.sha256)
+        found.dependencies.append(needed)
+        here = Book(parsed, above)
+        way.append(here)
+        found.books.insert(0, here)
+    return found
+
+
+def _is(book: Book, path: Path) -> bool:
+    return book.path is not None and is_same_file(book.path, path)
+
+
+def source_file(name: str, data: bytes) -> SourceFile:
+    """A file for the record, by its base name and its content."""
+    # A file's name may be no text at all; what goes into a compiled rulebook has to be.
+    text = Path(name).name.encode("utf-8", "backslashreplace").decode()
+    return SourceFile(text, sha256(data).hexdigest())
+
+
+def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
+    names = [f"`{one.file.name.text}`" if one.file.name else "a rulebook" for one in way]
+    chain = " extends ".join([*names, f"`{line.name.text}`"])
+    others = [one.file.extends for one in way if one.file.extends not in (None, line)]
+    return Diagnostic(
+        "R0213",
+        f"the rulebooks go round in a circle: {chain}",
+        line.name.span.place,
+        expected="this closes the circle",
+        help="the most general of them extends no other: leave its `extends` line out",
+        labels=tuple(
+            Label(one.span.place, f"`{one.name.text}` is extended here") for one in others if one
+        ),
+    )
+
+
+def _too_many(line: tree.ExtendsLine) -> Diagnostic:
+    return Diagnostic(
+        "R0323",
+        f"more than {MOST_BASES} rulebooks build upon one another",
+        line.span.place,
+        help="let a rulebook extend a more general one directly",
+    )
+
+
+def _is_a_vocabulary(line: tree.ExtendsLine) -> Diagnostic:
+    return Diagnostic(
+        "R0206",
+        f"`{line.name.text}` is a vocabulary, not a rulebook",
+        line.name.span.place,
+        expected="expected the name of a rulebook",
+        help=f"a rulebook takes its words from it by `use {line.name.text}`",
+    )

@@ -1,0 +1,27 @@
+"""The variables of a rule or a definition."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import Diagnostic
+from rulec.rulebook.names.declaration_messages import twice, unknown_type
+from rulec.rulebook.names.scope import BoundVariable
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.syntax import tree
+
+
+def variables_of(
+    parameters: tuple[tree.Parameter, ...], declared: Declared, mistakes: list[Diagnostic]
+) -> dict[str, BoundVariable]:
+    """Variables with their types; what is wrong with them is added to ``mistakes``."""
+    found: dict[str, BoundVariable] = {}
+    for one in parameters:
+        name, type_ = one.name, one.type
+        assert type_ is not None, "the grammar asks for a variable's type"
+        known = type_.text in declared.types
+        if not known and not declared.may_know_type(type_.text):
+            mistakes.append(unknown_type(type_, list(declared.types)))
+        if name.text in found:
+            mistakes.append(twice("variable", name, found[name.text].span))
+        else:
+            found[name.text] = BoundVariable(type_.text if known else None, one.span, name.text)
+    return found

@@ -1,0 +1,238 @@
+"""What a formula can refer to, and names looked up in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
+from rulec.logic.formula import Atom, Quantity
+from rulec.rulebook.names import atom_messages
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.syntax import tree
+from rulec.vocabulary import Enumeration, Signal
+from rulec.vocabulary import Quantity as QuantityDeclaration
+
+SIDES = {"near_side_of": {"right": "right_of", "left": "left_of"}}
+SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
+"""Relation -> traffic -> the absolute side that it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoundVariable:
+    """A variable: its type, None if that is not known, and its place.
+
+    ``actual`` is its name in the rule: inside a definition that is the argument's.
+    """
+
+    type: str | None
+    span: Span
+    actual: str
+
+
+@dataclass(frozen=True, slots=True)
+class Anything:
+    """A definition's parameter while the definition is checked by itself: object or relation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A definition that is being put in the place of its use, or a parameter evaluated.
+
+    ``span`` is the use; None where that says nothing: a parameter is the same wherever it is used.
+    """
+
+    name: str
+    span: Span | None
+
+
+Declared_ = Signal | Enumeration | QuantityDeclaration
+
+
+@dataclass(slots=True)
+class Scope:
+    """One rule's or definition's view: the declarations, provisions and its variables.
+
+    ``relations`` are the parameters of a definition that stand for relations. ``calls`` are the
+    definitions that are being put in, outermost first. ``in_moment`` tells that the formula speaks
+    of one state alone, as in a count and in a parameter. ``counted`` are the variables (actual
+    names) of the counts around, ``taken`` all actual names in use.
+    """
+
+    declared: Declared
+    provisions: Provisions
+    variables: dict[str, BoundVariable]
+    mistakes: list[Diagnostic]
+    used: set[str] = field(default_factory=set)
+    relations: dict[str, str | Anything] = field(default_factory=dict)
+    calls: tuple[Call, ...] = ()
+    counted: frozenset[str] = frozenset()
+    taken: frozenset[str] = frozenset()
+    in_moment: bool = False
+    of_definition: bool = False
+    blamed: set[int] = field(default_factory=set)
+    """Where uses of definitions begin that have been found to be wrong."""
+
+    def report(self, mistake: Diagnostic) -> None:
+        """Note a mistake, with the uses of definitions that led to it.
+
+        A definition has been checked by itself. If what is wrong is how it is used, one mistake is
+        enough to say so.
+        """
+        outermost = self.calls[0].span if self.calls else None
+        if outermost is not None and mistake.severity == "error":
+            if outermost.start in self.blamed:
+                return
+            self.blamed.add(outermost.start)
+        labels: list[Label] = []
+        for call in reversed(self.calls):
+            if call.span is None:
+                break
+            labels.insert(0, Label(call.span.place, f"`{call.name}` is used here"))
+        if labels:
+            mistake = replace(mistake, labels=(*mistake.labels, *labels))
+        if mistake not in self.mistakes:
+            self.mistakes.append(mistake)
+
+    def behind(self, name: str) -> Declared_ | None:
+        """The signal or quantity of that name, or the enumeration that has such a value."""
+        found = self.declared.items.get(name)
+        if isinstance(found, QuantityDeclaration):
+            return found
+        return self.declared.behind_atom(name)
+
+    def relation_names(self) -> list[str]:
+        """What can be given to a definition for a relation."""
+        return [*self.declared.atoms(), *SIDES, *self.provisions.names(), *self.relations]
+
+    def absolute(self, use: tree.AtomUse, name: str) -> str | None:
+        """``near_side_of`` as the side that it is; other names as they are; None if reported."""
+        if name not in SIDES or self.behind(name) is not None:
+            return name
+        traffic = self.provisions.traffic
+        if not traffic:
+            self.report(atom_messages.no_traffic(use, name))
+            return None
+        side = SIDES[name][traffic]
+        if self.behind(side) is None:
+            if not self.declared.may_know(side):
+                self.report(atom_messages.no_sides(use, name, side))
+            return None
+        return side
+
+    def enumeration(self, use: tree.AtomUse) -> Enumeration | None:
+        """The enumeration of that name, which is no atom: its values are."""
+        name = use.name.text
+        item = self.declared.items.get(name)
+        hidden = name in self.variables or name in self.relations
+        return item if isinstance(item, Enumeration) and not hidden else None
+
+    def reference(self, use: tree.AtomUse) -> Atom | Quantity | None:
+        """The atom or quantity meant; None when that is not known, which is then reported."""
+        name = self.absolute(use, use.name.text)
+        if name is None:
+            return None
+        if self.behind(name) is not None:
+            return self._checked(use, name, use.arguments)
+        if not use.arguments and "_" in name:
+            readings = self._readings(name)
+            if len(readings) > 1:
+                self.report(atom_messages.two_readings(use, readings))
+                return None
+            if readings:
+                head, variable = readings[0]
+                return self._checked(use, head, (tree.Name(variable, use.span),))
+        if not self.provisions.may_know(name) and not self.declared.may_know(name):
+            self.report(atom_messages.explain(use, self))
+        return None
+
+    def _readings(self, name: str) -> list[tuple[str, str]]:
+        """The ways to read ``b_v`` as ``b(v)``."""
+        found: list[tuple[str, str]] = []
+        for position in (at for at, letter in enumerate(name) if letter == "_"):
+            head, variable = name[:position], name[position + 1 :]
+            item = self.behind(head)
+            if item is not None and len(item.parameters) == 1 and variable in self.variables:
+                found.append((head, variable))
+        return found
+
+    def _checked(
+        self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
+    ) -> Atom | Quantity | None:
+        item = self.behind(name)
+        assert item is not None, "only called for known names"
+        if len(arguments) != len(item.parameters):
+            self.used |= {one.text for one in arguments}
+            self.report(atom_messages.wrong_number(use, name, item, self))
+            return None
+        actual = [
+            self.object(one, wanted, (item.name, position))
+            for position, (one, wanted) in enumerate(zip(arguments, item.parameters, strict=True))
+        ]
+        found = tuple(one for one in actual if one is not None)
+        if len(found) < len(actual):
+            return None
+        if isinstance(item, QuantityDeclaration):
+            return Quantity(item.name, found)
+        return Atom(item.name, found, name if isinstance(item, Enumeration) else None)
+
+    def object(
+        self,
+        argument: tree.Name,
+        wanted: str | None,
+        parameter: tuple[str, int] | None = None,
+        relations: Sequence[str] = (),
+    ) -> str | None:
+        """The actual name of an object of a type; None if there is none such, which is reported.
+
+        ``parameter``: which parameter of which declaration asks for it. ``relations``: what could
+        be meant besides an object.
+        """
+        self.used.add(argument.text)
+        if isinstance(self.relations.get(argument.text), Anything):
+            return argument.text
+        variable = self.variables.get(argument.text)
+        if variable is None:
+            known = [*self.variables, *relations]
+            self.report(_unknown_variable(argument, self, known))
+            return None
+        if wanted is None or variable.type is None or self.declared.fits(variable.type, wanted):
+            return variable.actual
+        where = None if parameter is None else self.declared.parameter_spans.get(parameter)
+        name = "" if parameter is None else parameter[0]
+        self.report(_wrong_type(argument, variable, wanted, name, where))
+        return None
+
+
+def _unknown_variable(name: tree.Name, scope: Scope, known: Sequence[str]) -> Diagnostic:
+    owner = "definition" if scope.of_definition else "rule"
+    variables = list(scope.variables)
+    if variables:
+        way_out = f"the {owner}'s variables are {named(variables)}"
+    else:
+        kind = next(iter(scope.declared.types), "vehicle")
+        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
+    return Diagnostic(
+        "R0203",
+        f"the {owner} has no variable `{name.text}`",
+        name.span.place,
+        expected=f"expected a variable of the {owner}",
+        help=did_you_mean(name.text, known) or way_out,
+    )
+
+
+def _wrong_type(
+    argument: tree.Name, variable: BoundVariable, wanted: str, item: str, parameter: Span | None
+) -> Diagnostic:
+    labels = [Label(variable.span.place, f"`{argument.text}` is declared here")]
+    if parameter is not None:
+        labels.append(Label(parameter.place, f"`{item}` is about objects of type `{wanted}`"))
+    return Diagnostic(
+        "R0302",
+        f"`{argument.text}` is of type `{variable.type}`, which is no `{wanted}`",
+        argument.span.place,
+        expected=f"expected a variable of type `{wanted}`",
+        help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
+        labels=tuple(labels),
+    )

@@ -1,0 +1,291 @@
+"""Declarations of one or more files as one vocabulary."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.rulebook.names.declaration_messages import (
+    both_declare,
+    no_such_value,
+    twice,
+    unknown_type,
+    unknown_unit,
+    which_type,
+)
+from rulec.syntax import tree
+from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary.units import Unit, parse_unit
+
+
+@dataclass(slots=True)
+class Declared:
+    """What the files declare, and where; filled by ``declare``.
+
+    ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
+    may have declared; with ``opaque`` any name may be missing for a reason that has been reported,
+    with ``opaque_types`` any type. ``uncertain`` are types whose parents are not known for such a
+    reason.
+    """
+
+    types: dict[str, ObjectType] = field(default_factory=dict)
+    items: dict[str, Declaration] = field(default_factory=dict)
+    value_of: dict[str, Enumeration] = field(default_factory=dict)
+    type_spans: dict[str, Span] = field(default_factory=dict)
+    spans: dict[str, Span] = field(default_factory=dict)
+    parameter_spans: dict[tuple[str, int], Span] = field(default_factory=dict)
+    units: dict[str, Unit | None] = field(default_factory=dict)
+    suspects: set[str] = field(default_factory=set)
+    uncertain: set[str] = field(default_factory=set)
+    of_vocabularies: set[Source] = field(default_factory=set)
+    opaque: bool = False
+    opaque_types: bool = False
+    mistakes: list[Diagnostic] = field(default_factory=list)
+    shared: dict[tuple[Source, Source], list[str]] = field(default_factory=dict)
+    """Names that two vocabularies declare: the earlier one, the later one, and which."""
+
+    def twice(self, what: str, again: tree.Name, first: Span) -> None:
+        """Note that something is declared twice."""
+        files = first.source, again.span.source
+        if files[0] != files[1] and set(files) <= self.of_vocabularies:
+            self.shared.setdefault(files, []).append(again.text)
+            self.uncertain.add(again.text)
+        else:
+            self.mistakes.append(twice(what, again, first))
+
+    def vocabulary(self, name: str) -> Vocabulary:
+        """The declarations as data; only of use when there were no mistakes."""
+        return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
+
+    def unit(self, text: str) -> Unit | None:
+        """The unit of that text, read once; None if there is none such."""
+        if text not in self.units:
+            self.units[text] = parse_unit(text)
+        return self.units[text]
+
+    def unit_of(self, quantity: str) -> Unit | None:
+        """The unit of a quantity; None if it is not known, which has been reported."""
+        item = self.items[quantity]
+        return self.unit(item.unit) if isinstance(item, Quantity) else None
+
+    def unit_text(self, name: str) -> str:
+        """The unit of a quantity as written; empty for any other name."""
+        item = self.items.get(name)
+        return item.unit if isinstance(item, Quantity) else ""
+
+    def atoms(self) -> list[str]:
+        """The names of signals and of values."""
+        signals = (one for one, item in self.items.items() if isinstance(item, Signal))
+        return [*signals, *self.value_of]
+
+    def about_one(self) -> list[str]:
+        """The atoms about one object."""
+        found = ((name, self.behind_atom(name)) for name in self.atoms())
+        return [name for name, item in found if item is not None and len(item.parameters) == 1]
+
+    def behind_atom(self, name: str) -> Signal | Enumeration | None:
+        """The signal of that name, or the enumeration that has such a value."""
+        found = self.items.get(name)
+        return found if isinstance(found, Signal) else self.value_of.get(name)
+
+    def may_know(self, name: str) -> bool:
+        """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
+        heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
+        return self.opaque or not self.suspects.isdisjoint((name, *heads))
+
+    def may_know_type(self, name: str) -> bool:
+        """Could the type be declared by what could not be read?"""
+        return self.opaque_types or self.may_know(name)
+
+    def ancestors(self, type_name: str) -> list[str]:
+        """The type and those above it; stops where they close a circle."""
+        found: list[str] = []
+        current: str | None = type_name
+        while current is not None and current in self.types and current not in found:
+            found.append(current)
+            current = self.types[current].parent
+        return found
+
+    def fits(self, type_name: str, wanted: str) -> bool:
+        """Is every ``type_name`` a ``wanted``, as far as can be told?"""
+        above = self.ancestors(type_name)
+        unsure = wanted not in self.types or not self.uncertain.isdisjoint(above) or not above
+        return unsure or wanted in above
+
+
+def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
+    """The declarations of used vocabularies and of the file that uses them, in this order."""
+    vocabularies = {one.span.source for one in files if one.name and one.kind == "vocabulary"}
+    declared = Declared(
+        of_vocabularies=vocabularies,
+        opaque=opaque or not all(file.complete for file in files),
+    )
+    for file in files:
+        _note_suspects(declared, file)
+        _declare_types(declared, file)
+    for file in files:
+        for item in file.items:
+            if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
+                _declare_item(declared, item, _roots(declared, file))
+    _note_clashes(declared, files)
+    for (first, again), names in declared.shared.items():
+        uses = [_use_of(source, files) for source in (first, again)]
+        declared.mistakes.append(both_declare(names, *uses))
+    return declared
+
+
+def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
+    """The last line that uses a vocabulary."""
+    (name,) = (one.name.text for one in files if one.name and one.span.source == vocabulary)
+    return [use for one in files for use in one.uses if use.name.text == name][-1]
+
+
+def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
+    """Types with the name of a signal, a quantity, an enumeration or a value."""
+    order = [file.span.source for file in files]
+    for name in declared.type_spans.keys() & declared.spans.keys():
+        spans = (declared.type_spans[name], declared.spans[name])
+        first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
+        declared.twice("name", tree.Name(name, again), first)
+
+
+def _note_suspects(declared: Declared, file: tree.File) -> None:
+    for item in file.items:
+        if isinstance(item, tree.BrokenItem):
+            declared.suspects |= item.names
+            declared.opaque |= item.nameless and item.word != "type"
+            declared.opaque_types |= item.nameless and item.word == "type"
+
+
+def _declare_types(declared: Declared, file: tree.File) -> None:
+    own = [item for item in file.items if isinstance(item, tree.TypeItem)]
+    fresh: list[tree.TypeItem] = []
+    for item in own:
+        name = item.name.text
+        if name in declared.types:
+            declared.twice("type", item.name, declared.type_spans[name])
+            continue
+        declared.types[name] = ObjectType(name, item.parent.text if item.parent else None)
+        declared.type_spans[name] = item.name.span
+        fresh.append(item)
+    for item in fresh:
+        parent = item.parent
+        if parent is not None and parent.text not in declared.types:
+            _unknown_type(declared, parent)
+            declared.types[item.name.text] = ObjectType(item.name.text)
+            declared.uncertain.add(item.name.text)
+    for item in fresh:
+        _break_circle(declared, item)
+
+
+def _break_circle(declared: Declared, item: tree.TypeItem) -> None:
+    above = declared.ancestors(item.name.text)
+    top = declared.types[above[-1]].parent
+    if top != item.name.text or item.parent is None:
+        return
+    chain = " is ".join(f"`{name}`" for name in [*above, top])
+    declared.mistakes.append(
+        Diagnostic(
+            "R0304",
+            f"the types go round in a circle: {chain}",
+            item.parent.span.place,
+            expected="this closes the circle"
+            if len(above) > 1
+            else "a type cannot be above itself",
+            help="leave out `is …` at the most general of them",
+            labels=tuple(
+                Label(declared.type_spans[name].place, f"`{name}` is declared here")
+                for name in above[1:]
+            ),
+        )
+    )
+    for name in above:
+        declared.types[name] = ObjectType(name)
+        declared.uncertain.add(name)
+
+
+def _roots(declared: Declared, file: tree.File) -> list[str]:
+    """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
+    own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
+    return [
+        one.name
+        for one in declared.types.values()
+        if one.parent is None and (file.kind == "rulebook" or one.name in own)
+    ]
+
+
+def _declare_item(
+    declared: Declared,
+    item: tree.EnumerationItem | tree.SignalItem | tree.QuantityItem,
+    roots: list[str],
+) -> None:
+    match item:
+        case tree.SignalItem(signals, truth):
+            for head in signals:
+                types = _parameter_types(declared, head.name, head.parameters, roots)
+                _add(declared, head.name, Signal(head.name.text, types, truth))
+        case tree.QuantityItem(name, parameters, unit, number):
+            types = _parameter_types(declared, name, parameters, roots)
+            if declared.unit(unit) is None:
+                declared.mistakes.append(unknown_unit(item, name))
+            _add(declared, name, Quantity(name.text, types, unit, number))
+        case tree.EnumerationItem(name, parameters, values, chosen):
+            types = _parameter_types(declared, name, parameters, roots)
+            texts = tuple(dict.fromkeys(value.text for value in values))
+            default = None
+            if chosen is not None and chosen.text in texts:
+                default = chosen.text
+            elif chosen is not None:
+                declared.mistakes.append(no_such_value(name, chosen, texts))
+            enumeration = Enumeration(name.text, types, texts, default)
+            _add(declared, name, enumeration)
+            for value in values:
+                first = declared.spans.get(value.text)
+                if first is not None:
+                    declared.twice("name", value, first)
+                else:
+                    declared.spans[value.text] = value.span
+                    declared.value_of[value.text] = enumeration
+
+
+def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
+    first = declared.spans.get(name.text)
+    if first is not None:
+        declared.twice("name", name, first)
+        return
+    declared.spans[name.text] = name.span
+    declared.items[name.text] = item
+
+
+def _parameter_types(
+    declared: Declared,
+    name: tree.Name,
+    parameters: tuple[tree.Parameter, ...],
+    roots: list[str],
+) -> tuple[str, ...]:
+    types: list[str] = []
+    seen: dict[str, Span] = {}
+    for position, one in enumerate(parameters):
+        first = seen.setdefault(one.name.text, one.name.span)
+        if first is not one.name.span:
+            declared.mistakes.append(twice("parameter", one.name, first))
+        if name.text not in declared.spans:
+            declared.parameter_spans[name.text, position] = one.span
+        if one.type is not None:
+            types.append(one.type.text)
+            if one.type.text not in declared.types:
+                _unknown_type(declared, one.type)
+        elif len(roots) == 1:
+            types.append(roots[0])
+        else:
+            types.append("")
+            if not (declared.opaque or declared.opaque_types or declared.suspects):
+                declared.mistakes.append(which_type(one, roots))
+    return tuple(types)
+
+
+def _unknown_type(declared: Declared, name: tree.Name) -> None:
+    if not declared.may_know_type(name.text):
+        declared.mistakes.append(unknown_type(name, list(declared.types)))

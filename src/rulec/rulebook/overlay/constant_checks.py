@@ -1,0 +1,119 @@
+"""Parameters and definitions by themselves: what is wrong with them, whoever uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rulec.diagnostics import Diagnostic
+from rulec.rulebook.elaborate import rule_messages
+from rulec.rulebook.elaborate.elaboration import meaning, number
+from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError
+from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
+from rulec.rulebook.names.referenced_names import names_used
+from rulec.rulebook.names.rule_variables import variables_of
+from rulec.rulebook.names.scope import Anything, Call, Scope
+from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.overlay.constants_and_macros import Provisions, in_force
+from rulec.rulebook.overlay.parameter_values import parameter
+from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS
+
+
+def check_provisions(declared: Declared, provisions: Provisions) -> list[Diagnostic]:
+    """What is wrong with parameters and definitions; the broken ones are noted in ``provisions``.
+
+    Each comes after those that it uses, so that a mistake is met first where it was made.
+    """
+    mistakes: list[Diagnostic] = []
+    for name in _in_order_of_use(provisions):
+        provisions.begin()
+        if name in provisions.overlay.parameters:
+            mistakes += _check_parameter(name, declared, provisions)
+        elif name not in provisions.broken:
+            mistakes += _check_definition(provisions.definitions[name], declared, provisions)
+    return mistakes
+
+
+def _in_order_of_use(provisions: Provisions) -> list[str]:
+    """Parameters and definitions, as far as there is no circle after those that they use."""
+    uses: dict[str, list[str]] = {}
+    for name, values in provisions.overlay.parameters.items():
+        uses[name] = [one for value in values for one in names_used(value.item)]
+    for name, definition in provisions.definitions.items():
+        uses[name] = [*names_used(definition)]
+    ordered: list[str] = []
+    seen: set[str] = set()
+    for name in uses:
+        way = [(name, iter(uses[name]))] if name not in seen else []
+        seen.add(name)
+        while way:
+            here, rest = way[-1]
+            further = next((one for one in rest if one in uses and one not in seen), None)
+            if further is None:
+                ordered.append(here)
+                way.pop()
+            else:
+                seen.add(further)
+                way.append((further, iter(uses[further])))
+    return ordered
+
+
+def _check_parameter(name: str, declared: Declared, provisions: Provisions) -> Iterator[Diagnostic]:
+    values = provisions.overlay.parameters[name]
+    for value in values:
+        kind = value.item.dimension if isinstance(value.item, tree.ParamItem) else None
+        if kind is not None and kind.text not in DIMENSIONS:
+            yield unknown_dimension(kind, list(DIMENSIONS))
+    if any(in_force(value.item.in_force, provisions.at) for value in values):
+        first = values[0].item.name
+        scope = Scope(declared, provisions, {}, [])
+        try:
+            parameter(tree.AtomUse(first, (), first.span), scope, number)
+        except TooDeepError:
+            scope.report(rule_messages.too_deep("parameter", first))
+        except TooLargeError:
+            scope.report(rule_messages.too_large("parameter", first))
+        yield from scope.mistakes
+        if scope.mistakes:
+            provisions.numbers[name] = None
+
+
+def _check_definition(
+    item: tree.DefineItem, declared: Declared, provisions: Provisions
+) -> list[Diagnostic]:
+    mistakes: list[Diagnostic] = []
+    typed = tuple(one for one in item.parameters if one.type is not None)
+    variables = variables_of(typed, declared, mistakes)
+    seen: dict[str, tree.Parameter] = {}
+    for one in item.parameters:
+        first = seen.setdefault(one.name.text, one)
+        # Two with types have been found already.
+        if first is not one and (first.type is None or one.type is None):
+            mistakes.append(twice("parameter", one.name, first.span))
+    scope = Scope(
+        declared,
+        provisions,
+        variables,
+        mistakes,
+        relations={one.name.text: Anything() for one in item.parameters if one.type is None},
+        calls=(Call(item.name.text, None),),
+        taken=frozenset(one.name.text for one in item.parameters),
+        of_definition=True,
+    )
+    found = None
+    try:
+        found = meaning(item.body, scope)
+    except TooDeepError:
+        scope.report(rule_messages.too_deep("definition", item.name))
+    except TooLargeError:
+        scope.report(rule_messages.too_large("definition", item.name))
+    wrong = any(one.severity == "error" for one in mistakes)
+    if wrong or not provisions.broken.isdisjoint(names_used(item)):
+        provisions.broken.add(item.name.text)
+    elif found is not None:
+        mistakes += (
+            rule_messages.unused_parameter(item, one)
+            for one in item.parameters
+            if one.name.text not in scope.used
+        )
+    return mistakes

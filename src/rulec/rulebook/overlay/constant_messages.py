@@ -1,0 +1,119 @@
+"""What is said about uses of options, parameters and definitions, and about their values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
+from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.overlay.rulebook_overlay import Value
+from rulec.syntax import tree
+from rulec.vocabulary.units import Dimension
+
+if TYPE_CHECKING:
+    from rulec.rulebook.names.scope import Scope
+
+
+def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
+    """An option or a parameter with objects in parentheses."""
+    return Diagnostic(
+        "R0301",
+        f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} and about no object",
+        use.span.place,
+        expected="expected no parentheses",
+        help=f"write `{use.name.text}`",
+        labels=tuple(origins(use, scope)),
+    )
+
+
+def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
+    """``v(w)`` where v is an object."""
+    name = use.name.text
+    variable = scope.variables[name]
+    said = (
+        "is an object" if variable.actual == name else f"stands for the object `{variable.actual}`"
+    )
+    return Diagnostic(
+        "R0303",
+        f"`{name}` {said} and cannot be said of another one",
+        use.span.place,
+        expected="expected a signal, a value or a definition before `(`",
+        help=f"write such as `near({name})`, or give the definition a relation for it",
+        labels=(Label(variable.span.place, f"`{variable.actual}` comes from here"),),
+    )
+
+
+def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
+    """A definition used with too few or too many objects."""
+    names = ", ".join(one.name.text for one in item.parameters)
+    shape = f"{item.name.text}({names})" if names else item.name.text
+    needed, given = len(item.parameters), len(use.arguments)
+    things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
+    has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
+    return Diagnostic(
+        "R0301",
+        f"`{item.name.text}` takes {things}, and {has} given",
+        use.span.place,
+        expected=f"expected `{shape}`",
+        help="give it as many as its definition has",
+        labels=(Label(item.name.span.place, f"`{item.name.text}` is defined here"),),
+    )
+
+
+def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
+    """A definition or parameter that comes back to itself."""
+    name = use.name.text
+    first = next(at for at, call in enumerate(scope.calls) if call.name == name)
+    chain = [f"`{call.name}`" for call in scope.calls[first:]]
+    return Diagnostic(
+        "R0316",
+        f"the {kind} `{name}` is made of itself: {' uses '.join([*chain, f'`{name}`'])}",
+        use.span.place,
+        expected="this closes the circle",
+        help="say it without itself",
+    )
+
+
+def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> Diagnostic:
+    """A parameter that has no value on the day."""
+    name = use.name.text
+    return Diagnostic(
+        "R0320",
+        f"the parameter `{name}` has no value that is in force on {day}",
+        use.span.place,
+        expected="a value is needed here",
+        help=f"give it one for that day, such as `param {name} = … in force from DATE`, "
+        "or ask for another day",
+        labels=tuple(Label(value.item.span.place, "a value is here") for value in values),
+    )
+
+
+def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnostic:
+    """A parameter with two values on one day."""
+    first, second, *_ = values
+    return Diagnostic(
+        "R0320",
+        f"the parameter `{name}` has two values that are in force on {day}",
+        second.item.span.place,
+        expected="the second one",
+        help="end the first one by `in force until` the day before",
+        labels=(Label(first.item.span.place, "the first one"),),
+    )
+
+
+def parameter_of_another_kind(
+    item: tree.ParamItem | tree.SetItem, found: Number, wanted: Dimension, first: tree.Name
+) -> Diagnostic:
+    """A parameter's value of another dimension than it has."""
+    assert not isinstance(item.value, bool), "only an option is on or off"
+    return Diagnostic(
+        "R0312",
+        f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "
+        f"{kind_of(found.dimension)}",
+        item.value.span.place,
+        expected=f"expected a {wanted.name}",
+        help="check the unit",
+        labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),
+    )

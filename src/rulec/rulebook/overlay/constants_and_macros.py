@@ -1,0 +1,76 @@
+"""Options, parameters and definitions of a rulebook, as its formulas find them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
+from rulec.rulebook.model import Traffic
+from rulec.rulebook.overlay.rulebook_overlay import Overlay
+from rulec.syntax import tree
+
+
+@dataclass(slots=True)
+class Provisions:
+    """What formulas may speak of besides the vocabulary, on the day ``at`` (ISO).
+
+    ``numbers`` are the parameters' values, None for one that has none or a wrong one, filled as
+    they are asked for.
+    """
+
+    overlay: Overlay
+    at: str
+    traffic: Traffic = ""
+    numbers: dict[str, Number | None] = field(default_factory=dict)
+    broken: set[str] = field(default_factory=set)
+    """Definitions with a mistake that has been reported."""
+    parts: int = 0
+    depth: int = 0
+    """How much of the expression at hand has been looked at, and how deep in it we are."""
+
+    def begin(self) -> None:
+        """Turn to another expression."""
+        self.parts = self.depth = 0
+
+    @contextmanager
+    def one_deeper(self) -> Iterator[None]:
+        """Look at one more part. Raises TooDeepError, TooLargeError."""
+        self.parts += 1
+        if self.parts > MOST_PARTS:
+            raise TooLargeError
+        if self.depth == DEEPEST:
+            raise TooDeepError
+        self.depth += 1
+        try:
+            yield
+        finally:
+            self.depth -= 1
+
+    @property
+    def options(self) -> Mapping[str, bool]:
+        """Their values."""
+        return self.overlay.options
+
+    @property
+    def definitions(self) -> Mapping[str, tree.DefineItem]:
+        """By name."""
+        return self.overlay.definitions
+
+    def names(self) -> list[str]:
+        """All of them."""
+        found = self.overlay
+        return [*found.options, *found.parameters, *found.definitions]
+
+    def may_know(self, name: str) -> bool:
+        """Could the name be given by what could not be read?"""
+        return self.overlay.unsure or name in self.overlay.suspects
+
+
+def in_force(dates: tree.InForce | None, day: str) -> bool:
+    """Is something in force on a day (ISO)? The last day counts."""
+    if dates is None:
+        return True
+    return dates.since <= day and (not dates.until or day <= dates.until)

@@ -1,0 +1,96 @@
+"""The value of a parameter on the day in question."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.names.scope import Call, Scope
+from rulec.rulebook.overlay import constant_messages as say
+from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.overlay.rulebook_overlay import Value, never_in_force
+from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS, Dimension
+
+Evaluate = Callable[[tree.Formula, Scope], Number | None]
+
+
+def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> Number | None:
+    """The number that a parameter stands for; None if it has a mistake, which is then reported."""
+    name = use.name.text
+    if any(call.name == name for call in scope.calls):
+        scope.report(say.circle(use, "parameter", scope))
+        scope.provisions.broken |= {call.name for call in scope.calls}
+        return None
+    known = scope.provisions.numbers
+    if name not in known:
+        value = value_in_force(use, scope)
+        known[name] = None if value is None else _evaluated(use, value, scope, evaluate)
+    return known[name]
+
+
+def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
+    """The value in force: of the rulebook nearest to the one in question that has any."""
+    name, provisions = use.name.text, scope.provisions
+    values = provisions.overlay.parameters[name]
+    good = [one for one in values if in_force(one.item.in_force, provisions.at)]
+    nearest = max((one.level for one in good), default=0)
+    candidates = [one for one in good if one.level == nearest]
+    if not candidates:
+        if not any(never_in_force(one.item.in_force) for one in values):
+            scope.report(say.no_value_in_force(use, values, provisions.at))
+        return None
+    if len(candidates) > 1:
+        scope.report(say.two_values_in_force(candidates, name, provisions.at))
+    return candidates[0]
+
+
+def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate) -> Number | None:
+    name, item = use.name.text, value.item
+    assert not isinstance(item.value, bool), "only an option is on or off"
+    inner = replace(
+        scope,
+        variables={},
+        relations={},
+        calls=(*scope.calls, Call(name, None)),
+        counted=frozenset(),
+        taken=frozenset(),
+        in_moment=True,
+        used=set(),
+    )
+    with scope.provisions.one_deeper():
+        found = evaluate(item.value, inner)
+    if found is None:
+        return None
+    wanted = _dimension(name, scope)
+    if wanted is None:
+        wanted = _first_value(name, value, inner, evaluate)
+    if wanted is not None and found.dimension not in (None, wanted):
+        first = scope.provisions.overlay.declared_at[name]
+        scope.report(say.parameter_of_another_kind(item, found, wanted, first))
+        return None
+    if found.dimension is not None:
+        return found
+    # A bare 0 has the dimension that is asked for.
+    dimension = wanted or DIMENSIONS["number"]
+    zeros = ((when, replace(linear, dimension=dimension)) for when, linear in found.cases)
+    return Number(tuple(zeros))
+
+
+def _dimension(name: str, scope: Scope) -> Dimension | None:
+    """What the declaration says; None if it says nothing or nothing known."""
+    for value in scope.provisions.overlay.parameters[name]:
+        item = value.item
+        if isinstance(item, tree.ParamItem) and item.dimension is not None:
+            return DIMENSIONS.get(item.dimension.text)
+    return None
+
+
+def _first_value(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> Dimension | None:
+    """Where the declaration names no dimension, its own value has it."""
+    first = scope.provisions.overlay.parameters[name][0]
+    if first is value or isinstance(first.item.value, bool):
+        return None
+    found = evaluate(first.item.value, replace(scope, mistakes=[]))
+    return None if found is None else found.dimension

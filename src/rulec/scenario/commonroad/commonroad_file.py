@@ -1,0 +1,180 @@
+"""A CommonRoad file through commonroad-io, which is installed on request.
+
+The only file that knows the library. It reports mistakes as whatever exception they lead to, and
+talks to the terminal; both are caught here.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from math import inf
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.scenario.commonroad.country_side import side_in
+from rulec.scenario.commonroad.participants import participants_of, problem_of
+from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
+from rulec.scenario.recorded.recording import (
+    FARTHEST_M,
+    LONGEST_M,
+    Lanelet,
+    Light,
+    Mark,
+    Points,
+    Recording,
+)
+
+_MARKS: Mapping[str, Mark] = MappingProxyType(
+    {
+        "solid": "solid",
+        "broad_solid": "solid",
+        "solid_solid": "solid",
+        "dashed": "broken",
+        "broad_dashed": "broken",
+        "dashed_dashed": "broken",
+        "no_marking": "none",
+    }
+)
+"""CommonRoad's words for marks; those of two kinds say no more than nothing, for want of a side."""
+
+
+def read_commonroad(path: Path) -> Recording:
+    """What the file says.
+
+    Raises:
+        RulecError: R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
+            R0701 if the file cannot be opened.
+    """
+    check_form(path)
+    with _quiet():
+        reader = _library(path)
+        try:
+            scenario, problems = reader(path).open()
+            return _recording(path.stem, scenario, problems)
+        except (OSError, MemoryError, RulecError):
+            raise
+        except Exception as reason:  # the library has no exception of its own
+            raise _unreadable(path, reason) from None
+
+
+def _library(path: Path) -> Callable[[Path], Any]:
+    try:
+        from commonroad.common.file_reader import CommonRoadFileReader
+    except ImportError:
+        raise RulecError(
+            Diagnostic(
+                "R0611",
+                "CommonRoad scenarios take the package `commonroad-io`, which is not installed",
+                Place(str(path)),
+                help="`pip install 'rulec[commonroad]'`, some 370 MB with what it needs",
+            )
+        ) from None
+    reader: Callable[[Path], Any] = CommonRoadFileReader
+    return reader
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the library's remarks on old spellings from the terminal."""
+    disabled = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        said = io.StringIO()
+        with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(disabled)
+
+
+def _unreadable(path: Path, reason: Exception) -> RulecError:
+    words = " ".join(str(reason).split())[:200]
+    # Where something is missing the library stumbles over Python's None, which helps nobody
+    if not words or "NoneType" in words:
+        return COMMONROAD.refused(path, "something in it is missing or has an unknown name")
+    said = f"something in it does not fit (commonroad-io says {type(reason).__name__}: {words})"
+    return COMMONROAD.refused(path, said)
+
+
+def _recording(name: str, scenario: Any, problems: Any) -> Recording:
+    signs = {sign.traffic_sign_id: sign for sign in scenario.lanelet_network.traffic_signs}
+    lights = {
+        light.traffic_light_id: _light(light.traffic_light_cycle)
+        for light in scenario.lanelet_network.traffic_lights
+        if light.active
+    }
+    lanelets = {
+        str(x.lanelet_id): _lanelet(x, signs, lights) for x in scenario.lanelet_network.lanelets
+    }
+    step_s = float(scenario.dt)
+    if not 0 < step_s < inf:
+        raise ValueError(f"a time step of {step_s:g} s is none")
+    return Recording(
+        name,
+        step_s,
+        lanelets,
+        tuple(participants_of(scenario)),
+        tuple(
+            problem_of(problem, lanelets)
+            for _, problem in sorted(problems.planning_problem_dict.items())
+        ),
+        side=side_in(name),
+    )
+
+
+def _light(cycle: Any) -> Light:
+    phases = tuple((one.state.value, int(one.duration)) for one in cycle.cycle_elements)
+    if not phases or min(duration for _, duration in phases) <= 0:
+        raise ValueError("a traffic light has a phase that does not last")
+    return Light(int(cycle.time_offset), phases)
+
+
+def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]) -> Lanelet:
+    elements = [
+        element
+        for number in sorted(lanelet.traffic_signs or ())
+        if number in signs
+        for element in signs[number].traffic_sign_elements
+    ]
+    limits = [
+        float(element.additional_values[0])
+        for element in elements
+        if element.traffic_sign_element_id.name == "MAX_SPEED" and element.additional_values
+    ]
+    return Lanelet(
+        str(lanelet.lanelet_id),
+        _points(lanelet.left_vertices),
+        _points(lanelet.right_vertices),
+        _points(lanelet.center_vertices),
+        tuple(map(str, lanelet.successor or ())),
+        tuple(map(str, lanelet.predecessor or ())),
+        _id(lanelet.adj_left) if lanelet.adj_left_same_direction else None,
+        _id(lanelet.adj_right) if lanelet.adj_right_same_direction else None,
+        frozenset(kind.value for kind in lanelet.lanelet_type or ()),
+        frozenset(element.traffic_sign_element_id.name for element in elements),
+        min(limits, default=None),
+        tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
+        _MARKS.get(lanelet.line_marking_left_vertices.value),
+        _MARKS.get(lanelet.line_marking_right_vertices.value),
+    )
+
+
+def _id(number: int | None) -> str | None:
+    return None if number is None else str(number)
+
+
+def _points(vertices: Any) -> Points:
+    points = np.asarray(vertices, dtype=float)[:, :2]
+    if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
+        raise ValueError("a lanelet's bound has fewer than two points, or one that is no place")
+    if np.ptp(points, axis=0).max() > LONGEST_M:
+        raise ValueError(f"a lanelet's bound is longer than {LONGEST_M / 1000:g} km")
+    return points

@@ -1,0 +1,199 @@
+"""The participants of a recording as obstacles on ego's road."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import cos, degrees, pi
+
+import numpy as np
+
+from rulec.scenario.alternatives import weighted
+from rulec.scenario.geometry import Box
+from rulec.scenario.model import (
+    PEDESTRIAN,
+    ConstantAcceleration,
+    Footprints,
+    Motion,
+    Obstacle,
+    SignalValue,
+)
+from rulec.scenario.recorded.lane_coordinates import Lanes
+from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.scenario.recorded.recording import Participant, Points, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine
+from rulec.scenario.recorded.scene_choice import Prediction
+
+GOES_ON_S = 600.0
+"""So long after the end of a recording who was there then is taken to go on."""
+
+_FAR_M = 10.0
+_SPREAD, _MORE_M = 2.0, 3.0
+_SPEED_OVER_S = 0.5
+_AT_ONCE = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """From where a recording is looked at: along which line, where ego is on it, since when."""
+
+    recording: Recording
+    line: ReferenceLine
+    lanes: Lanes
+    ego_s: float
+    at_s: float
+    road: Box
+
+    def time(self, step: int) -> float:
+        """The scenario's time (s) of a time step; decimals as typed, so that 3 x 0.1 s is 0.3 s."""
+        return round(step * self.recording.step_s - self.at_s, 9)
+
+    @property
+    def until_s(self) -> float:
+        """The scenario's time (s) at which the recording ends."""
+        steps = (max(one.outlines) for one in self.recording.participants if not one.standing)
+        return self.time(max(steps, default=0))
+
+    def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
+        """The bounds of outlines in the scenario; None for those that are not near the road."""
+        if not outlines:
+            return []
+        counts = np.array([len(outline) for outline in outlines])
+        starts = np.append(0, np.cumsum(counts)[:-1])
+        places = np.concatenate(outlines)
+        middles = np.add.reduceat(places, starts) / counts[:, None]
+        away = np.hypot(*(places - np.repeat(middles, counts, axis=0)).T)
+        reach = np.maximum.reduceat(away, starts) * _SPREAD + _MORE_M
+        around = np.repeat(self.line.coordinates(middles)[:, 0], counts)
+        found = self.line.coordinates_near(places, around, np.repeat(reach, counts))
+        places = self.lanes.straightened(np.where(np.isnan(around)[:, None], np.nan, found))
+        low = np.minimum.reduceat(places, starts) - (self.ego_s, 0.0)
+        high = np.maximum.reduceat(places, starts) - (self.ego_s, 0.0)
+        wide = Box(
+            self.road.s_min - _FAR_M,
+            self.road.s_max + _FAR_M,
+            self.road.d_min - _FAR_M,
+            self.road.d_max + _FAR_M,
+        )
+        boxes = (
+            Box(s0, s1, d0, d1)
+            for (s0, d0), (s1, d1) in zip(low.tolist(), high.tolist(), strict=True)
+        )
+        return [box if box.overlaps(wide) else None for box in boxes]
+
+
+def obstacles(
+    view: View, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
+) -> Iterator[Obstacle]:
+    """Those that are on the road at some time from time 0 on, in the order of the file."""
+    predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
+    others = [one for one in view.recording.participants if one.id != ego]
+    for one, steps, own in _laid_out(view, others):
+        motions = [
+            (weight, motion)
+            for kind, weight in predictions.items()
+            if (motion := _motion(view, one, steps, own, kind)) is not None
+        ]
+        if not motions:
+            continue
+        expected = weighted(motions)
+        first = next(box for box in own if box is not None)
+        words = WORDS.get(one.type, WORDS["unknown"])
+        yield Obstacle(
+            one.id,
+            words[0],
+            first.s_max - first.s_min,
+            first.d_max - first.d_min,
+            expected.motion,
+            _walking_direction(view, one) if words[0] == PEDESTRIAN else None,
+            _signals(one),
+            words[1:],
+            expected.weight,
+            expected.alternatives,
+        )
+
+
+def _laid_out(
+    view: View, others: Sequence[Participant]
+) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
+    """Everybody's steps from time 0 on, and the bounds in them: many at once, but not all."""
+    waiting: list[tuple[Participant, list[int]]] = []
+    count = 0
+    for number, one in enumerate(others, 1):
+        steps = [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0]
+        waiting.append((one, steps))
+        count += len(steps)
+        if count >= _AT_ONCE or number == len(others):
+            boxes = iter(view.boxes([x.outlines[k] for x, known in waiting for k in known]))
+            for each, known in waiting:
+                yield each, known, [next(boxes) for _ in known]
+            waiting, count = [], 0
+
+
+def _motion(
+    view: View,
+    one: Participant,
+    steps: Sequence[int],
+    boxes: Sequence[Box | None],
+    prediction: Prediction,
+) -> Motion | None:
+    """None if it is never on the road, or not there at time 0 where that decides."""
+    now = boxes[0] if steps and (one.standing or view.time(steps[0]) == 0) else None
+    if one.standing or prediction == "constant" or (now and len(one.outlines) == 1):
+        if now is None:
+            return None
+        motion = _constant(view, one, steps[0], now)
+        return motion if (one.standing and now.overlaps(view.road)) or not one.standing else None
+    if not any(box is not None and box.overlaps(view.road) for box in boxes):
+        return None
+    times = [view.time(step) for step in steps]
+    known = list(boxes)
+    if times[-1] == view.until_s and known[-1] is not None:
+        times.append(times[-1] + GOES_ON_S)
+        known.append(_moved(known[-1], _speed(times[:-1], known) * GOES_ON_S))
+    return Footprints(tuple(times), tuple(known))
+
+
+def _constant(view: View, one: Participant, step: int, box: Box) -> ConstantAcceleration:
+    s, d = (box.s_min + box.s_max) / 2, (box.d_min + box.d_max) / 2
+    state = one.states.get(step)
+    if one.standing or state is None:
+        return ConstantAcceleration(s, d)
+    along = cos(state.heading - view.line.heading_at(s + view.ego_s))
+    return ConstantAcceleration(s, d, state.speed * along, state.acceleration * along)
+
+
+def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
+    """The mean speed along the road in the last half second in which it was near the road."""
+    last = boxes[-1]
+    first, since = last, times[-1]
+    for time, box in zip(reversed(times), reversed(boxes), strict=True):
+        if box is None or time < times[-1] - _SPEED_OVER_S:
+            break
+        first, since = box, time
+    if last is None or first is None or since == times[-1]:
+        return 0.0
+    return (last.s_min + last.s_max - first.s_min - first.s_max) / 2 / (times[-1] - since)
+
+
+def _moved(box: Box, along: float) -> Box:
+    return Box(box.s_min + along, box.s_max + along, box.d_min, box.d_max)
+
+
+def _walking_direction(view: View, one: Participant) -> float | None:
+    """Where a pedestrian looks who never moves; nothing if motion tells."""
+    state = next(iter(one.states.values()), None)
+    if state is None or len({(x.x, x.y) for x in one.states.values()}) > 1:
+        return None
+    place = view.line.coordinates(np.array([[state.x, state.y]]))
+    turn = state.heading - view.line.heading_at(float(np.nan_to_num(place[0, 0])))
+    return degrees((turn + pi) % (2 * pi) - pi)
+
+
+def _signals(one: Participant) -> dict[str, SignalValue]:
+    """What the file says about a participant for good; what changes is left to the rulebook."""
+    signals: dict[str, SignalValue] = {"two_wheeled": one.type in ("motorcycle", "bicycle")}
+    if one.type == "parkedVehicle":
+        signals["parked"] = True
+    return signals

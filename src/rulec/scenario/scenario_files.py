@@ -1,0 +1,97 @@
+"""Scenarios by name or from a file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
+from rulec.files import decoded, opened
+from rulec.resources import scenarios_folder
+from rulec.scenario.model import Scenario
+from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.safe_xml import is_xml
+from rulec.scenario.toml.conversion import to_scenario
+from rulec.scenario.toml.field_check import Findings
+from rulec.scenario.toml.field_locations import TomlText
+from rulec.toml import parsed_toml
+
+LARGEST_BYTES = 4_000_000
+
+_HOW = "numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables `[[obstacle]]`"
+
+
+def available_scenarios() -> tuple[str, ...]:
+    """The names of the built-in scenarios, in alphabetical order."""
+    return tuple(sorted(path.stem for path in scenarios_folder().glob("*.toml")))
+
+
+def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
+    """A built-in scenario by its name, or one from a file: TOML, or recorded traffic in XML.
+
+    A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
+    recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.
+
+    Raises:
+        RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and
+            R0602 to R0606 for what is wrong in it, all mistakes of one file together; R0610 to
+            R0615 for recorded traffic, R0613 also for a ``choice`` where there is none to be made.
+    """
+    name = os.fspath(name_or_path)
+    known = available_scenarios()
+    if isinstance(name_or_path, str) and name.casefold() in known:
+        return read_scenario(scenarios_folder() / f"{name.casefold()}.toml", choice)
+    looks_like_a_path = not isinstance(name_or_path, str) or os.sep in name or "." in name
+    if looks_like_a_path or _exists(name):
+        return read_scenario(Path(name), choice)
+    raise RulecError(
+        Diagnostic(
+            "R0601",
+            f"there is no scenario `{name}`",
+            expected=f"expected a built-in scenario ({named(known)}) or the path of a file",
+            help=did_you_mean(name, known) or "give one of these names, or a file's path",
+        )
+    )
+
+
+def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
+    """The scenario in a file. Raises RulecError like ``load_scenario``."""
+    if is_xml(path):
+        from rulec.scenario.recording_files import read_scene
+
+        return read_scene(path, choice or Choice())
+    if choice not in (None, Choice()):
+        raise RulecError(
+            Diagnostic(
+                "R0613",
+                f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
+                "chosen",
+                Place(str(path)),
+                help="leave the options for recorded scenes out, or edit the scenario's file",
+            )
+        )
+    source = _text(path)
+    return to_scenario(parsed_toml(source, "R0602", _HOW), path.stem, Findings(TomlText(source)))
+
+
+def _exists(name: str) -> bool:
+    try:
+        return bool(name) and Path(name).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _text(path: Path) -> Source:
+    way_out = f"check the path; built-in scenarios are {named(available_scenarios())}"
+    with opened(path, way_out) as stream:
+        content = stream.read(LARGEST_BYTES + 1)
+    if len(content) > LARGEST_BYTES:
+        raise RulecError(
+            Diagnostic(
+                "R0602",
+                f"the file is too large: at most {LARGEST_BYTES:,} bytes are read",
+                Place(str(path)),
+                help="keep the obstacles near ego, and the part of their motion that matters",
+            )
+        )
+    return decoded(str(path), content)

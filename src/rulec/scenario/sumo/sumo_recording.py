@@ -1,0 +1,122 @@
+"""SUMO's floating-car data and the files that belong to them, as one recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy import int64
+
+from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
+from rulec.scenario.safe_xml import short
+from rulec.scenario.sumo.companion_files import demand_of, net_of
+from rulec.scenario.sumo.fcd import FCD, FloatingCarData, read_fcd
+from rulec.scenario.sumo.lanelets import lanelets_of
+from rulec.scenario.sumo.net import Net, read_net
+from rulec.scenario.sumo.participants import participants_of, time_step
+from rulec.scenario.sumo.traffic_lights import unknown_lights
+from rulec.scenario.sumo.vehicle_types import VehicleType, known_types, type_called
+
+NEAR_M = 1000.0
+"""Nobody in the data is farther from the net than this."""
+
+_MICROSECONDS = 1_000_000
+_NAMED = 5
+
+
+def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
+    """What the data say, on the roads of a net: the one given, or the one that belongs to them.
+
+    Raises:
+        RulecError: R0610 for a file that cannot be read as what it should be, R0614 if there is no
+            net, R0615 for another road's net, R0701 if a file cannot be opened.
+    """
+    data = read_fcd(path)
+    if data.head.geographic:
+        why = "its places are geographic, degrees of longitude and latitude"
+        raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
+    if not data.courses:
+        raise FCD.refused(path, "nobody is in it")
+    net_path = net_of(path, data.head) if net_path is None else net_path
+    net = read_net(net_path)
+    _check_places(path, data, net_path, net)
+    step_s = time_step(path, data.moments)
+    types = known_types(demand_of(path, data.head))
+    unknown: set[str] = set()
+    participants = tuple(_participants(data, types, step_s, unknown))
+    lanelets = lanelets_of(net, step_s)
+    _check_near(path, participants, lanelets.values())
+    return Recording(
+        path.name.split(".")[0] or path.name,
+        step_s,
+        lanelets,
+        participants,
+        (),
+        "SUMO data",
+        net.side,
+        tuple(_remarks(unknown, net)),
+    )
+
+
+def _participants(
+    data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
+) -> Iterator[Participant]:
+    step = round(step_s * _MICROSECONDS)
+    steps = np.array(data.moments, dtype=int64) // step
+    for key, course in data.courses.items():
+        kind, known = type_called(course.type, course.element, types)
+        if not known:
+            unknown.add(f"`{short(course.type)}` ({kind.kind}, {kind.length:g} m)")
+        yield from participants_of(key, course, kind, steps, step_s)
+
+
+def _remarks(unknown: Iterable[str], net: Net) -> Iterator[str]:
+    guessed = sorted(unknown)
+    if guessed:
+        yield f"types that no file describes are taken to be as usual: {_some(guessed)}"
+    lights = [f"`{short(name)}`" for name in unknown_lights(net)]
+    if lights:
+        yield f"the programmes of these traffic lights are not known: {_some(lights)}"
+
+
+def _some(names: list[str]) -> str:
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
+
+
+def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: Net) -> None:
+    """Has the net all lanes and edges that the data name? Raises RulecError R0615."""
+    for name, (kind, line) in data.on.items():
+        if name not in (net.lanes if kind == "lane" else net.edges):
+            raise RulecError(
+                Diagnostic(
+                    "R0615",
+                    f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
+                    Place(str(path), line),
+                    help="name with --net the net that the data were made with",
+                )
+            )
+
+
+def _check_near(
+    path: Path, participants: Iterable[Participant], lanelets: Iterable[Lanelet]
+) -> None:
+    """Is everybody near the roads? Raises RulecError R0615."""
+    roads = np.concatenate([lanelet.centre for lanelet in lanelets])
+    low, high = roads.min(axis=0) - NEAR_M, roads.max(axis=0) + NEAR_M
+    for one in participants:
+        state = one.states[next(iter(one.states))]
+        place = np.array([state.x, state.y])
+        if (place < low).any() or (place > high).any():
+            raise RulecError(
+                Diagnostic(
+                    "R0615",
+                    f"`{short(one.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all roads "
+                    "of the net",
+                    Place(str(path)),
+                    help="have SUMO write places in the net's own metres, without "
+                    "--fcd-output.geo and --fcd-output.utm",
+                )
+            )

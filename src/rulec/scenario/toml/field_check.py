@@ -1,0 +1,140 @@
+"""One table of a scenario file against its schema, all of its bad fields reported."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar, get_args
+
+import msgspec
+
+from rulec.diagnostics import Diagnostic, did_you_mean, nearest_name
+from rulec.scenario.toml.field_locations import Table, TomlText
+
+T = TypeVar("T", bound=msgspec.Struct)
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """The file that is being read, and what has been found wrong with it so far."""
+
+    text: TomlText
+    errors: list[Diagnostic] = field(default_factory=list)
+
+    def add(
+        self,
+        code: str,
+        message: str,
+        table: Table,
+        key: str | None = None,
+        *,
+        expected: str = "",
+        way_out: str = "",
+    ) -> None:
+        """Note one mistake in a table, or in one of its fields; ``expected`` is a thing."""
+        place = self.text.place(table, key)
+        expected = expected and f"expected {expected}"
+        self.errors.append(Diagnostic(code, message, place, expected=expected, help=way_out))
+
+
+def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> T | None:
+    """A table as a ``kind``; None if it had mistakes, which are then in ``findings``."""
+    if not isinstance(raw, Mapping):
+        findings.add("R0604", f"{table.words} is {shown(raw)}", table, expected="a table of fields")
+        return None
+    known = {info.name: info for info in msgspec.structs.fields(kind)}
+    values: dict[str, Any] = {}
+    misspelt: set[str | None] = set()
+    before = len(findings.errors)
+    for key, value in raw.items():
+        if key not in known:
+            misspelt.add(_unknown_field(key, list(known), table, findings))
+            continue
+        try:
+            values[key] = msgspec.convert(value, known[key].type)
+        except msgspec.ValidationError as error:
+            where = _inside(str(error))
+            findings.add(
+                "R0604",
+                f"{table.words}: `{key}`{where} is {shown(_at(value, str(error)))}",
+                table,
+                key,
+                expected=words_of(known[key].type),
+            )
+    for key, info in known.items():
+        if info.required and key not in raw and key not in misspelt:
+            findings.add(
+                "R0603",
+                f"{table.words} has no `{key}`",
+                table,
+                expected=words_of(info.type),
+                way_out=table.remedy(key),
+            )
+    return kind(**values) if len(findings.errors) == before else None
+
+
+def shown(value: object) -> str:
+    """A value as the file spells it, in backquotes, shortened; tables and lists in words."""
+    match value:
+        case bool():
+            return "`true`" if value else "`false`"
+        case str():
+            return f'`"{_short(value)}"`'
+        case Mapping():
+            return "a table"
+        case list():
+            return f"a list of {len(value)}"
+        case int() if abs(value) >= 10**30:
+            return "a number of more than 30 digits"
+        case _:
+            return quoted(str(value))
+
+
+def quoted(name: str) -> str:
+    """A name in backquotes, shortened."""
+    return f"`{_short(name)}`"
+
+
+def _short(text: str) -> str:
+    short = text if len(text) <= 40 else text[:37] + "..."
+    return "".join(character if character.isprintable() else "?" for character in short)
+
+
+def words_of(kind: object) -> str:
+    """What a field is, in words: the description nearest to the outside of its type."""
+    for part in (*getattr(kind, "__metadata__", ()), *get_args(kind)):
+        if isinstance(part, msgspec.Meta):
+            if part.description:
+                return part.description
+        elif words := words_of(part):
+            return words
+    return ""
+
+
+def _unknown_field(key: str, known: list[str], table: Table, findings: Findings) -> str | None:
+    """Report a field; the known one that is probably meant, if there is one close by."""
+    findings.add(
+        "R0603",
+        f"{table.words} has a field {quoted(key)} that does not exist",
+        table,
+        key,
+        expected=f"one of {', '.join(map(quoted, known))}",
+        way_out=did_you_mean(key, known) or "leave it out",
+    )
+    return nearest_name(key, known)
+
+
+def _indices(message: str) -> list[int]:
+    path = re.search(r"at `\$([^`]*)`", message)
+    return [int(number) for number in re.findall(r"\[(\d+)\]", path.group(1))] if path else []
+
+
+def _inside(message: str) -> str:
+    return "".join(f", number {i + 1}" for i in _indices(message))
+
+
+def _at(value: Any, message: str) -> object:
+    for index in _indices(message):
+        value = value[index]
+    return value

@@ -1,0 +1,129 @@
+"""A whole file as lines: its pieces below one another, with comments and blank lines between."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from rulec.diagnostics import Source
+from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
+from rulec.syntax.formatting.alignment import align_marks, with_comments
+from rulec.syntax.formatting.comments import Comment, blank_line_before, comments_of
+from rulec.syntax.formatting.document import WIDTH, Row, lay_out
+from rulec.syntax.formatting.piece_documents import Speller
+from rulec.syntax.formatting.piece_rows import Part, Pieces
+from rulec.syntax.scanner import scan
+from rulec.syntax.split_file import FileSplitter
+
+_INDENT: Final = 2
+
+
+def arranged(source: Source) -> str:
+    """The text of a file without mistakes in its canonical form."""
+    tokens = scan(source)
+    parts = list(FileSplitter(source, tokens).split())
+    speller = Speller(deque(comments_of(source, tokens)))
+    block = _Block(source.text, speller, Pieces(source, tokens, speller), [])
+    end = len(source.text)
+    if tokens[0].text == "vocabulary":
+        name, *items = parts
+        opening, closing = tokens[name.last], tokens[-1]
+        block.add([name], 0, 0)
+        block.in_braces(items, opening.end, closing.start)
+        block.add([], closing.end, end)
+    else:
+        block.add(parts, 0, end)
+    return "".join(f"{line}\n" for line in with_comments(block.rows))
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Adds to ``rows`` what stands below one another, by ``indent`` from the left."""
+
+    text: str
+    speller: Speller
+    pieces: Pieces
+    rows: list[Row]
+    indent: int = 0
+
+    def add(self, parts: Sequence[Part], begin: int, end: int) -> None:
+        """Parts, with the comments around them from ``begin`` to ``end``."""
+        marks: list[tuple[Row | None, int]] = []
+        behind, after_rule = begin, False
+        columns = self.pieces.columns(parts)
+        for part, column in zip(parts, columns, strict=True):
+            start = self.pieces.begin(part)
+            comments = self._take(start)
+            mine = self._rows(part, column)
+            rule = isinstance(part, RulePieces) and len(mine) > 1
+            blanks = self._blanks([*(one.start for one in comments), start], behind)
+            blanks[0] = blanks[0] or after_rule
+            # The comments directly above a rule belong to it.
+            blanks[0] = blanks[0] or (rule and not any(blanks))
+            self._add_comments(comments, blanks)
+            self._add_row(mine[0], blank=blanks[-1])
+            self.rows.extend(mine[1:])
+            marks.append(self._mark(part, mine))
+            behind, after_rule = self.pieces.end(part), rule
+        align_marks(marks)
+        comments = self._take(end)
+        blanks = self._blanks([one.start for one in comments], behind)
+        self._add_comments(comments, [after_rule or blanks[0], *blanks[1:]] if blanks else [])
+
+    def in_braces(self, parts: Sequence[Part], begin: int, end: int) -> None:
+        """Behind the last row, and on lines of its own if there is anything in them."""
+        if not parts and not self.speller.holds_comment(end):
+            self.rows[-1].code += " {}"
+            return
+        self.rows[-1].code += " {"
+        self.rows[-1].opens = True
+        inner = _Block(self.text, self.speller, self.pieces, self.rows, self.indent + _INDENT)
+        inner.add(parts, begin, end)
+        self.rows.append(Row(" " * self.indent + "}"))
+
+    def _rows(self, part: Part, column: int) -> list[Row]:
+        match part:
+            case RulePieces():
+                one_line = self.pieces.one_line(part, self.indent)
+                return [Row(one_line)] if one_line else self._rule(part)
+            case ExamplePieces():
+                return lay_out(self.pieces.example(part, column), self.indent)
+            case Piece("clause"):
+                return lay_out(self.pieces.clause(part, column), self.indent)
+            case Piece():
+                return lay_out(self.pieces.item(part, column), self.indent)
+
+    def _rule(self, rule: RulePieces) -> list[Row]:
+        # The brace stands behind the head.
+        head = lay_out(self.pieces.rule_head(rule), self.indent, WIDTH - len(" {"))
+        block = _Block(self.text, self.speller, self.pieces, head, self.indent)
+        block.in_braces(rule.body, self.pieces.opening(rule).end, self.pieces.closing(rule).start)
+        return block.rows
+
+    def _take(self, until: int) -> tuple[Comment, ...]:
+        """Comments on lines of their own, after the one that trails the last row has been put."""
+        trailing, own = self.speller.take(until)
+        if trailing is not None:
+            self.rows[-1].comment = trailing
+        return own
+
+    def _blanks(self, starts: Sequence[int], behind: int) -> list[bool]:
+        """Where the author has blank lines. What stands before ``behind`` was inside a piece."""
+        return [start >= behind and blank_line_before(self.text, start) for start in starts]
+
+    def _add_comments(self, comments: Sequence[Comment], blanks: Sequence[bool]) -> None:
+        for one, blank in zip(comments, blanks):  # noqa: B905 - what follows may have one more
+            self._add_row(Row(" " * self.indent + one.text), blank=blank)
+
+    def _add_row(self, row: Row, *, blank: bool) -> None:
+        if blank and self.rows and not self.rows[-1].opens:
+            self.rows.append(Row(""))
+        self.rows.append(row)
+
+    def _mark(self, part: Part, rows: Sequence[Row]) -> tuple[Row | None, int]:
+        if isinstance(part, ExamplePieces) and len(rows) == 1:
+            brace = self.pieces.opening(part).start
+            return rows[0], brace - self.text.rfind("\n", 0, brace)
+        return None, 0

@@ -1,0 +1,160 @@
+"""Each piece of a file as rows, and the columns that pieces below one another share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, cast
+
+from rulec.diagnostics import Source
+from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
+from rulec.syntax.formatting.document import (
+    WIDTH,
+    Break,
+    Document,
+    Mark,
+    Nest,
+    group,
+    on_one_line,
+    run,
+)
+from rulec.syntax.formatting.parentheses import without_spare_parentheses
+from rulec.syntax.formatting.piece_documents import Speller, first_leaf
+from rulec.syntax.grammar import Branch, Start, parse_piece
+from rulec.syntax.keywords import CLAUSE_WORDS, FILE_WORDS, HEADER_WORDS, PROVISION_WORDS
+from rulec.syntax.scanner import Token
+
+Part = Piece | ExamplePieces | RulePieces
+
+_WORDS: Final = (
+    (frozenset(HEADER_WORDS) - frozenset(FILE_WORDS))
+    | (frozenset(PROVISION_WORDS) - {"define", "redefine"})
+    | (CLAUSE_WORDS | {"in force"})
+)
+"""What makes a column with others of its kind."""
+
+_LONGEST_WORD: Final = 7
+"""Of the words that make a column: `certainty` or `semantics` would push all others away."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """The pieces of one file, which has no mistakes, to be asked for in their order."""
+
+    source: Source
+    tokens: list[Token]
+    speller: Speller
+
+    def begin(self, part: Part) -> int:
+        """The character at which a part begins."""
+        return span_of(self.source, self.tokens, part).start
+
+    def end(self, part: Part) -> int:
+        """The character behind a part."""
+        return span_of(self.source, self.tokens, part).end
+
+    def matched(self, piece: Piece) -> Branch:
+        """What the grammar makes of a piece."""
+        span = span_of(self.source, self.tokens, piece)
+        branch = parse_piece(cast("Start", piece.kind), self.source.text, span.start, span.end)
+        assert isinstance(branch, Branch), "the file has no mistakes"
+        return without_spare_parentheses(branch)
+
+    def item(self, piece: Piece, column: int) -> Document:
+        """A header line or a provision, whose word ends at ``column``, or a declaration."""
+        node = self.matched(piece)
+        column = max(column, len(self.word(piece)) + 1)
+        match node.kind:
+            case "fact_item":
+                return self.speller.worded(node, len("fact "))
+            case "signal_item":
+                return self.speller.worded(node, len("signal "), deeper=0)
+            case "define_item" | "param_item" | "set_item":
+                broken = self._breaks_behind_equals(node)
+                return self.speller.assigned(node, column, broken=broken)
+            case _ if self.word(piece) in _WORDS:
+                return self.speller.worded(node, column, deeper=0)
+            case _:
+                return self.speller.plain(node.children, node.kind)
+
+    def clause(self, piece: Piece, column: int) -> Document:
+        """A clause, whose word ends at ``column``."""
+        node = self.matched(piece)
+        if node.kind == "in_force":
+            return self.speller.plain(node.children, node.kind)
+        return self.speller.worded(node, max(column, len(self.word(piece)) + 1))
+
+    def example(self, example: ExamplePieces, column: int) -> Document:
+        """An example on one line, or with a line for each of its states."""
+        head = self.matched(example.head)
+        column = max(column, len(self.word(example)) + 1)
+        start = (
+            self.speller.worded(head, column)
+            if len(head.children) > 1
+            else on_one_line(self.speller.plain(head.children, head.kind)).ljust(column - 1)
+        )
+        states: list[Document] = []
+        for index, piece in enumerate(example.states):
+            state = self.matched(piece)
+            gap = self.speller.gap(Break(), first_leaf(state).start)
+            states += [*([";"] if index else []), gap, self.speller.spell(state)]
+        ends = self.speller.closing_gap(" ", self.closing(example).start)
+        broken = "\n" in self.source.text[self.opening(example).start : self.end(example)]
+        return group(start, " ", Mark(), "{", Nest(2, run(*states)), ends, "}", forced=broken)
+
+    def rule_head(self, rule: RulePieces) -> Document:
+        """``hard rule NAME (variables)``."""
+        head = self.matched(rule.head)
+        return self.speller.plain(head.children, head.kind)
+
+    def one_line(self, rule: RulePieces, indent: int) -> str:
+        """A rule that was written on one line and fits there, otherwise nothing."""
+        end = self.end(rule)
+        inside = self.source.text[self.opening(rule).start : end]
+        if not rule.body or "\n" in inside or self.speller.holds_comment(end):
+            return ""
+        parts = [on_one_line(self.rule_head(rule)), "{"]
+        for part in rule.body:
+            match part:
+                case ExamplePieces():
+                    parts.append(on_one_line(self.example(part, 0)))
+                case Piece():
+                    parts.append(on_one_line(self.clause(part, 0)))
+        text = " " * indent + " ".join([*parts, "}"])
+        return text if len(text) <= WIDTH else ""
+
+    def opening(self, part: ExamplePieces | RulePieces) -> Token:
+        """The brace behind the head."""
+        return self.tokens[part.head.last]
+
+    def closing(self, part: ExamplePieces | RulePieces) -> Token:
+        """The brace at the end."""
+        return self.tokens[part.last - 1]
+
+    def word(self, part: Part) -> str:
+        """The word that a header line, a clause or an example begins with."""
+        first = part.head.first if isinstance(part, ExamplePieces | RulePieces) else part.first
+        word = self.tokens[first].text
+        return "in force" if word == "in" else word
+
+    def columns(self, parts: Sequence[Part]) -> list[int]:
+        """For each part where what its word says begins: together, but for blank lines between."""
+        columns: list[int] = []
+        together: list[int] = []
+        for index, part in enumerate(parts):
+            width = len(self.word(part)) if self.word(part) in _WORDS else 0
+            if not width or (index and self._blank_between(parts[index - 1], part)):
+                columns += [max(together, default=0) + 1] * (index - len(columns))
+                together.clear()
+            if width <= _LONGEST_WORD:
+                together.append(width)
+        return columns + [max(together, default=0) + 1] * (len(parts) - len(columns))
+
+    def _blank_between(self, before: Part, behind: Part) -> bool:
+        between = self.source.text[self.end(before) : self.begin(behind)]
+        return any(not line.strip() for line in between.split("\n")[1:-1])
+
+    def _breaks_behind_equals(self, node: Branch) -> bool:
+        equals, value = next(pair for pair in pairwise(node.children) if pair[0].kind == "EQUALS")
+        return "\n" in self.source.text[equals.end : first_leaf(value).start]

@@ -1,0 +1,51 @@
+"""Formatting that cannot change what a file means."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from rulec.diagnostics import RulecError, Source
+from rulec.syntax.formatting.comments import comments_of
+from rulec.syntax.formatting.file_layout import arranged
+from rulec.syntax.parser import parse
+from rulec.syntax.scanner import scan
+
+
+class FormattingError(Exception):
+    """The formatter has a mistake: what it made of a file is something else."""
+
+
+def format_source(source: Source) -> str:
+    """The text of a rulebook or a vocabulary in its canonical form.
+
+    It reads as the same tree, has the same words, signs and comments, and is its own canonical
+    form: all of this is checked on every call.
+
+    Raises:
+        RulecError: with all mistakes of spelling in the file; it has no such form then.
+        FormattingError: a check has failed, which is a mistake in rulec.
+    """
+    tree, mistakes = parse(source)
+    if mistakes:
+        raise RulecError(mistakes)
+    text = arranged(source)
+    made = Source(source.name, text)
+    again, mistakes = parse(made)
+    if mistakes or again != tree:
+        raise FormattingError(f"formatting would change what {source.name} means")
+    if _signs(made) != _signs(source):
+        raise FormattingError(f"formatting would change words or signs of {source.name}")
+    if _comments(made) != _comments(source):
+        raise FormattingError(f"formatting would change comments of {source.name}")
+    if arranged(made) != text:
+        raise FormattingError(f"formatting {source.name} twice is not the same as once")
+    return text
+
+
+def _signs(source: Source) -> str:
+    """All that is written, but for white space and the parentheses that may go."""
+    return "".join(token.text for token in scan(source) if token.text not in ("(", ")"))
+
+
+def _comments(source: Source) -> Counter[str]:
+    return Counter(one.text for one in comments_of(source, scan(source)))

@@ -1,0 +1,86 @@
+"""Large CSV files, read in blocks as long as they are plain: no quotes, nothing odd in a line."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator, Sequence
+from typing import IO, Any
+
+import pyarrow
+from pyarrow import compute, csv
+
+from rulec.trace.arrow.trace_cuts import Piece
+from rulec.trace.formats.table_reader import Row
+
+_BLOCK_BYTES = 1 << 22
+_LONGEST_CELL = 1 << 17
+
+_BLANK = (b"\n\n", b"\n\r\n")
+_NEVER_PLAIN = (b'"', b"\0", *_BLANK)
+
+RowsFrom = Callable[[IO[bytes], int], Iterator[Row]]
+
+
+def pieces(
+    stream: IO[bytes], columns: Sequence[str], number: int, rows_from: RowsFrom
+) -> Iterator[Piece | Iterator[Row]]:
+    """The rows of a stream from here on, as pieces for ``cut``.
+
+    ``number`` is the line that comes next. ``rows_from`` reads the stream from a line with that
+    number on row by row; it has the last word, on the first block that is not plain and the rest.
+    """
+    offset = stream.tell()
+    for lines in _in_lines(stream):
+        piece = _parsed(lines, columns) if _is_plain(lines) else None
+        if piece is None:
+            stream.seek(offset)
+            yield rows_from(stream, number)
+            return
+        yield piece
+        number += len(piece)
+        offset += len(lines)
+
+
+def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
+    """The stream in blocks of whole lines."""
+    rest: list[bytes] = []
+    while block := stream.read(_BLOCK_BYTES):
+        end = block.rfind(b"\n") + 1
+        if end:
+            yield b"".join([*rest, block[:end]])
+            rest = []
+        rest.append(block[end:])
+    if any(rest):
+        yield b"".join(rest)
+
+
+def _is_plain(lines: bytes) -> bool:
+    """Is it sure that lines and cells end where the csv module has them end?"""
+    return (
+        not lines.startswith((b"\n", b"\r", b"\xef\xbb\xbf"))
+        and not any(mark in lines for mark in _NEVER_PLAIN)
+        and lines.count(b"\r") == lines.count(b"\r\n")
+    )
+
+
+def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
+    """The cells as texts; None if there is something wrong with them."""
+    try:
+        table = csv.read_csv(
+            io.BytesIO(lines),
+            csv.ReadOptions(
+                use_threads=False, block_size=len(lines) + 1, column_names=list(columns)
+            ),
+            csv.ParseOptions(quote_char=False),
+            csv.ConvertOptions(column_types=dict.fromkeys(columns, pyarrow.string())),
+        )
+    except pyarrow.ArrowException:
+        return None
+    if any(_longest(column) > _LONGEST_CELL for column in table.columns):
+        return None
+    (piece,) = table.combine_chunks().to_batches(max_chunksize=len(table))
+    return piece
+
+
+def _longest(column: Any) -> int:
+    return compute.max(compute.binary_length(column)).as_py() or 0

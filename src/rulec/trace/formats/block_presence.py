@@ -1,0 +1,168 @@
+"""Who is in the traces of a block, and when: the columns that are no names of a vocabulary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.trace.formats.table_blocks import Block, Coded, Column, Numbers, OddTableError
+from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE, whole
+
+Rows = NDArray[np.int64]
+"""A number for each row."""
+
+NOBODY = -1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """What rows are about, and the objects of each trace.
+
+    Each row has its ``trace``, its ``step``, and the objects that it is about: ``item`` and
+    ``other`` are places among its trace's objects, in the order of their first rows, or NOBODY.
+
+    Each trace has ``names``, a ``length`` in states, a step in seconds, and from ``starts`` on its
+    objects: their ``objects`` names, ``types``, and in ``stretches`` the first and the last state
+    in which they are, twice NOBODY for those that are there all the time.
+    """
+
+    trace: Rows
+    step: Rows
+    item: Rows
+    other: Rows
+    names: list[str]
+    length: NDArray[np.int64]
+    step_s: NDArray[np.float64]
+    starts: NDArray[np.int64]
+    objects: list[str]
+    types: list[str]
+    stretches: NDArray[np.int64]
+
+    def objects_of(self, trace: int) -> tuple[str, ...]:
+        """The names of a trace's objects."""
+        return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
+
+    def shape_of(self, trace: int) -> tuple[object, ...]:
+        """What traces have in common that differ in their length and their objects' names."""
+        there = slice(self.starts[trace], self.starts[trace + 1])
+        types = tuple(self.types[there])
+        return float(self.step_s[trace]), types, self.stretches[there].tobytes()
+
+
+def outlined(block: Block) -> Outline:
+    """The outline of a block. Raises OddTableError where rows have to be looked at."""
+    starts, n_rows = block.starts, int(block.starts[-1])
+    names = _names(block.columns[TRACE])
+    trace = np.repeat(np.arange(len(block)), np.diff(starts))
+    step = _steps(block.columns[STEP])
+    is_first = np.zeros(n_rows, dtype=bool)
+    is_first[starts[:-1]] = True
+    onward = np.diff(step, prepend=0)
+    if (names.codes < 0).any() or step[is_first].any():
+        raise OddTableError
+    if not np.isin(onward[~is_first], (0, 1)).all():
+        raise OddTableError
+    length = step[starts[1:] - 1] + 1
+
+    nothing = Coded(np.full(n_rows, -1), ())
+    items = _names(block.columns.get(OBJECT, nothing))
+    types = _names(block.columns.get(TYPE, nothing))
+    others = _names(block.columns.get(OTHER, nothing))
+    is_about = items.given
+    if (types.given & ~is_about).any() or (others.given & ~is_about).any():
+        raise OddTableError
+    rows = np.flatnonzero(is_about)
+    keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
+    found, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first_row)
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    owner = trace[rows[first_row[order]]]
+    starts_of_objects = np.searchsorted(owner, np.arange(len(block) + 1))
+
+    numbers = rank[which]
+    item = np.full(n_rows, NOBODY)
+    item[rows] = numbers - starts_of_objects[trace[rows]]
+    kind = types.codes[rows[first_row[order]]]
+    told = types.codes[rows]
+    if (kind < 0).any() or ((told != kind[numbers]) & (told >= 0)).any():
+        raise OddTableError
+    # Rows are in the order of steps.
+    last_row = np.zeros(len(order), dtype=np.int64)
+    last_row[numbers] = rows
+    stretches = np.stack([step[rows[first_row[order]]], step[last_row]], axis=1)
+    is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
+    stretches[is_always] = NOBODY
+    return Outline(
+        trace,
+        step,
+        item,
+        _others(others, items, trace, (found, rank), starts_of_objects),
+        [names.values[code] for code in names.codes[starts[:-1]].tolist()],
+        length,
+        _step_s(block.columns.get(STEP_S), trace, starts),
+        starts_of_objects,
+        [items.values[code] for code in items.codes[rows[first_row[order]]].tolist()],
+        [types.values[code] for code in kind.tolist()],
+        stretches,
+    )
+
+
+def _names(column: Column) -> Coded:
+    if not isinstance(column, Coded) or not {type(one) for one in column.values} <= {str, int}:
+        raise OddTableError
+    return Coded(column.codes, [str(one) for one in column.values])
+
+
+def _steps(column: Column) -> Rows:
+    if isinstance(column, Numbers):
+        raise OddTableError
+    table = [whole(value) for value in column.values]
+    most = len(column.codes)
+    if (column.codes < 0).any() or not all(one is not None and one < most for one in table):
+        raise OddTableError
+    return np.array(table, dtype=np.int64).take(column.codes)
+
+
+def _others(
+    others: Coded,
+    items: Coded,
+    trace: Rows,
+    known: tuple[NDArray[np.int64], NDArray[np.int64]],
+    starts: NDArray[np.int64],
+) -> Rows:
+    """The places of second objects, which have rows of their own in the same trace."""
+    found = np.full(len(trace), NOBODY)
+    rows = np.flatnonzero(others.given)
+    if not len(rows):
+        return found
+    places = {name: place for place, name in enumerate(items.values)}
+    codes = np.array([places.get(name, -1) for name in others.values]).take(others.codes[rows])
+    keys, rank = known
+    wanted = trace[rows] * max(len(items.values), 1) + codes
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    if (codes < 0).any() or (keys[at] != wanted).any():
+        raise OddTableError
+    found[rows] = rank[at] - starts[trace[rows]]
+    return found
+
+
+def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Said in no row of the block, or in all."""
+    n_traces = len(starts) - 1
+    if column is None or not column.given.any():
+        return np.ones(n_traces)
+    if not column.given.all():
+        raise OddTableError
+    if isinstance(column, Numbers):
+        seconds = column.numbers
+    else:
+        if not {type(value) for value in column.values} <= {int, float}:
+            raise OddTableError
+        seconds = np.array(column.values, dtype=np.float64).take(column.codes)
+    found = seconds[starts[:-1]]
+    if not ((found > 0) & np.isfinite(found)).all() or (seconds != found[trace]).any():
+        raise OddTableError
+    return found

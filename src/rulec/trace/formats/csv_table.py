@@ -1,0 +1,195 @@
+"""Traces as CSV: rows of cells separated by commas, the columns' names first."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from importlib.util import find_spec
+from typing import IO, cast
+
+from rulec.diagnostics import Place, RulecError
+from rulec.trace.formats.chunks import in_chunks
+from rulec.trace.formats.foreign_files import foreign
+from rulec.trace.formats.stream_lines import not_utf8, placed
+from rulec.trace.formats.table_reader import TRACE, Row, Table, check_columns, problem, traces_in
+from rulec.trace.trace_model import Trace, Value
+
+LARGE_BYTES = 1 << 22
+"""Of a smaller file the rows are read sooner than Arrow is."""
+
+_LONGEST_HEAD_BYTES = 1 << 16
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_BOOLEANS = {"true": True, "false": False}
+
+
+def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
+    """The traces of a CSV file; in place of a bad one the RulecError (R0509) that says why.
+
+    A large file is read in blocks, if Arrow is installed.
+    """
+    error = _no_table(stream, file)
+    if error is not None:
+        yield [error]
+        return
+    columns = _columns_if_large(stream)
+    if columns is None:
+        yield from in_chunks(_traces(stream, file))
+        return
+    from rulec.trace.arrow.arrow_csv import pieces
+    from rulec.trace.arrow.trace_cuts import cut
+
+    plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
+    yield from cut(plain, _table(columns, file), 2, Place(file))
+
+
+def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
+    """Why a file that begins like this is no table at all, if that is so."""
+    if stream.seekable():
+        beginning = stream.read(_LONGEST_HEAD_BYTES)
+        stream.seek(-len(beginning), io.SEEK_CUR)
+    else:
+        beginning = cast("io.BufferedReader", stream).peek()
+    found = foreign(beginning)
+    if found is not None:
+        return problem(f"this is no CSV, but {found.noun}", Place(file), found.help)
+    if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
+        return problem("this is no CSV, but JSON", Place(file), "add `--format jsonl`")
+    return None
+
+
+def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
+    """The columns of a large file, which then stands behind its first line.
+
+    None if it is not large, or its first line is not plain; then nothing has been read.
+    """
+    if not stream.seekable() or find_spec("pyarrow") is None:
+        return None
+    start = stream.tell()
+    size = stream.seek(0, io.SEEK_END) - start
+    stream.seek(start)
+    if size >= LARGE_BYTES:
+        line = stream.readline(_LONGEST_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf")
+        with suppress(UnicodeDecodeError, RulecError):
+            columns = line.decode().rstrip("\r\n").split(",")
+            check_columns(columns, Place(""))
+            if line.endswith(b"\n") and not re.search(rb'["\0]|\r(?!\n)', line):
+                return columns
+        stream.seek(start)
+    return None
+
+
+def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
+    rows = _rows(stream, 1, file)
+    try:
+        number, columns = next(rows, (0, []))
+        if columns:
+            _check_separator(columns, Place(file, number))
+            check_columns(columns, Place(file, number))
+    except RulecError as error:
+        yield error
+        return
+    yield from traces_in(rows, _table(columns, file), Place(file))
+
+
+def _check_separator(columns: Sequence[str], place: Place) -> None:
+    """Raises RulecError R0509."""
+    if len(columns) == 1:
+        for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
+            if TRACE in columns[0].split(mark) and mark in columns[0]:
+                message = f"the columns' names are separated by {name}"
+                raise problem(
+                    message, place, "separate the cells by commas, and decimals by points"
+                )
+
+
+def _table(columns: Sequence[str], file: str) -> Table:
+    return Table(tuple(columns), _value, lambda line: Place(file, line), has_texts=True)
+
+
+def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
+    """The rows from line ``number`` on, the columns' names among them. Raises RulecError R0509."""
+    text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
+    lines = csv.reader(_without_null(text), strict=True)
+    before = number - 1
+    try:
+        for cells in lines:
+            if cells:
+                yield number, cells
+            number = before + lines.line_num + 1
+    except UnicodeDecodeError as reason:
+        raise _not_utf8(stream, Place(file, number), reason) from None
+    except csv.Error as reason:
+        words = next((ours for theirs, ours in _WORDS.items() if theirs in str(reason)), reason)
+        message = f"from here on the file cannot be read as CSV: {words}"
+        raise problem(message, Place(file, number), _QUOTES) from None
+    finally:
+        with suppress(ValueError):  # who has read enough may have closed the stream
+            text.detach()  # the stream is its owner's
+
+
+_WORDS = {
+    "unexpected end of data": "it ends within quotes, which have begun here",
+    "field larger than field limit": f"a cell has more than {csv.field_size_limit():,} characters",
+    "expected after": "behind closing quotes there is neither a comma nor the line's end",
+    "NUL": "it holds a null character",
+}
+_QUOTES = "what stands in quotes ends with quotes; is one missing, or has the file been cut short?"
+
+
+def _without_null(text: Iterable[str]) -> Iterator[str]:
+    for line in text:
+        if "\0" in line:
+            raise csv.Error("NUL")
+        yield line
+
+
+def _not_utf8(stream: IO[bytes], place: Place, reason: UnicodeDecodeError) -> RulecError:
+    """Which byte of which line; of a pipe, which cannot be read again, behind which place."""
+    byte, where = reason.object[reason.start], "here or further on "
+    if stream.seekable():
+        stream.seek(0)
+        for number, line in enumerate(stream, 1):
+            at = not_utf8(line)
+            if at is not None:
+                byte, where = line[at], ""
+                place = placed(Place(place.file, number), line.rstrip(b"\n"), at)
+                break
+    message = f"{where}the byte 0x{byte:02x} is not UTF-8"
+    return problem(message, place, "save the file in UTF-8")
+
+
+def _value(cell: str) -> Value:
+    truth = _BOOLEANS.get(cell)
+    if truth is not None:
+        return truth
+    return float(cell) if _NUMBER.fullmatch(cell) else cell
+
+
+def write_csv(
+    rows: Iterable[Sequence[Value | None]], columns: Sequence[str], stream: IO[bytes]
+) -> None:
+    """Write a table: its columns' names, then its rows."""
+    text = io.TextIOWrapper(stream, "utf-8", newline="")
+    try:
+        lines = csv.writer(text, lineterminator="\n")
+        lines.writerow(columns)
+        for row in rows:
+            lines.writerow([_cell(value) for value in row])
+    finally:
+        text.detach()  # which writes what is left
+
+
+def _cell(value: Value | None) -> str:
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "true" if value else "false"
+        case float():
+            return float.__repr__(value)
+        case _:
+            return str(value)

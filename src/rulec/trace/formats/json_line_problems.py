@@ -1,0 +1,120 @@
+"""Why a line of JSON is refused: where, in which words, and what helps."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import msgspec
+
+from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.diagnostics.json_problems import json_words
+from rulec.trace.formats.stream_lines import not_utf8, placed
+
+_MOST_SEARCHED = 1 << 24
+"""Of a longer line nobody is told in which state it ends."""
+
+_UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
+_REFUSED_BYTE = re.compile(r" \(byte ([0-9]+)\)")
+_MARK = re.compile(rb'\\.|["{}\[\],]', re.DOTALL)
+_CALLED = re.compile(rb'\s*:\s*([0-9]+\b|"[^"\\]{1,100}")')
+
+ONE_LINE = "write it without line breaks, as `jq -c . FILE` does"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What lines are to be: ``"trace"``, its fields, and what such a line looks like."""
+
+    name: str
+    fields: tuple[str, ...]
+    example: str
+
+    @property
+    def no_list(self) -> str:
+        """What helps who has a list of them."""
+        return f"{self.example}; `jq -c '.[]' FILE` takes a list apart"
+
+    def bad(self, message: str, place: Place, help_text: str = "") -> RulecError:
+        """The line at this place is none (R0501)."""
+        return RulecError(Diagnostic("R0501", message, place, help=help_text or self.example))
+
+    def refused(self, problem: Exception, line: bytes, place: Place) -> RulecError:
+        """Why msgspec refuses a line."""
+        what = f"this is not a {self.name}"
+        if isinstance(problem, RecursionError):
+            return self.bad(f"{what}: it is nested too deep", place)
+        at = not_utf8(line)
+        if at is not None:
+            words = f"the byte 0x{line[at]:02x} is not UTF-8"
+            return self.bad(f"{what}: {words}", placed(place, line, at), "save the file in UTF-8")
+        if is_beginning(line):
+            message = f"the line ends in the middle of a {self.name}: it has been cut short"
+            return self.bad(message, placed(place, line, len(line) - 1))
+        words = json_words(problem)
+        byte = _REFUSED_BYTE.search(words)
+        help_text = self.no_list if line.lstrip().startswith(b"[") else self.example
+        if byte is not None:
+            at = int(byte[1])
+            words = words.replace(byte[0], "")
+            place = placed(place, line, at)
+            help_text = _spelling(line[at : at + 10]) or help_text
+        unknown = _UNKNOWN_FIELD.search(str(problem))
+        if unknown is not None:
+            help_text = did_you_mean(unknown[1], self.fields) or help_text
+        return self.bad(f"{what}: {words}", place, help_text)
+
+
+def _spelling(found: bytes) -> str:
+    if found.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
+        return "JSON has no `NaN` and no infinity: a value has to be a number"
+    if found.startswith((b"'", b"True", b"False", b"None")):
+        return "in JSON texts stand in double quotes, and it is `true`, `false`, `null`"
+    return ""
+
+
+def is_beginning(line: bytes) -> bool:
+    """Is nothing wrong with a line but that it ends too early?"""
+    # In the middle of a number, such as `0.`, it takes a digit to say so.
+    return _is_truncated(line) or _is_truncated(line + b"0")
+
+
+def _is_truncated(line: bytes) -> bool:
+    try:
+        msgspec.json.decode(line)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as problem:
+        return "truncated" in str(problem)
+    return False
+
+
+def middle_of(line: bytes) -> str:
+    """In the middle of what the beginning of a trace ends, such as ``state 6 of trace `t1` ``."""
+    open_: list[int | bytes | None] = []
+    """For every list that has begun the place in it, for every object the key, if it has one."""
+    called = b""
+    begun: int | None = None
+    """Where the text that it is in has begun."""
+    for found in _MARK.finditer(line) if len(line) <= _MOST_SEARCHED else ():
+        mark = found[0]
+        if mark == b'"' and begun is None:
+            begun = found.end()
+        elif mark == b'"' and begun is not None:
+            if open_ and open_[-1] is None:
+                open_[-1] = line[begun : found.start()]
+                said = _CALLED.match(line, found.end())
+                if open_ == [b"id"] and said is not None:
+                    called = said[1].strip(b'"')
+            begun = None
+        elif begun is not None:
+            continue
+        elif mark in b"{[":
+            open_.append(None if mark == b"{" else 0)
+        elif mark in b"}]":
+            del open_[-1:]
+        elif mark == b"," and open_:
+            open_[-1] = open_[-1] + 1 if isinstance(open_[-1], int) else None
+    whole = f"trace `{called.decode('utf-8', 'replace')}`" if called else "a trace"
+    match open_:
+        case [b"states", int(number), *_]:
+            return f"state {number} of {whole}"
+    return whole

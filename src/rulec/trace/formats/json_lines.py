@@ -1,0 +1,201 @@
+"""Traces as JSON Lines: one trace a line, read and written one at a time. See docs/traces.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import IO, Any
+
+import msgspec
+
+from rulec.diagnostics import Place, RulecError
+from rulec.trace.formats.foreign_files import foreign
+from rulec.trace.formats.json_line_problems import ONE_LINE, Kind, is_beginning, middle_of
+from rulec.trace.formats.stream_lines import lines_as_they_come, placed
+from rulec.trace.trace_model import State, Trace
+
+LONGEST_LINE_BYTES = 256 << 20
+"""A longer line is refused: it is not a trace but a file that lacks its line ends."""
+
+_LONGEST_HEAD_BYTES = 1 << 16
+
+
+class _Record(msgspec.Struct, forbid_unknown_fields=True):
+    states: list[dict[str, bool | float | str | dict[str, Any]]]
+    id: str | int = ""
+    step_s: float = 1.0
+    objects: dict[str, str] = {}
+    present: dict[str, tuple[int, int]] = {}
+
+
+class _Outline(msgspec.Struct, forbid_unknown_fields=True):
+    """The same, its states not yet read."""
+
+    states: list[msgspec.Raw]
+    id: str | int = ""
+    step_s: float = 1.0
+    objects: dict[str, str] = {}
+    present: dict[str, tuple[int, int]] = {}
+
+
+_TRACE = Kind(
+    "trace",
+    _Record.__struct_fields__,
+    'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}',
+)
+_DECODER = msgspec.json.Decoder(_Record)
+_OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
+
+
+def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
+    """The traces of a stream, one per line, blank lines skipped. See ``read_chunks``."""
+    for chunk in read_chunks(stream, file):
+        yield from chunk
+
+
+def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
+    """The same, as many at a time as a block of the stream holds; of a pipe, as have arrived.
+
+    States that are written alike are the same object, as far as there is room to remember them.
+
+    Args:
+        stream: the open file.
+        file: its name, for messages.
+
+    Yields:
+        For every line a Trace, or the RulecError (R0501) that says why it is none; for a stream
+        without any trace one RulecError (R0501).
+    """
+    number = found = 0
+    read_state = _StateReader()
+    torn: _Torn | None = None
+    for lines in lines_as_they_come(stream, LONGEST_LINE_BYTES):
+        chunk: list[Trace | RulecError] = []
+        for line in lines:
+            number += 1
+            place = Place(file, number)
+            if number == 1:
+                line = line.removeprefix(b"\xef\xbb\xbf")
+                error = _no_traces(line, place)
+                if error is not None:
+                    yield [error]
+                    return
+            if line.isspace() or not line:
+                continue
+            one = _trace(line, place, read_state)
+            if torn is not None:
+                if isinstance(one, RulecError) and not line.startswith(b"{"):
+                    torn.goes_on = True
+                    continue
+                chunk.append(torn.error(at_the_end=False))
+                torn = None
+            if isinstance(one, RulecError) and is_beginning(line):
+                torn = _Torn(line, place)
+            else:
+                chunk.append(one)
+        found += len(chunk)
+        if chunk:
+            yield chunk
+    if torn is not None:
+        yield [torn.error(at_the_end=True)]
+    elif not found:
+        yield [_TRACE.bad("there is no trace in this file: it is empty", Place(file))]
+
+
+@dataclass(slots=True)
+class _Torn:
+    """A line that is the beginning of a trace. Does what follows look as if it went on there?"""
+
+    line: bytes
+    place: Place
+    goes_on: bool = False
+
+    def error(self, *, at_the_end: bool) -> RulecError:
+        """What is wrong with it, which only shows in what follows."""
+        what = f"the line ends in the middle of {middle_of(self.line)}"
+        place = placed(self.place, self.line, len(self.line) - 1)
+        if self.goes_on:
+            return _TRACE.bad(f"{what} and goes on below: a trace is one line", place, ONE_LINE)
+        if at_the_end:
+            message = f"{what.replace('line', 'file', 1)}: it has been cut short"
+            return _TRACE.bad(message, place, "write or copy the file again")
+        return _TRACE.bad(f"{what}: it has been cut short", place, "write it again, or delete it")
+
+
+def _no_traces(first: bytes, place: Place) -> RulecError | None:
+    """Why a file with this first line has no traces in it at all, if that is so."""
+    found = foreign(first)
+    if found is not None:
+        return _TRACE.bad(f"these are no traces, but {found.noun}", Place(place.file), found.help)
+    if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
+        return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")
+    if first.startswith(b"[") and is_beginning(first):
+        message = "these are no traces, a line each, but a list in JSON"
+        return _TRACE.bad(message, place, _TRACE.no_list)
+    return None
+
+
+def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | RulecError:
+    record: _Outline | _Record
+    if len(line) > LONGEST_LINE_BYTES:
+        return _TRACE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
+    if read_state.pays:
+        try:
+            record = _OUTLINE_DECODER.decode(line)
+            states = tuple([read_state[bytes(raw)] for raw in record.states])
+            return _made(record, states, place)
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+            pass  # read as a whole, it says what is wrong
+    try:
+        record = _DECODER.decode(line)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as problem:
+        return _TRACE.refused(problem, line, place)
+    return _made(record, tuple(record.states), place)
+
+
+def _made(record: _Outline | _Record, states: tuple[State, ...], place: Place) -> Trace:
+    name = str(record.id) or f"line {place.line}"
+    return Trace(name, record.step_s, record.objects, states, record.present, place)
+
+
+class _StateReader(dict[bytes, State]):
+    """Reads each state once, however often it is met, as long as that happens."""
+
+    _MOST = 1 << 16
+    _LONGEST = 1 << 12
+    _DECODE = msgspec.json.Decoder(dict[str, bool | float | str | dict[str, Any]]).decode
+
+    pays = True
+    _met = 0
+
+    def __missing__(self, text: bytes) -> State:
+        state = self._DECODE(text)
+        self._met += 1
+        if self._met > self._MOST or len(text) > self._LONGEST:
+            # There is no end to them: what is remembered is of no use.
+            self.pays = False
+            self.clear()
+        else:
+            self[text] = state
+        return state
+
+
+def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
+    """Write traces, one a line, and return how many."""
+    encoder = msgspec.json.Encoder()
+    count = 0
+    for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
+        stream.write(encoder.encode(as_record(trace)))
+        stream.write(b"\n")
+    return count
+
+
+def as_record(trace: Trace) -> dict[str, Any]:
+    """A trace as the object of its line."""
+    record: dict[str, Any] = {
+        "id": trace.id,
+        "step_s": trace.step_s,
+        "objects": trace.objects,
+        "states": trace.states,
+    }
+    return {**record, "present": trace.present} if trace.present else record

@@ -1,0 +1,268 @@
+"""Traces as rows of a table: one for each state, and for each object in it. See docs/traces.md."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.trace.trace_model import State, Trace, Value
+
+TRACE, STEP, STEP_S = "trace", "step", "step_s"
+OBJECT, TYPE, OTHER = "object", "type", "other"
+OWN = (TRACE, STEP, STEP_S, OBJECT, TYPE, OTHER)
+"""The columns that are no names of a vocabulary."""
+
+NAMES = frozenset((TRACE, STEP, OBJECT, TYPE, OTHER))
+"""Those of them that tell things apart."""
+
+Row = tuple[int, Sequence[Any]]
+"""Its number, for messages, and its cells; an empty cell is None or the empty text."""
+
+_MOST_REMEMBERED = 1 << 16
+
+
+@dataclass(frozen=True)
+class Table:
+    """What the cells of a table's rows are.
+
+    ``columns`` are the names of all columns. ``value`` makes a value of a cell that is not empty,
+    ``place`` tells where a row is by its number. ``has_texts``: all cells are texts.
+    """
+
+    columns: tuple[str, ...]
+    value: Callable[[Any], Value]
+    place: Callable[[int], Place]
+    has_texts: bool = False
+
+    @cached_property
+    def at(self) -> dict[str, int]:
+        """Where each column is."""
+        return {name: place for place, name in enumerate(self.columns)}
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The columns that are names of a vocabulary."""
+        return tuple(name for name in self.columns if name not in OWN)
+
+    def cell(self, cells: Sequence[Any], column: str) -> Any:
+        """A row's cell in a column that may be missing."""
+        place = self.at.get(column)
+        return None if place is None else cells[place]
+
+
+def check_columns(columns: Sequence[str], place: Place) -> None:
+    """The columns have names, each its own, and say which trace and which step a row is of.
+
+    Raises RulecError R0509.
+    """
+    for name in columns:
+        if not name:
+            raise problem("a column has no name", place)
+        if columns.count(name) > 1:
+            raise problem(f"there are two columns `{name}`", place)
+    for name in (TRACE, STEP):
+        if name not in columns:
+            near = did_you_mean(name, columns)
+            raise problem(f"there is no column `{name}`", place, near or _FORM)
+
+
+_FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones are named for values"
+
+
+def problem(message: str, place: Place, help_text: str = "") -> RulecError:
+    """Rows that are no traces (R0509)."""
+    return RulecError(Diagnostic("R0509", message, place, help=help_text))
+
+
+def traces_in(rows: Iterable[Row], table: Table, file: Place) -> Iterator[Trace | RulecError]:
+    """The traces of a table; in place of one whose rows are wrong, the first RulecError (R0509).
+
+    If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
+    without any trace gives one RulecError, about the ``file``.
+    """
+    building: _Building | None = None
+    known: dict[object, State] = {}
+    trace_at = table.at.get(TRACE, 0)
+    try:
+        for number, cells in rows:
+            name = cells[trace_at] if trace_at < len(cells) else None
+            if building is None or building.name != name:
+                if building is not None:
+                    yield building.finished()
+                building = _Building(name, table, table.place(number), known)
+            building.add(number, cells)
+    except RulecError as error:
+        # Who knows what else there was about the last trace.
+        yield error
+        return
+    yield (
+        problem("there is no trace in this file", file, _FORM)
+        if building is None
+        else building.finished()
+    )
+
+
+@dataclass(slots=True)
+class _Building:
+    """A trace whose rows are being read."""
+
+    name: Any
+    table: Table
+    place: Place
+    known: dict[object, State]
+    states: list[State] = field(default_factory=list)
+    objects: dict[str, str] = field(default_factory=dict)
+    first: dict[str, int] = field(default_factory=dict)
+    last: dict[str, int] = field(default_factory=dict)
+    step_s: float | None = None
+    now: list[Row] = field(default_factory=list)
+    error: RulecError | None = None
+
+    def add(self, number: int, cells: Sequence[Any]) -> None:
+        """Read a row, unless one before it was wrong."""
+        if self.error is not None:
+            return
+        try:
+            self._add(number, cells)
+        except RulecError as error:
+            self.error = error
+
+    def finished(self) -> Trace | RulecError:
+        """The trace, or what is wrong with it."""
+        try:
+            if self.error is None:
+                self._end_state()
+        except RulecError as error:
+            self.error = error
+        if self.error is not None:
+            return self.error
+        last = len(self.states) - 1
+        present = {
+            name: (first, self.last[name])
+            for name, first in self.first.items()
+            if (first, self.last[name]) != (0, last)
+        }
+        step_s = 1.0 if self.step_s is None else self.step_s
+        name = str(self.name)
+        return Trace(name, step_s, self.objects, tuple(self.states), present, self.place)
+
+    def _add(self, number: int, cells: Sequence[Any]) -> None:
+        table = self.table
+        if len(cells) != len(table.columns):
+            found = f"{len(cells)} cells; there are {len(table.columns)} columns"
+            few = "there is a cell for every column; has the file been cut short?"
+            many = "a text with a comma in it stands in quotes"
+            help_text = few if len(cells) < len(table.columns) else many
+            raise self._problem(f"this row has {found}", number, help_text)
+        if is_empty(self.name):
+            raise self._problem("this row does not say of which trace it is", number)
+        self._go_to(cells[table.at[STEP]], number)
+        if STEP_S in table.at:
+            self._last(cells[table.at[STEP_S]], number)
+        self._appear(cells, number)
+        self.now.append((number, cells))
+
+    def _go_to(self, step: Any, number: int) -> None:
+        found = whole(step)
+        current = len(self.states) if self.now else -1
+        if found == current + 1:
+            if self.now:
+                self._end_state()
+        elif found is None or found != current:
+            wanted = "0" if current < 0 else f"{current} or {current + 1}"
+            message = f"the step is {_shown(step)}; here it is {wanted}"
+            help_text = "the rows of a trace stand together, in the order of its steps, from 0 on"
+            raise self._problem(message, number, help_text)
+
+    def _last(self, step_s: Any, number: int) -> None:
+        if is_empty(step_s):
+            return
+        value = self.table.value(step_s)
+        if isinstance(value, bool | str):
+            raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
+        if self.step_s is not None and self.step_s != value:
+            message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
+            raise self._problem(message, number)
+        self.step_s = value
+
+    def _appear(self, cells: Sequence[Any], number: int) -> None:
+        cell = self.table.cell
+        item, kind = cell(cells, OBJECT), cell(cells, TYPE)
+        if is_empty(item):
+            for column in (TYPE, OTHER):
+                if not is_empty(cell(cells, column)):
+                    raise self._problem(f"this row has a `{column}`, but no `object`", number)
+            return
+        name = str(item)
+        if name not in self.objects:
+            if is_empty(kind):
+                message = f"the first row of object `{name}` does not say its `type`"
+                raise self._problem(message, number)
+            self.objects[name] = str(kind)
+            self.first[name] = len(self.states)
+        elif not is_empty(kind) and str(kind) != self.objects[name]:
+            message = f"object `{name}` is of type `{kind}`; before it is of `{self.objects[name]}`"
+            raise self._problem(message, number)
+        self.last[name] = len(self.states)
+
+    def _end_state(self) -> None:
+        columns = [
+            self.table.at[one] for one in (OBJECT, OTHER, *self.table.names) if one in self.table.at
+        ]
+        key = tuple([tuple([cells[one] for one in columns]) for _, cells in self.now])
+        state = self.known.get(key)
+        if state is None:
+            state = self._state()
+            if len(self.known) < _MOST_REMEMBERED:
+                self.known[key] = state
+        self.states.append(state)
+        self.now = []
+
+    def _state(self) -> State:
+        """The state that the rows of a step make."""
+        table = self.table
+        state: dict[str, Any] = {}
+        for number, cells in self.now:
+            items = [table.cell(cells, one) for one in (OBJECT, OTHER)]
+            path = [str(one) for one in items if not is_empty(one)]
+            for name in table.names:
+                cell = table.cell(cells, name)
+                if is_empty(cell):
+                    continue
+                *before, last = (name, *path)
+                inner = state
+                for key in before:
+                    inner = inner.setdefault(key, {})
+                    if not isinstance(inner, dict):
+                        raise self._twice(name, path, number)
+                if last in inner:
+                    raise self._twice(name, path, number)
+                inner[last] = table.value(cell)
+        return state
+
+    def _twice(self, name: str, path: Sequence[str], number: int) -> RulecError:
+        about = f" for `{', '.join(path)}`" if path else ""
+        return self._problem(f"step {len(self.states)} gives `{name}` twice{about}", number)
+
+    def _problem(self, message: str, number: int, help_text: str = "") -> RulecError:
+        return problem(message, self.table.place(number), help_text)
+
+
+def is_empty(cell: Any) -> bool:
+    """Does a cell say nothing?"""
+    return cell is None or cell == ""
+
+
+def whole(cell: Any) -> int | None:
+    """The number of a step, as a number or as its digits; None if it is none."""
+    if isinstance(cell, str):
+        return int(cell) if cell.isascii() and cell.isdigit() and len(cell) < 19 else None
+    return cell if isinstance(cell, int) and not isinstance(cell, bool) else None
+
+
+def _shown(cell: Any) -> str:
+    text = "empty" if is_empty(cell) else f"`{cell}`"
+    return text if len(text) <= 60 else f"{text[:60]}…`"

@@ -1,0 +1,85 @@
+"""The formats of files of traces: which one a file has, reading and writing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+from pathlib import Path, PurePath
+from typing import IO, Literal, get_args
+
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.trace.formats import json_lines
+from rulec.trace.formats.table_writer import Kinds, columns_for, rows_of
+from rulec.trace.trace_model import Trace
+
+Format = Literal["jsonl", "csv", "parquet"]
+FORMATS: tuple[Format, ...] = get_args(Format)
+
+
+def format_of(file: str) -> Format:
+    """The format that the end of a file's name says; JSON Lines if it says none."""
+    match PurePath(file).suffix.lower():
+        case ".csv":
+            return "csv"
+        case ".parquet" | ".pq":
+            return "parquet"
+    return "jsonl"
+
+
+def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
+    """The traces of a file one by one; in place of a bad one, what is wrong with it.
+
+    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
+    """
+    with opened(Path(path)) as stream:
+        for chunk in read_chunks(stream, str(path), format_of(str(path))):
+            yield from chunk
+
+
+def read_chunks(
+    stream: IO[bytes], file: str, form: Format
+) -> Iterator[Sequence[Trace | RulecError]]:
+    """The traces of a stream, some at a time; in place of a bad one what is wrong with it.
+
+    Of a table they may be a ``Block``.
+
+    Raises RulecError R0706 for Parquet that cannot be read here.
+    """
+    if form == "jsonl":
+        yield from json_lines.read_chunks(stream, file)
+        return
+    if form == "parquet":
+        from rulec.trace.arrow.parquet import read_parquet
+
+        yield from read_parquet(stream, file)
+        return
+    from rulec.trace.formats.csv_table import read_csv
+
+    yield from read_csv(stream, file)
+
+
+def write_traces(
+    traces: Iterable[Trace], stream: IO[bytes], file: str, form: Format, kinds: Kinds
+) -> None:
+    """Write traces; ``kinds`` are those of all names that they speak of.
+
+    Raises:
+        RulecError: R0706 if Parquet cannot be written here.
+        ValueError: if a name cannot be a column.
+    """
+    if form == "jsonl":
+        json_lines.write_traces(traces, stream)
+        return
+    columns = columns_for(kinds)
+    rows = chain.from_iterable(rows_of(trace, list(kinds)) for trace in traces)
+    if form == "csv":
+        from rulec.trace.formats.csv_table import write_csv
+
+        write_csv(rows, columns, stream)
+        return
+    from rulec.trace.arrow.parquet import write_parquet
+
+    own = {"step": int, "step_s": float}
+    types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]
+    write_parquet(rows, types, stream, file)

@@ -1,0 +1,120 @@
+"""Many traces as columns: one array for each thing that their states tell.
+
+The states of all traces stand one after the other in *time-major* order: the first states of all
+traces, then the second states of those that have one, and so on, longer traces first. So the states
+of one step lie side by side, whatever the traces' lengths, and nothing is padded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.trace.trace_model import State
+
+Key = tuple[str, tuple[str, ...]]
+"""A name of the vocabulary, and the objects that it is about."""
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """Where the states of many traces stand in a column.
+
+    ``lengths`` (int64, one for each trace) are how many states the traces have: 1 or more, in
+    descending order. ``starts`` (int64, one more than the longest trace has states): the states of
+    step t stand at ``starts[t]`` to ``starts[t + 1]``, that of trace i at ``starts[t] + i``.
+    """
+
+    lengths: NDArray[np.int64]
+    starts: NDArray[np.int64]
+
+    @property
+    def n_traces(self) -> int:
+        """How many traces there are."""
+        return len(self.lengths)
+
+    @property
+    def n_steps(self) -> int:
+        """How many states the longest trace has."""
+        return len(self.starts) - 1
+
+    @property
+    def n_states(self) -> int:
+        """How many states all traces have together."""
+        return int(self.starts[-1])
+
+    def active(self, step: int) -> int:
+        """How many traces have this step; they are the first ones."""
+        return int(self.starts[step + 1] - self.starts[step]) if step < self.n_steps else 0
+
+    def places(self, trace: int, first: int = 0, last: int | None = None) -> NDArray[np.int64]:
+        """Where the states of a trace stand, from one to another, or to its end."""
+        end = int(self.lengths[trace]) if last is None else last + 1
+        found: NDArray[np.int64] = self.starts[first:end] + trace
+        return found
+
+    def traces_at(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The traces whose states stand at these places."""
+        steps = np.searchsorted(self.starts, places, side="right") - 1
+        found: NDArray[np.int64] = places - self.starts[steps]
+        return found
+
+
+def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
+    """The layout of traces of these lengths. ValueError unless they descend and end above 0."""
+    found = np.asarray(lengths, dtype=np.int64)
+    if found.ndim != 1 or (len(found) and found[-1] < 1) or (np.diff(found) > 0).any():
+        raise ValueError("lengths of traces descend, and each is at least 1")
+    longest = int(found[0]) if len(found) else 0
+    # At step t those are active that are longer than t.
+    active = len(found) - np.searchsorted(found[::-1], np.arange(longest), side="right")
+    return Layout(found, np.concatenate([[0], np.cumsum(active)]).astype(np.int64))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TraceColumns:
+    """Traces over the same objects.
+
+    ``values`` has an array of ``layout.n_states`` entries for each ``Key``: Booleans (``bool``) for
+    a signal, places in the declared ``values`` (``uint8`` or wider) for an enumeration, numbers
+    (``float64``, each standing for the decimal that Python writes for it) for a quantity. What has
+    no array takes its declared default in every state. ``objects`` maps object to type, ``present``
+    an object that is not there all the time to its first and last step (from 0, inclusive), as in a
+    ``Trace``. States are ``step_s`` seconds apart.
+    """
+
+    layout: Layout
+    values: Mapping[Key, Array]
+    objects: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    present: Mapping[str, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    step_s: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TraceCells:
+    """Traces as walks: each state is one of a few ``states``.
+
+    ``cells`` (unsigned integers, ``layout.n_states`` of them) are places in ``states``. ``there``
+    has for each of these the objects that are there in it, with their types; it is empty if all
+    are there in all. The rest is as in ``TraceColumns``.
+    """
+
+    layout: Layout
+    cells: Array
+    states: tuple[State, ...]
+    objects: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    present: Mapping[str, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    there: tuple[Mapping[str, str], ...] = ()
+    step_s: float = 1.0
+
+
+def smallest_unsigned(n_values: int) -> np.dtype[Any]:
+    """The narrowest unsigned integers that tell so many values apart."""
+    return np.min_scalar_type(max(n_values - 1, 0))

@@ -1,0 +1,50 @@
+"""What every trace has to be, whatever its vocabulary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.trace.trace_model import Trace
+
+
+def check_trace(trace: Trace) -> None:
+    """The trace has states, a step, and objects that are there when it says they are.
+
+    Raises:
+        RulecError: R0501, R0505 or R0506, with the trace's place.
+    """
+    check_frame(trace)
+    for number, state in enumerate(trace.states):
+        # Asking for a mapping takes far longer than asking for a dictionary.
+        if type(state) is not dict and not isinstance(state, Mapping):
+            raise _error("R0501", f"state {number} is no object of names and values", trace)
+    check_presence(trace)
+
+
+def check_frame(trace: Trace) -> None:
+    """As ``check_trace``, of all but the states and who is there."""
+    if not trace.states:
+        raise _error("R0506", "the trace has no states; it needs at least one to judge", trace)
+    if not 0 < trace.step_s < math.inf:
+        message = f"`step_s` is {float(trace.step_s):g}; it has to be a number of seconds above 0"
+        raise _error("R0501", message, trace)
+
+
+def check_presence(trace: Trace) -> None:
+    """As ``check_trace``, of who is there."""
+    for name, (first, last) in trace.present.items():
+        if name not in trace.objects:
+            message = f"`present` speaks of `{name}`, which is not among the trace's objects"
+            raise _error("R0505", message, trace)
+        if not 0 <= first <= last < len(trace.states):
+            message = (
+                f"`present` has `{name}` in states {first} to {last}; "
+                f"the trace has states 0 to {len(trace.states) - 1}"
+            )
+            raise _error("R0505", message, trace)
+
+
+def _error(code: str, message: str, trace: Trace) -> RulecError:
+    return RulecError(Diagnostic(code, message, trace.place))

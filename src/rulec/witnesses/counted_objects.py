@@ -1,0 +1,213 @@
+"""Further objects, that are there so that a rule's counts come out as wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from math import ceil
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.logic.formula import Count, Formula, Quantity
+from rulec.logic.free_names import variables_of
+from rulec.witnesses.letter_functions import body_of, speaks_of_extra, truths_of
+from rulec.witnesses.object_universe import EXTRA, Scene, counts_in
+from rulec.witnesses.state_synthesis import Key, Situation, Value, numbers_for, value_of
+from rulec.witnesses.undecided import UndecidedError
+
+MOST_COMPANY = 40
+"""So many objects can be there besides those that rules speak of."""
+
+MOST_TRIED = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class Companion:
+    """A further object: its type, which counts it adds to, and what a state says of it."""
+
+    type: str
+    adds: tuple[int, ...]
+    values: Mapping[Key, Value]
+
+
+Company = tuple[Companion, ...]
+
+
+def company_for(situation: Situation, scene: Scene) -> Company | None:
+    """As few further objects as make the counts come out; None if none do."""
+    counts = _wanted(situation)
+    if not counts:
+        return ()
+    kinds = kinds_of(situation, scene)
+    enough = [_enough(count, situation) for count in counts]
+    start = tuple(dict(situation.counted)[count] for count in counts)
+    waiting: list[tuple[tuple[int, ...], Company]] = [(start, ())]
+    seen = {start}
+    for sums, company in waiting:
+        if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
+            return company
+        if len(company) == MOST_COMPANY:
+            raise UndecidedError(f"it takes more than {MOST_COMPANY} objects to be counted")
+        for kind in kinds:
+            after = tuple(
+                min(a + b, most) for a, b, most in zip(sums, kind.adds, enough, strict=True)
+            )
+            if after not in seen:
+                seen.add(after)
+                waiting.append((after, (*company, kind)))
+        if len(seen) > MOST_TRIED:
+            raise UndecidedError("too many ways to count objects have to be told apart")
+    return None
+
+
+def company_of(situation: Situation, scene: Scene, types: Sequence[str]) -> Company | None:
+    """One companion of each of these types, so that the counts come out; None if they cannot."""
+    counts = _wanted(situation)
+    kinds = kinds_of(situation, scene, types) if types else []
+    start = tuple(dict(situation.counted)[count] for count in counts)
+    reached: dict[tuple[int, ...], Company] = {start: ()}
+    for wanted in types:
+        following: dict[tuple[int, ...], Company] = {}
+        for sums, company in reached.items():
+            for kind in kinds:
+                if kind.type == wanted:
+                    after = tuple(a + b for a, b in zip(sums, kind.adds, strict=True))
+                    following.setdefault(after, (*company, kind))
+        reached = following
+    for sums, company in reached.items():
+        if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
+            return company
+    return None
+
+
+def _enough(count: Count, situation: Situation) -> int:
+    """From where on it makes no difference how many more are counted, if there is such a number."""
+    most = 0
+    for read, _ in situation.sides:
+        if any(term == count for _, term in read.terms):
+            if len(read.terms) > 1:
+                return MOST_COMPANY + 1
+            most = max(most, *(ceil(one.limit) + 1 for one in read.thresholds))
+    return most
+
+
+def _wanted(situation: Situation) -> list[Count]:
+    return list(
+        dict.fromkeys(
+            term for read, _ in situation.sides for _, term in read.terms if isinstance(term, Count)
+        )
+    )
+
+
+def _comes_out(situation: Situation, scene: Scene, counted: Mapping[Count, int]) -> bool:
+    for read, digit in situation.sides:
+        total = Fraction(0)
+        for factor, term in read.terms:
+            if isinstance(term, Count):
+                total += factor * counted[term]
+            else:
+                total += factor * situation.number(term, scene.vocabulary)
+        if read.digit(total) != digit:
+            return False
+    return True
+
+
+def kinds_of(situation: Situation, scene: Scene, types: Sequence[str] = ()) -> list[Companion]:
+    """What a further object could be, as far as the counts tell; the most general types first.
+
+    That is of any type that is counted, or one of ``types``, which may be there to be counted in
+    another state.
+    """
+    vocabulary = scene.vocabulary
+    counts = _wanted(situation)
+    found: dict[tuple[str, tuple[int, ...]], Companion] = {}
+    fitting = [
+        kind
+        for kind in vocabulary.types
+        if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
+    ]
+    for kind in sorted(fitting, key=lambda one: len(list(vocabulary.ancestors(one)))):
+        for one in _of_type(kind, counts, situation, scene):
+            found.setdefault((kind, one.adds), one)
+    return list(found.values())
+
+
+def _of_type(
+    kind: str, counts: Sequence[Count], situation: Situation, scene: Scene
+) -> Iterator[Companion]:
+    vocabulary = scene.vocabulary
+    asked = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
+    bodies = [body_of(count, EXTRA) for count in asked]
+    known = [*_facts_about(kind, scene)]
+    reads, truths = truths_of([*bodies, *known], vocabulary)
+    choices: list[Sequence[int]] = [
+        range(read.size) if speaks_of_extra(read) else (_digit(read, situation, scene),)
+        for read in reads
+    ]
+    for digits in product(*choices):
+        letter, stride = 0, 1
+        for read, digit in zip(reads, digits, strict=True):
+            letter += stride * digit
+            stride *= read.size
+        values = [bool(one >> letter & 1) for one in truths]
+        if not all(values[len(bodies) :]):
+            continue
+        said = _said(list(zip(reads, digits, strict=True)), situation, scene)
+        if said is not None:
+            holds = dict(zip(asked, values, strict=False))
+            yield Companion(kind, tuple(int(holds.get(one, False)) for one in counts), said)
+
+
+def _facts_about(kind: str, scene: Scene) -> Iterator[Formula]:
+    with_it = replace(scene, objects={**scene.objects, EXTRA: kind})
+    for one in with_it.fact_formulas():
+        if not any(True for _ in counts_in(one)) and EXTRA in variables_of(one):
+            yield one
+
+
+def _digit(read: Read | NumberRead, situation: Situation, scene: Scene) -> int:
+    if isinstance(read, Read):
+        return read.digit(situation.value((read.name, read.variables), scene.vocabulary))
+    total = Fraction(0)
+    for factor, term in read.terms:
+        assert isinstance(term, Quantity), "no count stands inside another one"
+        total += factor * situation.number(term, scene.vocabulary)
+    return read.digit(total)
+
+
+def _said(
+    digits: Sequence[tuple[Read | NumberRead, int]], situation: Situation, scene: Scene
+) -> dict[Key, Value] | None:
+    """What a state says of the object so that the reads come out so; None if it cannot."""
+    values: dict[Key, Value] = {}
+    sides = []
+    for read, digit in digits:
+        if not speaks_of_extra(read):
+            continue
+        if isinstance(read, Read):
+            values[read.name, read.variables] = value_of(read, digit, scene.vocabulary)
+        else:
+            sides.append((_given(read, situation, scene), digit))
+    if sides:
+        numbers = numbers_for(sides, scene.vocabulary, {})
+        if numbers is None:
+            return None
+        for term, number in numbers.items():
+            assert isinstance(term, Quantity)
+            values[term.name, term.arguments] = float(number)
+    return values
+
+
+def _given(read: NumberRead, situation: Situation, scene: Scene) -> NumberRead:
+    """The sum over what is not known yet, the rest moved into the thresholds."""
+    known = Fraction(0)
+    left = []
+    for factor, term in read.terms:
+        if EXTRA in variables_of(term):
+            left.append((factor, term))
+        else:
+            assert isinstance(term, Quantity)
+            known += factor * situation.number(term, scene.vocabulary)
+    thresholds = tuple(replace(one, limit=one.limit - known) for one in read.thresholds)
+    return NumberRead(tuple(left), thresholds)

@@ -1,0 +1,117 @@
+"""Decision diagrams: functions of joint letters, each test once on a way, equal parts shared.
+
+A multiple-valued variant of Bryant, "Graph-based algorithms for Boolean function manipulation"
+(1986). A node is a number; nodes are equal if and only if their functions are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from math import inf
+
+from rulec.witnesses.joint_reads import View
+from rulec.witnesses.letter_functions import Column
+
+Children = tuple[int, ...]
+
+
+class _Nodes:
+    """A table of nodes, each there once."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[float, Children], int] = {}
+        self.all: list[tuple[float, Children]] = []
+
+    def add(self, level: float, children: Children) -> int:
+        """The node that tests a level; the class is the only child of one that tests nothing."""
+        if level != inf and children.count(children[0]) == len(children):
+            return children[0]
+        key = (level, children)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = len(self.all)
+            self.all.append(key)
+        return found
+
+
+class _Own:
+    """A column in the order of its own reads, the last one tested first."""
+
+    def __init__(self, letters: Sequence[int], sizes: Sequence[int]) -> None:
+        self._nodes = _Nodes()
+        self._after: dict[tuple[int, int, int], int] = {}
+        nodes = [self._nodes.add(inf, (symbol,)) for symbol in letters]
+        for place, size in enumerate(sizes):
+            nodes = [
+                self._nodes.add(place, tuple(nodes[first : first + size]))
+                for first in range(0, len(nodes), size)
+            ]
+        (self.root,) = nodes
+
+    def value(self, node: int) -> int:
+        return self._nodes.all[node][1][0]
+
+    def after(self, node: int, place: int, digit: int) -> int:
+        """What is left of a node when a read has this digit."""
+        own, children = self._nodes.all[node]
+        if own == place:
+            return children[digit]
+        if own == inf or own < place:
+            return node
+        key = (node, place, digit)
+        if key not in self._after:
+            inner = tuple(self.after(child, place, digit) for child in children)
+            self._after[key] = self._nodes.add(own, inner)
+        return self._after[key]
+
+
+@lru_cache(maxsize=1024)
+def _own(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _Own:
+    """Kept, because a rule is compared to many others."""
+    return _Own(letters, sizes)
+
+
+class Diagrams:
+    """All nodes of some diagrams over the same joint reads."""
+
+    def __init__(self) -> None:
+        self._nodes = _Nodes()
+
+    def of(self, column: Column, views: Sequence[View]) -> int:
+        """The diagram of a column: its class as a function of the joint digits."""
+        own = _own(column.letters, tuple(read.size for read in column.reads))
+        by_level: dict[int, list[tuple[int, View]]] = {}
+        for place, view in enumerate(views):
+            by_level.setdefault(view.joint, []).append((place, view))
+        levels = sorted(by_level.items())
+        known: dict[tuple[int, int], int] = {}
+
+        def built(node: int, depth: int) -> int:
+            if depth == len(levels):
+                return self._nodes.add(inf, (own.value(node),))
+            if (node, depth) not in known:
+                level, here = levels[depth]
+                children = []
+                for digit in range(len(here[0][1].digits)):
+                    inner = node
+                    for place, view in here:
+                        inner = own.after(inner, place, view.digits[digit])
+                    children.append(built(inner, depth + 1))
+                known[node, depth] = self._nodes.add(level, tuple(children))
+            return known[node, depth]
+
+        return built(own.root, 0)
+
+    def level(self, node: int) -> float:
+        """The joint read that a node tests; infinity for one that tests nothing any more."""
+        return self._nodes.all[node][0]
+
+    def child(self, node: int, level: float, digit: int) -> int:
+        """What is left of a node when a joint read has this digit."""
+        own, children = self._nodes.all[node]
+        return children[digit] if own == level else node
+
+    def value(self, node: int) -> int:
+        """The class of a node that tests nothing any more."""
+        return self._nodes.all[node][1][0]

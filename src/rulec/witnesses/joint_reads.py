@@ -1,0 +1,122 @@
+"""What several columns read together, each thing once, and what of it each of them sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
+from rulec.logic.formula import Term
+from rulec.logic.printing import term_in_words
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.witnesses.letter_functions import Column
+
+Terms = tuple[tuple[Fraction, Term], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What a column's read sees of a joint one: ``digits[joint digit]`` is its own digit."""
+
+    joint: int
+    digits: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The joint reads, numbers first, and for each column what its reads see of them."""
+
+    reads: tuple[Read | NumberRead, ...]
+    views: tuple[tuple[View, ...], ...]
+
+
+def joint_reads(columns: Sequence[Column], vocabulary: Vocabulary) -> Joint:
+    """Merge what the columns read.
+
+    A number is told apart by all their thresholds, an enumeration by all the values that any of
+    them tells apart.
+    """
+    together: dict[object, list[Read | NumberRead]] = {}
+    for column in columns:
+        for read in column.reads:
+            together.setdefault(_subject(read), []).append(read)
+    # What depends on several numbers at once is settled first, see ``alphabet``.
+    subjects = sorted(together, key=lambda one: not isinstance(together[one][0], NumberRead))
+    position = {subject: number for number, subject in enumerate(subjects)}
+    reads = tuple(_merged(together[subject], vocabulary) for subject in subjects)
+    views = tuple(
+        tuple(
+            View(position[_subject(read)], _seen(read, reads[position[_subject(read)]], vocabulary))
+            for read in column.reads
+        )
+        for column in columns
+    )
+    return Joint(reads, views)
+
+
+def _subject(read: Read | NumberRead) -> object:
+    if isinstance(read, NumberRead):
+        return normal(read)[0]
+    return read.name, read.variables
+
+
+def normal(read: NumberRead) -> tuple[Terms, Fraction]:
+    """The sum that is read as a multiple of one in normal form: that one, and the factor.
+
+    In normal form terms are sorted by their text, and the first coefficient is 1.
+    """
+    sums: dict[Term, Fraction] = {}
+    for coefficient, term in read.terms:
+        sums[term] = sums.get(term, Fraction(0)) + coefficient
+    left = sorted((term_in_words(term), term) for term in sums if sums[term])
+    if not left:
+        return (), Fraction(1)
+    factor = sums[left[0][1]]
+    return tuple((sums[term] / factor, term) for _, term in left), factor
+
+
+def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read | NumberRead:
+    first = reads[0]
+    if isinstance(first, NumberRead):
+        passed = {
+            side for read in reads if isinstance(read, NumberRead) for side, _ in _sides(read)
+        }
+        order = sorted(passed, key=lambda one: (one.limit, not one.inclusive))
+        return NumberRead(normal(first)[0], tuple(order))
+    declaration = vocabulary.declarations[first.name]
+    if not isinstance(declaration, Enumeration):
+        return first
+    told = {value for read in reads if isinstance(read, Read) for value in read.values}
+    values = tuple(value for value in declaration.values if value in told)
+    return Read(first.name, first.variables, values, len(values) < len(declaration.values))
+
+
+def _sides(read: NumberRead) -> Iterable[tuple[Threshold, bool]]:
+    """The read's thresholds as those of the normal sum; are they passed by what passes those?"""
+    _, factor = normal(read)
+    for one in read.thresholds:
+        limit = one.limit / factor
+        # The larger a sum, the smaller its negative: one passes where the other stays below.
+        upward = factor > 0
+        yield Threshold(limit, one.inclusive if upward else not one.inclusive), upward
+
+
+def _seen(
+    read: Read | NumberRead, joint: Read | NumberRead, vocabulary: Vocabulary
+) -> tuple[int, ...]:
+    if isinstance(read, NumberRead):
+        assert isinstance(joint, NumberRead)
+        places = [(joint.thresholds.index(side), upward) for side, upward in _sides(read)]
+        return tuple(
+            sum((digit > place) is upward for place, upward in places)
+            for digit in range(joint.size)
+        )
+    assert isinstance(joint, Read)
+    if not joint.values:
+        return 0, 1
+    declaration = vocabulary.declarations[read.name]
+    assert isinstance(declaration, Enumeration)
+    other = next((value for value in declaration.values if value not in joint.values), "")
+    values = (*joint.values, other) if joint.others else joint.values
+    return tuple(read.digit(value) for value in values)

@@ -1,0 +1,188 @@
+"""What looks at a state: machines, facts and counts, each as what it reads and what it makes of it.
+
+A column is a function from letters to classes, the letters in mixed radix as those of a machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rulec.automata.alphabet import count_letters, letters_with, propositions_of, reads_of
+from rulec.automata.mealy_monitor import Machine, NumberRead, Read
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Constant,
+    Count,
+    Formula,
+    Proposition,
+    Quantity,
+    Same,
+    Term,
+    Unary,
+)
+from rulec.logic.free_names import variables_of
+from rulec.logic.renaming import renamed
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.object_universe import EXTRA, Scene, counts_in
+from rulec.witnesses.undecided import UndecidedError
+
+MOST_LETTERS = 1 << 14
+"""A fact or a count that reads more than these is not looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """``letters[letter]`` is the class of a letter of these reads, which speak of objects."""
+
+    reads: tuple[Read | NumberRead, ...]
+    letters: tuple[int, ...]
+
+
+def machine_column(machine: Machine, names: Mapping[str, str], scene: Scene) -> Column:
+    """A rule's machine for a binding of its variables."""
+    reads: list[Read | NumberRead] = []
+    for read in machine.reads:
+        if isinstance(read, Read):
+            variables = tuple(names[one] for one in read.variables)
+            reads.append(Read(read.name, variables, read.values, read.others))
+        else:
+            terms = tuple(
+                (factor, _renamed_term(scene.canonical_term(term), names))
+                for factor, term in read.terms
+            )
+            reads.append(NumberRead(terms, read.thresholds))
+    return Column(tuple(reads), machine.letters)
+
+
+def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
+    if isinstance(term, Quantity):
+        return Quantity(term.name, tuple(names[one] for one in term.arguments))
+    return Count(term.variable, term.type, renamed(term.body, names))
+
+
+def fact_column(formula: Formula, vocabulary: Vocabulary) -> Column:
+    """Class 1 where the formula of one state holds, else 0. Raises UndecidedError."""
+    reads, (holds,) = truths_of([formula], vocabulary)
+    return Column(reads, tuple(holds >> letter & 1 for letter in range(count_letters(reads))))
+
+
+@dataclass(frozen=True, slots=True)
+class CountColumn:
+    """How many of the scene's own objects count: ``counted[class]``.
+
+    Its class also tells apart all else that the count depends on, besides further objects.
+    """
+
+    count: Count
+    column: Column
+    counted: tuple[int, ...]
+
+
+def count_column(count: Count, scene: Scene) -> CountColumn:
+    """The column of a count. Raises UndecidedError for a count in which others stand."""
+    if any(True for _ in counts_in(count.body)):
+        raise UndecidedError("a count stands inside another one")
+    fitting = [
+        name
+        for name, kind in scene.objects.items()
+        if scene.vocabulary.is_subtype(kind, count.type)
+    ]
+    bodies = [body_of(count, name) for name in fitting]
+    extra = reads_of(body_of(count, EXTRA), scene.vocabulary)
+    around = [read for read in extra if not speaks_of_extra(read)]
+    own = reads_of(_all_of(bodies), scene.vocabulary)
+    reads = own + tuple(read for read in around if _key(read) not in map(_key, own))
+    total = count_letters(reads)
+    truths = _truths(bodies, reads)
+    digits = list(product(*(range(read.size) for read in reversed(reads))))
+    beside = [n for n, read in enumerate(reads) if _key(read) in map(_key, around)]
+    classes: dict[tuple[int, ...], int] = {}
+    letters = []
+    for letter in range(total):
+        own_digits = digits[letter][::-1]
+        number = sum(one >> letter & 1 for one in truths)
+        key = (number, *(own_digits[n] for n in beside))
+        letters.append(classes.setdefault(key, len(classes)))
+    return CountColumn(count, Column(reads, tuple(letters)), tuple(key[0] for key in classes))
+
+
+def body_of(count: Count, name: str) -> Formula:
+    """What is asked of an object that a count goes over."""
+    return _settled(renamed(count.body, {count.variable: name}))
+
+
+def speaks_of_extra(read: Read | NumberRead) -> bool:
+    """Does it read something of an object that is there only to be counted?"""
+    if isinstance(read, Read):
+        return EXTRA in read.variables
+    return any(EXTRA in variables_of(term) for _, term in read.terms)
+
+
+def _key(read: Read | NumberRead) -> object:
+    return read.terms if isinstance(read, NumberRead) else (read.name, read.variables)
+
+
+def _all_of(formulas: Sequence[Formula]) -> Formula:
+    whole: Formula = Constant(True)
+    for one in formulas:
+        whole = Binary(BinaryOperator.AND, whole, one)
+    return whole
+
+
+def _settled(formula: Formula) -> Formula:
+    """Whether two names are the same object is known here."""
+    match formula:
+        case Same(left, right):
+            return Constant(left == right)
+        case Unary(operator, operand, bound):
+            return Unary(operator, _settled(operand), bound)
+        case Binary(operator, left, right, bound):
+            return Binary(operator, _settled(left), _settled(right), bound)
+    return formula
+
+
+def truths_of(
+    formulas: Sequence[Formula], vocabulary: Vocabulary
+) -> tuple[tuple[Read | NumberRead, ...], list[int]]:
+    """What formulas of one state read together, and for each the letters in which it holds.
+
+    A set of letters is the bits of an integer. Raises UndecidedError if there are too many.
+    """
+    reads = reads_of(_all_of(formulas), vocabulary)
+    return reads, _truths(formulas, reads)
+
+
+def _truths(formulas: Sequence[Formula], reads: tuple[Read | NumberRead, ...]) -> list[int]:
+    total = count_letters(reads)
+    if total > MOST_LETTERS:
+        raise UndecidedError("a fact or a count reads too much at once")
+    whole = _all_of(formulas)
+    sets = letters_with(reads, propositions_of(whole))
+    return [_letters(one, sets, (1 << total) - 1) for one in formulas]
+
+
+def _letters(formula: Formula, sets: Mapping[Proposition, int], everything: int) -> int:
+    match formula:
+        case Constant(value):
+            return everything if value else 0
+        case Unary(_, operand):
+            return everything & ~_letters(operand, sets, everything)
+        case Binary(operator, left, right):
+            one, other = _letters(left, sets, everything), _letters(right, sets, everything)
+            match operator:
+                case BinaryOperator.AND:
+                    return one & other
+                case BinaryOperator.OR:
+                    return one | other
+                case BinaryOperator.IMPLIES:
+                    return everything & ~one | other
+                case BinaryOperator.XOR:
+                    return one ^ other
+                case _:
+                    return everything & ~(one ^ other)
+        case Same():
+            raise AssertionError("what is the same has been settled")
+    return sets[formula]

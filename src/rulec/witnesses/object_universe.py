@@ -1,0 +1,82 @@
+"""The objects that rules are compared on, and what is known of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.logic.formula import Binary, Comparison, Count, Formula, Term, Unary, atoms_of
+from rulec.logic.renaming import renamed
+from rulec.rulebook.model import Fact, Variable
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.object_choices import choices
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Objects with their types, all of them there all the time, and what holds in every state.
+
+    ``unsaid`` are declarations that traces leave out.
+    """
+
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+    facts: tuple[Fact, ...] = ()
+    unsaid: frozenset[str] = frozenset()
+
+    def bindings(self, variables: Sequence[Variable]) -> list[dict[str, str]]:
+        """Every way to bind variables to distinct objects of their types."""
+        names = [variable.name for variable in variables]
+        types = [variable.type for variable in variables]
+        found = choices(types, self.objects, self.vocabulary)
+        return [dict(zip(names, chosen, strict=True)) for chosen in found]
+
+    def fact_formulas(self) -> Iterator[Formula]:
+        """What the facts say of the objects."""
+        for fact in self.facts:
+            for names in self.bindings(fact.variables):
+                yield self.renamed(fact.formula, names)
+
+    def renamed(self, formula: Formula, names: Mapping[str, str]) -> Formula:
+        """The formula of one state, with objects in the place of variables."""
+        return renamed(self.canonical(formula), names)
+
+    def canonical(self, formula: Formula) -> Formula:
+        """The formula with the scene's own name for what its counts go over."""
+        match formula:
+            case Comparison(terms, relation, limit, text):
+                own = tuple((factor, self.canonical_term(term)) for factor, term in terms)
+                return Comparison(own, relation, limit, text)
+            case Unary(operator, operand, bound):
+                return Unary(operator, self.canonical(operand), bound)
+            case Binary(operator, left, right, bound):
+                return Binary(operator, self.canonical(left), self.canonical(right), bound)
+        return formula
+
+    def canonical_term(self, term: Term) -> Term:
+        """A term whose count, if it is one, goes over ``COUNTED``, so that equal ones are equal."""
+        if not isinstance(term, Count):
+            return term
+        body = self.canonical(term.body)
+        # No object has such a name, and no count inside another one has the same.
+        name = COUNTED * (1 + _depth(body))
+        return Count(name, term.type, renamed(body, {term.variable: name}))
+
+
+COUNTED = "?"
+"""The variable of every count in a scene; that of one with counts inside is longer."""
+
+EXTRA = "+"
+"""An object that is there only to be counted, before it has a name."""
+
+
+def _depth(formula: Formula) -> int:
+    """How deep counts stand in each other."""
+    return max((len(one.variable) for one in counts_in(formula)), default=0)
+
+
+def counts_in(formula: Formula) -> Iterator[Count]:
+    """The counts that a formula compares, not those inside of others."""
+    for one in atoms_of(formula):
+        if isinstance(one, Comparison):
+            yield from (term for _, term in one.terms if isinstance(term, Count))
