@@ -23,8 +23,8 @@ from rulec.version import __version__
 if TYPE_CHECKING:
     from rulec.api.workflow import compile_rulebook as compile_rulebook
     from rulec.api.workflow import find_maneuvers as find_maneuvers
-    from rulec.api.workflow import judge_recording as judge_recording
     from rulec.api.workflow import navigation_graph as navigation_graph
+    from rulec.api.workflow import verify_recording as verify_recording
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.diagnostics import RulecError as RulecError
     from rulec.monitoring.batch.batch_verify import verify_many as verify_many

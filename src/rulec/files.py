@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, Final
 from unicodedata import normalize
 
-from rulec.diagnostics import Diagnostic, Label, Place, RulecError, Source, Span
+from rulec.diagnostics import Diagnostic, Label, RulecError, Source, SourceLocation, Span
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
@@ -95,14 +95,16 @@ def opened(
         stream.peek(1)
     except (OSError, ValueError) as problem:  # ValueError: a null character in the name
         message = f"the file cannot be read: {_reason(problem)}"
-        place = Place(str(path))
+        place = SourceLocation(str(path))
         raise RulecError(Diagnostic("R0701", message, place, help=way_out, labels=labels)) from None
     with stream:
         yield stream
 
 
 def _unwritable(path: Path, problem: OSError) -> Diagnostic:
-    return Diagnostic("R0702", f"the file cannot be written: {_reason(problem)}", Place(str(path)))
+    return Diagnostic(
+        "R0702", f"the file cannot be written: {_reason(problem)}", SourceLocation(str(path))
+    )
 
 
 def _reason(problem: OSError | ValueError) -> str:
@@ -147,7 +149,7 @@ def without_null(source: Source) -> Source:
 def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     way_out = "save the file as UTF-8"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        place = Place(name, 1, 1, 1, 1)
+        place = SourceLocation(name, 1, 1, 1, 1)
         return Diagnostic("R0101", "the file is in UTF-16, not in UTF-8", place, help=way_out)
     before = Source(name, data[:position].decode("utf-8"))
     line, column = before.position(len(before.text))
@@ -155,6 +157,6 @@ def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     return Diagnostic(
         "R0101",
         f"the byte 0x{data[position]:02x} is not UTF-8",
-        Place(name, line, column, line, column + 1, excerpt),
+        SourceLocation(name, line, column, line, column + 1, excerpt),
         help=way_out,
     )

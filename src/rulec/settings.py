@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
 from rulec.files import decoded, opened
 from rulec.toml import parsed_toml
 
@@ -53,4 +53,4 @@ def _folders(file: Path) -> tuple[Path, ...]:
 
 
 def _wrong(file: Path, message: str, way_out: str) -> RulecError:
-    return RulecError(Diagnostic("R0704", message, Place(str(file)), help=way_out))
+    return RulecError(Diagnostic("R0704", message, SourceLocation(str(file)), help=way_out))

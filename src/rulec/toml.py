@@ -6,7 +6,7 @@ import re
 from importlib import import_module
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, Source
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
 
 _DEEP_KEY = re.compile(r"^[ \t\[]*\w+(?:[ \t]*\.[ \t]*\w+){40}", re.MULTILINE)
 
@@ -29,11 +29,11 @@ def parsed_toml(source: Source, code: str, how: str) -> dict[str, Any]:
     if _DEEP_KEY.search(source.text):
         # The parser's time grows with the square of a key's depth.
         message = "a key has too many parts joined by dots"
-        raise _not_toml(message, Place(source.name), code, how)
+        raise _not_toml(message, SourceLocation(source.name), code, how)
     try:
         parsed: dict[str, Any] = tomllib.loads(source.text)
     except RecursionError:
-        message, place = "brackets are nested too deeply", Place(source.name)
+        message, place = "brackets are nested too deeply", SourceLocation(source.name)
     except ValueError as error:
         message, place = _syntax_error(str(error), source)
     else:
@@ -41,11 +41,11 @@ def parsed_toml(source: Source, code: str, how: str) -> dict[str, Any]:
     raise _not_toml(message, place, code, how) from None
 
 
-def _not_toml(message: str, place: Place, code: str, how: str) -> RulecError:
+def _not_toml(message: str, place: SourceLocation, code: str, how: str) -> RulecError:
     return RulecError(Diagnostic(code, f"the file is not TOML: {message}", place, help=how))
 
 
-def _syntax_error(message: str, source: Source) -> tuple[str, Place]:
+def _syntax_error(message: str, source: Source) -> tuple[str, SourceLocation]:
     words = re.sub(r" \(at [^()]*\)$", "", message)
     words = re.sub(r":? value has \d+ digits;.*", "", words)
     at = re.search(r"\(at line (\d+), column (\d+)\)$", message)
@@ -54,5 +54,5 @@ def _syntax_error(message: str, source: Source) -> tuple[str, Place]:
     elif message.endswith("(at end of document)"):
         line, column = source.position(len(source.text))
     else:
-        return words, Place(source.name)
-    return words, Place(source.name, line, column, line, column + 1, source.line(line))
+        return words, SourceLocation(source.name)
+    return words, SourceLocation(source.name, line, column, line, column + 1, source.line(line))

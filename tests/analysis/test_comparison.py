@@ -11,7 +11,7 @@ from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, side
 from rulec.analysis.diff.diverse_witnesses import unusual
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Axiom, Variable
 from rulec.trace import Trace
 
 SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
@@ -130,7 +130,7 @@ POSSIBLE = [
 @settings(deadline=None, max_examples=60)
 @given(st.tuples(*[formulas([*ALONE[:3], ALONE[5]])] * 2), SEMANTICS)
 def test_facts_rule_out_states(pair, semantics):
-    one, other = sides(pair, [X], semantics, (Fact((X,), FACT),))
+    one, other = sides(pair, [X], semantics, (Axiom((X,), FACT),))
     check(one, other, POSSIBLE)
     found = compare(one, other)
     for trace in (*found.first_forbids, *found.second_forbids):

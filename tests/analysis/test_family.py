@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.lineage.extension_forest import Branch, forest
+from rulec.analysis.lineage.extension_forest import ExtensionTree, forest
 from rulec.analysis.lineage.rule_lineage import Member
 
 
@@ -13,17 +13,19 @@ def book(name, extends=""):
 
 def test_children_hang_below_their_base():
     a, b, c, d = book("a"), book("b", "a"), book("c", "a"), book("d", "c")
-    assert forest([d, c, b, a, c]) == (Branch(a, (Branch(b), Branch(c, (Branch(d),)))),)
+    assert forest([d, c, b, a, c]) == (
+        ExtensionTree(a, (ExtensionTree(b), ExtensionTree(c, (ExtensionTree(d),)))),
+    )
 
 
 def test_a_base_that_is_not_there():
     lonely = book("lonely", "nowhere")
-    assert forest([lonely]) == (Branch(lonely),)
+    assert forest([lonely]) == (ExtensionTree(lonely),)
 
 
 def test_a_circle_is_cut():
     a, b, c = book("a", "b"), book("b", "a"), book("c", "c")
-    assert forest([b, a, c]) == (Branch(a, (Branch(b),)), Branch(c))
+    assert forest([b, a, c]) == (ExtensionTree(a, (ExtensionTree(b),)), ExtensionTree(c))
 
 
 names = st.sampled_from("abcdef")

@@ -50,14 +50,14 @@ def test_a_rule_becomes_its_smallest_table():
     compiled = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: thing")))
     machine = compiled.rules[0].machine
     assert [(read.name, read.size) for read in machine.reads] == [("place", 2), ("q", 2)]
-    assert len(machine.following) == 2
-    assert len(machine.following[0]) == 2
-    assert machine.dead is not None
-    assert machine.safe is None
+    assert len(machine.successors) == 2
+    assert len(machine.successors[0]) == 2
+    assert machine.rejecting_sink is not None
+    assert machine.accepting_sink is None
     near_without_q = 0  # digit 0 is `near`, q is false
     others = {machine.letters[letter] for letter in range(4) if letter != near_without_q}
     assert len(others) == 1
-    assert machine.following[0][machine.letters[near_without_q]] == machine.dead
+    assert machine.successors[0][machine.letters[near_without_q]] == machine.rejecting_sink
 
 
 def test_exclusive_values_make_letters_and_contradictions():
@@ -66,8 +66,8 @@ def test_exclusive_values_make_letters_and_contradictions():
     )
     (compiled,) = compile_rulebook(never_both).rules
     assert compiled.machine.reads[0].size == 3  # near, far, and all else
-    assert compiled.machine.following == ((0,),)
-    assert compiled.machine.dead == 0
+    assert compiled.machine.successors == ((0,),)
+    assert compiled.machine.rejecting_sink == 0
 
 
 @pytest.mark.parametrize("position", [0, 1, 2])
@@ -116,7 +116,9 @@ def test_an_enumeration_of_many_values(n):
     ).rules
     machine = compiled.machine
     assert len(machine.letters) == n
-    assert [machine.following[0][c] == machine.dead for c in machine.letters].index(True) == n - 1
+    assert [machine.successors[0][c] == machine.rejecting_sink for c in machine.letters].index(
+        True
+    ) == n - 1
 
 
 def test_a_rulebook_without_rules_compiles():
@@ -226,10 +228,10 @@ def test_a_rule_about_the_past_becomes_its_smallest_table():
     formula = always(implies(Q, Unary(UnaryOperator.ONCE, near("x"))))
     (compiled,) = compile_rulebook(book(rule("A", formula, "x: thing"))).rules
     machine = compiled.machine
-    assert len(machine.following) == 3
-    assert None not in (machine.dead, machine.safe)
+    assert len(machine.successors) == 3
+    assert None not in (machine.rejecting_sink, machine.accepting_sink)
     near_at_once = machine.letters[0]  # digit 0 is `near`, q is false
-    assert machine.following[0][near_at_once] == machine.safe
+    assert machine.successors[0][near_at_once] == machine.accepting_sink
     assert 'AP: 2 "q" "near(x)"' in compiled.hoa or 'AP: 2 "near(x)" "q"' in compiled.hoa
     assert "memory" not in compiled.hoa
     assert "\nStates: 3\n" in compiled.hoa
@@ -241,7 +243,7 @@ def test_what_was_before_takes_as_many_states_as_there_are_pasts():
     # instants there is no such p, as if it had been false.
     ago = reduce(lambda inner, _: Unary(UnaryOperator.PREVIOUSLY, inner), range(3), P)
     (compiled,) = compile_rulebook(book(rule("A", always(implies(Q, ago))))).rules
-    assert len(compiled.machine.following) == 2**3 + 1
+    assert len(compiled.machine.successors) == 2**3 + 1
 
 
 def test_a_past_as_deep_as_a_formula_may_be():
@@ -318,7 +320,7 @@ def test_a_hundred_steps_make_a_hundred_states():
     # Nothing seen, or p up to 100 steps ago; lost.
     formula = always(implies(Unary(UnaryOperator.ONCE, P, within(0, 100)), Q))
     (compiled,) = compile_rulebook(book(rule("A", formula))).rules
-    assert len(compiled.machine.following) == 100 + 2
+    assert len(compiled.machine.successors) == 100 + 2
     assert compiled.step_s is None
     assert "register" not in compiled.hoa
     assert in_words(compiled.formula) == "always (once[<= 100 steps] p implies q)"
@@ -340,7 +342,7 @@ def test_bounds_that_rules_have_fit_into_the_limits(formula, semantics):
     rulebook = replace(book(rule("A", formula, "x: thing")), semantics=semantics)
     compiled = compile_rulebook(rulebook, cpu_limit_s=1)
     assert compiled.semantics == semantics
-    assert len(compiled.rules[0].machine.following) <= 102
+    assert len(compiled.rules[0].machine.successors) <= 102
 
 
 def test_a_distance_into_the_past_explodes():
@@ -370,11 +372,11 @@ def test_seconds_become_steps_of_the_trace_or_of_the_examples():
     rulebook = book(seconds(3), rule("B", P))
     own, other = compile_rulebook(rulebook).rules
     assert (own.step_s, other.step_s) == (Fraction(1, 2), None)
-    assert len(own.machine.following) == 6 + 2
+    assert len(own.machine.successors) == 6 + 2
     assert "one letter is 0.5 s" in own.hoa
     finer, _ = compile_rulebook(rulebook, step_s=Fraction(1, 10)).rules
     assert finer.step_s == Fraction(1, 10)
-    assert len(finer.machine.following) == 30 + 2
+    assert len(finer.machine.successors) == 30 + 2
     # It stays what the rulebook says.
     assert finer.formula == own.formula == rulebook.rules[0].formula
 

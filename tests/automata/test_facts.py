@@ -3,7 +3,7 @@
 from itertools import product
 
 from rulec.automata.alphabet import propositions_of
-from rulec.automata.axiom_instances import fact_groups, fact_instances, linked
+from rulec.automata.axiom_instances import axiom_groups, axiom_instances, linked
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook
@@ -30,7 +30,7 @@ def said(book, *variables):
     typed = [Variable(*one.split(": ")) for one in variables]
     return [
         (one.variables, str(one.formula))
-        for one in fact_instances(typed, book.facts, book.vocabulary)
+        for one in axiom_instances(typed, book.axioms, book.vocabulary)
     ]
 
 
@@ -41,13 +41,13 @@ def follows(one, other):
 def test_a_fact_is_said_of_distinct_variables_in_every_order():
     book = town("fact not (follows(v, w) and follows(w, v))")
     typed = [Variable("a", "car"), Variable("b", "bus")]
-    found = fact_instances(typed, book.facts, book.vocabulary)
+    found = axiom_instances(typed, book.axioms, book.vocabulary)
     assert [one.variables for one in found] == [("a", "b"), ("b", "a")]
     for one in found:
         assert set(propositions_of(one.formula)) == {follows("a", "b"), follows("b", "a")}
         assert not holds(one.formula, [{follows("a", "b"), follows("b", "a")}])
         assert holds(one.formula, [{follows("a", "b")}])
-    assert fact_instances(typed[:1], book.facts, book.vocabulary) == ()
+    assert axiom_instances(typed[:1], book.axioms, book.vocabulary) == ()
 
 
 def test_variables_may_swap_their_names():
@@ -56,7 +56,7 @@ def test_variables_may_swap_their_names():
     typed = [Variable("w", "car"), Variable("v", "car")]
     swapped = next(
         one
-        for one in fact_instances(typed, book.facts, book.vocabulary)
+        for one in axiom_instances(typed, book.axioms, book.vocabulary)
         if one.variables == ("w", "v")
     )
     assert propositions_of(swapped.formula) == (follows("w", "v"), follows("v", "w"))
@@ -80,7 +80,7 @@ def test_differences_of_numbers_stay_in_their_one_form():
         "fact gap(v) - gap(w) <= 5 m",
         "hard rule r (a: car, b: car) { require always (gap(a) - gap(b) >= -5 m) }",
     )
-    turned = fact_instances(book.rules[0].variables, book.facts, book.vocabulary)[1]
+    turned = axiom_instances(book.rules[0].variables, book.axioms, book.vocabulary)[1]
     assert turned.variables == ("b", "a")
     assert propositions_of(turned.formula) == propositions_of(book.rules[0].formula)
     assert str(turned.formula) == "gap(b) - gap(a) <= 5 m"
@@ -88,7 +88,7 @@ def test_differences_of_numbers_stay_in_their_one_form():
 
 def test_options_decide_what_is_a_fact():
     book = town("fact fog implies not tight")
-    (one,) = fact_instances((), book.facts, book.vocabulary)
+    (one,) = axiom_instances((), book.axioms, book.vocabulary)
     assert not holds(one.formula, [{Atom("fog")}])
     assert holds(one.formula, [set()])
 
@@ -100,17 +100,17 @@ def test_facts_are_linked_by_what_they_speak_of():
         "fact far(t) implies p",
         "fact speed <= 50 km/h or ice",
     )
-    found = fact_instances([Variable("x", "thing")], book.facts, book.vocabulary)
+    found = axiom_instances([Variable("x", "thing")], book.axioms, book.vocabulary)
     groups = [[one.fact.formula for one in group] for group in linked(found)]
-    formulas = [one.formula for one in book.facts]
+    formulas = [one.formula for one in book.axioms]
     assert groups == [formulas[1:3], [formulas[0], formulas[3]]]
 
 
 def test_facts_are_linked_by_way_of_others():
     """The last one has to do with the first alone, which the second one has joined already."""
     book = town("fact not (p and fog)", "fact not (fog and ice)", "fact speed <= 50 km/h or p")
-    (group,) = linked(fact_instances((), book.facts, book.vocabulary))
-    assert {one.fact for one in group} == set(book.facts)
+    (group,) = linked(axiom_instances((), book.axioms, book.vocabulary))
+    assert {one.fact for one in group} == set(book.axioms)
 
 
 def test_what_is_known_of_values_that_facts_bring_in():
@@ -118,8 +118,8 @@ def test_what_is_known_of_values_that_facts_bring_in():
     book = town("fact near(t) or far(t) or big(t)")
     x, typed = ("x",), [Variable("x", "thing")]
     far, near, big = Atom("place", x, "far"), Atom("place", x, "near"), Atom("big", x)
-    instances = fact_instances(typed, book.facts, book.vocabulary)
-    (group,) = fact_groups([far, Atom("fog")], instances, book.vocabulary)
+    instances = axiom_instances(typed, book.axioms, book.vocabulary)
+    (group,) = axiom_groups([far, Atom("fog")], instances, book.vocabulary)
     for values in product([False, True], repeat=3):
         letter = {one for one, true in zip([far, near, big], values, strict=True) if true}
         possible = not {far, near} <= letter and bool(letter)
@@ -134,7 +134,7 @@ def test_the_objects_of_a_fact_are_not_those_that_it_counts():
         "fact some c: car (follows(c, v)) implies big(v)",
         "fact close(c) implies big(c)",
     )
-    assert [one.variables for one in book.facts] == [
+    assert [one.variables for one in book.axioms] == [
         (Variable("v", "car"),),
         (Variable("c", "car"),),
     ]
@@ -142,5 +142,5 @@ def test_the_objects_of_a_fact_are_not_those_that_it_counts():
 
 def test_an_object_of_a_fact_is_of_the_narrowest_type_that_is_needed():
     for line in ("big(t) implies gap(t) < 5 m", "gap(t) < 5 m implies big(t)"):
-        (fact,) = town(f"fact {line}").facts
+        (fact,) = town(f"fact {line}").axioms
         assert fact.variables == (Variable("t", "car"),)

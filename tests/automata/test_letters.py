@@ -105,7 +105,7 @@ def test_what_is_known_is_just_what_letters_have_in_common(formula):
     propositions = propositions_of(formula)
     reads = reads_of(formula, TIMED_VOCABULARY)
     assume(count_letters(reads) < 200)
-    facts = knowledge(reads, propositions)
+    axioms = knowledge(reads, propositions)
     sets = letters_with(reads, propositions)
     letters = {
         frozenset(one for one in propositions if sets[one] >> number & 1)
@@ -113,7 +113,7 @@ def test_what_is_known_is_just_what_letters_have_in_common(formula):
     }
     for values in product((False, True), repeat=len(propositions)):
         letter = frozenset(one for one, value in zip(propositions, values, strict=True) if value)
-        assert holds(facts, [letter]) == (letter in letters)
+        assert holds(axioms, [letter]) == (letter in letters)
 
 
 def known(*comparisons):
@@ -123,8 +123,8 @@ def known(*comparisons):
 
 def test_faster_than_50_is_faster_than_30_and_no_more_is_said():
     limits = [comparison("speed", ">", limit) for limit in (50, 30, 70, 10)]
-    facts = known(*limits).replace("(", "").replace(")", "").split(" and ")
-    assert sorted(facts) == [
+    axioms = known(*limits).replace("(", "").replace(")", "").split(" and ")
+    assert sorted(axioms) == [
         "speed > 30 implies speed > 10",
         "speed > 50 implies speed > 30",
         "speed > 70 implies speed > 50",

@@ -38,12 +38,10 @@ def previously(formula: Formula) -> Formula:
 def test_machines_are_minimal(formula):
     """Any two states are told apart by a word, any two letter classes by a state."""
     machine = machine_of(formula)
-    columns = list(zip(*machine.following, *machine.accepting, strict=True))
+    columns = list(zip(*machine.successors, *machine.outputs, strict=True))
     assert len(set(columns)) == len(columns)
-    n = len(machine.following)
-    apart = {
-        (a, b) for a in range(n) for b in range(n) if machine.accepting[a] != machine.accepting[b]
-    }
+    n = len(machine.successors)
+    apart = {(a, b) for a in range(n) for b in range(n) if machine.outputs[a] != machine.outputs[b]}
     while True:
         more = {
             (a, b)
@@ -51,7 +49,7 @@ def test_machines_are_minimal(formula):
             for b in range(n)
             if any(
                 pair in apart
-                for pair in zip(machine.following[a], machine.following[b], strict=True)
+                for pair in zip(machine.successors[a], machine.successors[b], strict=True)
             )
         } - apart
         if not more:
@@ -98,13 +96,16 @@ def test_dead_and_safe_states():
         Constant(True): (True, False),
         Constant(False): (False, True),
     }
-    for formula, (safe, dead) in safe_or_dead.items():
+    for formula, (accepting_sink, rejecting_sink) in safe_or_dead.items():
         machine = machine_of(formula)
-        assert (machine.safe is not None, machine.dead is not None) == (safe, dead), formula
-        for trap, verdict in ((machine.safe, True), (machine.dead, False)):
+        assert (machine.accepting_sink is not None, machine.rejecting_sink is not None) == (
+            accepting_sink,
+            rejecting_sink,
+        ), formula
+        for trap, verdict in ((machine.accepting_sink, True), (machine.rejecting_sink, False)):
             if trap is not None:
-                assert set(machine.following[trap]) == {trap}
-                assert set(machine.accepting[trap]) == {verdict}
+                assert set(machine.successors[trap]) == {trap}
+                assert set(machine.outputs[trap]) == {verdict}
 
 
 @given(formulas)

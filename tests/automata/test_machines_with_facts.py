@@ -16,7 +16,7 @@ from words import ATOMS, VOCABULARY, formulas, letters, words
 from rulec.automata import compiler, spot_bridge
 from rulec.automata.alphabet import propositions_of
 from rulec.automata.bundle.bundle_file import from_json, to_json
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.automata.spot_worker import Failed, _answer
 from rulec.diagnostics import RulecError
@@ -33,7 +33,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import verify
-from rulec.rulebook.model import Fact, Rule, Rulebook, Variable
+from rulec.rulebook.model import Axiom, Rule, Rulebook, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
@@ -63,10 +63,10 @@ def facts_over(atoms):
     return st.lists(said, max_size=3)
 
 
-def book_of(formula, facts, vocabulary=VOCABULARY, semantics="stutter"):
+def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
     rule = Rule("r", "hard", (X,), formula)
-    known = tuple(Fact((X,), fact) for fact in facts)
-    return Rulebook("test", vocabulary, (rule,), semantics=semantics, facts=known)
+    known = tuple(Axiom((X,), fact) for fact in axioms)
+    return Rulebook("test", vocabulary, (rule,), semantics=semantics, axioms=known)
 
 
 def answer(book):
@@ -90,7 +90,7 @@ def compiled(book):
         "",
         spot_bridge.VERSION,
         book.semantics,
-        facts=tuple(CompiledFact(one.variables, one.formula) for one in book.facts),
+        axioms=tuple(CompiledAxiom(one.variables, one.formula) for one in book.axioms),
     )
     again = from_json(to_json(whole).encode(), "book.json")
     assert again == whole
@@ -105,12 +105,12 @@ WORLDS = [
 ]
 
 
-def can_be(world, formula, facts, worlds, letter_of):
+def can_be(world, formula, axioms, worlds, letter_of):
     """Is there a state that is the same to the formula, and in which the facts hold?"""
     read = set(propositions_of(formula))
     return any(
         letter_of(other) & read == letter_of(world) & read
-        and all(holds(fact, [letter_of(other)]) for fact in facts)
+        and all(holds(fact, [letter_of(other)]) for fact in axioms)
         for other in worlds
     )
 
@@ -120,16 +120,16 @@ def letter_of(world):
     return letter
 
 
-def check(formula, facts, word, worlds, letter_of, vocabulary, semantics="stutter"):
-    book = compiled(book_of(formula, facts, vocabulary, semantics))
+def check(formula, axioms, word, worlds, letter_of, vocabulary, semantics="stutter"):
+    book = compiled(book_of(formula, axioms, vocabulary, semantics))
     if book is None:
-        assert not any(all(holds(fact, [letter_of(one)]) for fact in facts) for one in worlds)
+        assert not any(all(holds(fact, [letter_of(one)]) for fact in axioms) for one in worlds)
         return
     trace = Trace("t", 1, {"car1": "thing"}, tuple(word))
     impossible = [
         number
         for number, world in enumerate(word)
-        if not can_be(world, formula, facts, worlds, letter_of)
+        if not can_be(world, formula, axioms, worlds, letter_of)
     ]
     if impossible:
         with pytest.raises(RulecError) as caught:
@@ -157,8 +157,8 @@ def check(formula, facts, word, worlds, letter_of, vocabulary, semantics="stutte
 @example(P, [Q, Unary(NO, Q)], [WORLDS[0]])
 @example(P, [Constant(False)], [WORLDS[0]])
 @example(Constant(True), [P], [WORLDS[-1]])
-def test_verdicts_are_those_of_direct_evaluation(semantics, formula, facts, word):
-    check(formula, facts, word, WORLDS, letter_of, VOCABULARY, semantics)
+def test_verdicts_are_those_of_direct_evaluation(semantics, formula, axioms, word):
+    check(formula, axioms, word, WORLDS, letter_of, VOCABULARY, semantics)
 
 
 SPEED = ((Fraction(1), Quantity("speed")),)
@@ -198,17 +198,17 @@ def comparisons_true(world):
     st.lists(st.sampled_from(SPEEDS), min_size=1, max_size=4),
 )
 @example(COMPARISONS[0], [COMPARISONS[-1]], [{"speed": 0.5}])  # speed < 1, but always > 2
-def test_sides_of_a_number_that_facts_exclude(formula, facts, word):
-    check(formula, facts, word, SPEEDS, comparisons_true, NUMBERS)
+def test_sides_of_a_number_that_facts_exclude(formula, axioms, word):
+    check(formula, axioms, word, SPEEDS, comparisons_true, NUMBERS)
 
 
 @given(formulas, facts_over(ATOMS))
-def test_the_automaton_has_the_words_of_the_formula_on_which_the_facts_hold(formula, facts):
+def test_the_automaton_has_the_words_of_the_formula_on_which_the_facts_hold(formula, axioms):
     """The HOA file's language. The formula reads all that the facts do: nothing is projected."""
-    for fact in facts:
+    for fact in axioms:
         formula = Binary(BinaryOperator.AND, formula, Binary(BinaryOperator.IMPLIES, fact, fact))
     own = set(atoms_of(formula))
-    done = answer(book_of(formula, facts))
+    done = answer(book_of(formula, axioms))
     assume(not isinstance(done, Failed))
     # The values of enumerations that the formula speaks of exclude each other.
     exclusive = "&".join(
@@ -218,7 +218,7 @@ def test_the_automaton_has_the_words_of_the_formula_on_which_the_facts_hold(form
     )
     whole = [group for group in (PLACES, LIGHTS) if own >= set(group)]
     some = "&".join(f"({'|'.join(map(in_spot, group))})" for group in whole)
-    always = " & ".join(filter(None, ["1", exclusive, some, *map(in_spot, facts)]))
+    always = " & ".join(filter(None, ["1", exclusive, some, *map(in_spot, axioms)]))
     meant = spot_automaton(formula, f"G({always})")
     assert spot.are_equivalent(spot.automaton(done.hoa), meant)
 
@@ -229,13 +229,13 @@ LIGHTS = [Atom("light", (), value) for value in ("red", "green")]
 
 @given(facts_over(ATOMS))
 @example([Constant(False), Constant(False)])
-def test_every_fact_of_a_contradiction_is_needed(facts):
-    done = answer(book_of(P, facts))
+def test_every_fact_of_a_contradiction_is_needed(axioms):
+    done = answer(book_of(P, axioms))
 
     def can_hold(chosen):
         return any(all(holds(fact, [letter_of(one)]) for fact in chosen) for one in WORLDS)
 
-    assert isinstance(done, Failed) != can_hold(facts)
+    assert isinstance(done, Failed) != can_hold(axioms)
     if isinstance(done, Failed):
         named = [one.formula for one in done.contradiction]
         assert not can_hold(named)
@@ -244,20 +244,20 @@ def test_every_fact_of_a_contradiction_is_needed(facts):
 
 
 @given(formulas, facts_over(ATOMS))
-def test_machines_meet_possible_letters_alone_and_are_minimal_for_them(formula, facts):
-    done = answer(book_of(formula, facts))
+def test_machines_meet_possible_letters_alone_and_are_minimal_for_them(formula, axioms):
+    done = answer(book_of(formula, axioms))
     assume(not isinstance(done, Failed))
     machine = done.machine
     met = set(machine.letters) - {IMPOSSIBLE}
-    assert met == set(range(len(machine.following[0])))
-    columns = list(zip(*machine.following, *machine.accepting, strict=True))
+    assert met == set(range(len(machine.successors[0])))
+    columns = list(zip(*machine.successors, *machine.outputs, strict=True))
     assert len(set(columns)) == len(columns)
     reached = [0]
     for state in reached:
-        reached += [one for one in dict.fromkeys(machine.following[state]) if one not in reached]
-    assert sorted(reached) == list(range(len(machine.following)))
+        reached += [one for one in dict.fromkeys(machine.successors[state]) if one not in reached]
+    assert sorted(reached) == list(range(len(machine.successors)))
     # What is said twice, or follows, changes nothing.
-    again = answer(book_of(formula, [*facts, *facts[:1]]))
+    again = answer(book_of(formula, [*axioms, *axioms[:1]]))
     assert again.machine == machine
 
 
@@ -265,7 +265,7 @@ def test_a_fact_leaves_fewer_states():
     """q is never seen in a state with p, so there is nothing to remember it for."""
     seen_both = Unary(UnaryOperator.EVENTUALLY, Binary(BinaryOperator.AND, P, Q))
     fact = Unary(NO, Binary(BinaryOperator.AND, P, Q))
-    assert len(answer(book_of(seen_both, [])).machine.following) == 2
+    assert len(answer(book_of(seen_both, [])).machine.successors) == 2
     machine = answer(book_of(seen_both, [fact])).machine
-    assert (machine.following, machine.dead) == (((0,),), 0)
+    assert (machine.successors, machine.rejecting_sink) == (((0,),), 0)
     assert sorted(machine.letters) == [IMPOSSIBLE, 0, 0, 0]

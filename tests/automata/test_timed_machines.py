@@ -55,7 +55,7 @@ LONG = [
 def test_a_long_bound_takes_as_many_states_as_it_has_steps(formula, semantics):
     """One for each number of steps left, 0 to 39; one for nothing pending; lost, or won."""
     machine = machine_of(formula, semantics)
-    assert len(machine.following) == 40 + 2
+    assert len(machine.successors) == 40 + 2
     assert agrees(machine, formula, semantics)
 
 
@@ -64,7 +64,7 @@ def test_ranges_that_overlap_ask_for_the_same_instants(semantics):
     """Which of the coming 40 instants must have q: no set but unions of ranges of 25."""
     formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ALWAYS, 16, 40, Q)))
     machine = machine_of(formula, semantics)
-    assert len(machine.following) < 1000 < 2**16
+    assert len(machine.successors) < 1000 < 2**16
     assert agrees(machine, formula, semantics)
 
 
@@ -94,11 +94,13 @@ def test_machines_are_canonical(formula, semantics):
 @given(timed_formulas, both_semantics)
 def test_machines_are_minimal(formula, semantics):
     machine = machine_of(formula, semantics)
-    columns = list(zip(*machine.following, *machine.accepting, strict=True))
+    columns = list(zip(*machine.successors, *machine.outputs, strict=True))
     assert len(set(columns)) == len(columns)
-    blocks = [tuple(row) for row in machine.accepting]
-    for _ in machine.following:
-        blocks = [(blocks[s], *(blocks[t] for t in row)) for s, row in enumerate(machine.following)]
+    blocks = [tuple(row) for row in machine.outputs]
+    for _ in machine.successors:
+        blocks = [
+            (blocks[s], *(blocks[t] for t in row)) for s, row in enumerate(machine.successors)
+        ]
         numbers = {block: n for n, block in enumerate(dict.fromkeys(blocks))}
         blocks = [(numbers[block],) for block in blocks]
     assert len(set(blocks)) == len(blocks)
@@ -109,10 +111,10 @@ def test_the_automaton_is_the_formula_under_what_is_known(formula):
     """The whole language, not some words of it: against Spot's own way with past and bounds."""
     assume(is_easy(formula))
     reads = reads_of(formula, TIMED_VOCABULARY)
-    facts = in_spot(knowledge(reads, propositions_of(formula)))
+    axioms = in_spot(knowledge(reads, propositions_of(formula)))
     found = translate(formula, reads)
     automaton = spot.automaton(in_hoa(found.automaton, "rule", ()))
-    assert spot.are_equivalent(automaton, spot_automaton(formula, f"G{facts}"))
+    assert spot.are_equivalent(automaton, spot_automaton(formula, f"G{axioms}"))
     assert spot.is_deterministic(automaton)
     assert spot.is_complete(automaton)
     assert automaton.acc().is_parity()[0]
@@ -124,10 +126,10 @@ def test_the_automaton_is_the_formula_under_what_is_known(formula):
 def test_so_it_is_on_finite_words(formula):
     assume(is_easy(formula))
     reads = reads_of(formula, TIMED_VOCABULARY)
-    facts = in_spot(knowledge(reads, propositions_of(formula)), "alive")
+    axioms = in_spot(knowledge(reads, propositions_of(formula)), "alive")
     found = translate(formula, reads, "finite")
     assert found.alive == "alive"
-    meant = spot_automaton(formula, f"G{facts}", alive="alive")
+    meant = spot_automaton(formula, f"G{axioms}", alive="alive")
     automaton = spot.automaton(in_hoa(found.automaton, "rule", ()))
     assert spot.are_equivalent(automaton, meant)
     assert spot.is_deterministic(automaton)

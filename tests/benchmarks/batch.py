@@ -19,8 +19,8 @@ from timing import in_turns, processor_time
 
 import rulec
 from rulec.monitoring.batch.columnize import gathered
-from rulec.monitoring.batch.engine import judge_cells, judge_columns
-from rulec.monitoring.bits.bit_verdicts import judge_on_bits
+from rulec.monitoring.batch.engine import verify_cells, verify_columns
+from rulec.monitoring.bits.bit_verdicts import verify_on_bits
 from rulec.monitoring.bits.trace_planes import Across
 from rulec.monitoring.verify import verify
 
@@ -47,9 +47,9 @@ def measure(rounds: int) -> Iterator[Result]:
     work = float(layout.n_states * len(rules.rules))
     share = float(len(sample) * layout.n_steps * len(rules.rules))
     engines = {
-        "machines, from cells": lambda: judge_cells(cells, rules),
-        "machines, from columns": lambda: judge_columns(columns, rules),
-        "bits, from columns": lambda: list(judge_on_bits(columns, rules)),
+        "machines, from cells": lambda: verify_cells(cells, rules),
+        "machines, from columns": lambda: verify_columns(columns, rules),
+        "bits, from columns": lambda: list(verify_on_bits(columns, rules)),
         "bits, from Boolean columns": by_bits(rules, layout, booleans),
     }
     taken = in_turns(

@@ -17,10 +17,10 @@ from timing import Timed, in_turns, once, processor_time
 
 import rulec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.planning import Maneuvers, judged, partition_for
+from rulec.planning import Maneuvers, evaluate, partition_for
 from rulec.planning.product.graph_instances import instances, violations
 from rulec.planning.product.graph_product import count_paths, explore
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario
@@ -48,7 +48,7 @@ def measure(rounds: int) -> Iterator[Result]:
 
 def small(rules: CompiledRulebook, rounds: int) -> Result:
     """Scenario S2, counted and enumerated."""
-    found = judged(rulec.navigation_graph("s2", step_s=0.5), rules)
+    found = evaluate(rulec.navigation_graph("s2", step_s=0.5), rules)
     bound = instances(found.paths, rules)
     one_by_one = once(
         in_ms(lambda: sum(not violations(bound, nodes) for nodes in paths(found.paths)))
@@ -57,7 +57,7 @@ def small(rules: CompiledRulebook, rounds: int) -> Result:
         "both counts": lambda: counts(found),
         "the 100 cheapest satisfying": lambda: list(islice(cheapest(found.product), 100)),
         "before: cells read as letters": lambda: instances(found.paths, rules),
-        "before: effects on machines": lambda: effects(found.paths, bound),
+        "before: effects on machines": lambda: node_transformers(found.paths, bound),
         "which rule prunes what": found.prunings,
         "classes": found.classes,
     }
@@ -83,12 +83,12 @@ def small(rules: CompiledRulebook, rounds: int) -> Result:
 
 def hundred(rules: CompiledRulebook, rounds: int) -> Result:
     """The same over a hundred transitions."""
-    found = judged(rulec.navigation_graph("s2", step_s=0.5, horizon_s=50), rules)
+    found = evaluate(rulec.navigation_graph("s2", step_s=0.5, horizon_s=50), rules)
     taken = in_turns(
         {
             "both counts": in_ms(lambda: counts(found)),
             "before: effects on machines": in_ms(
-                lambda: effects(found.paths, found.hard.instances)
+                lambda: node_transformers(found.paths, found.hard.instances)
             ),
         },
         rounds,
@@ -112,7 +112,7 @@ def crowd(name: str, rules: CompiledRulebook) -> Result:
     """Everything that can be asked about fifty vehicles."""
     graph = rulec.navigation_graph(fifty_vehicles(), partition=partition_for(rules, None))
     kept: list[Maneuvers] = []
-    judging = once(in_ms(lambda: kept.append(judged(graph, rules))))
+    judging = once(in_ms(lambda: kept.append(evaluate(graph, rules))))
     (found,) = kept
     # What soft rules need besides is worked out when it is first asked for.
     tasks = {

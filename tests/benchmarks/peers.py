@@ -13,7 +13,7 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.engine import judge_cells
+from rulec.monitoring.batch.engine import verify_cells
 from rulec.monitoring.bits.trace_planes import Across
 from rulec.monitoring.verify import verify
 
@@ -38,7 +38,7 @@ def measure(rounds: int) -> Iterator[Result]:
             all_,
         ),
         "machines, from cells": (
-            lambda: judge_cells(cells, rules)[0].accepted[::EVERY].tolist(),
+            lambda: verify_cells(cells, rules)[0].accepted[::EVERY].tolist(),
             all_,
         ),
         "a trace at a time": (lambda: [verify(x, rules).satisfied for x in sample], few),

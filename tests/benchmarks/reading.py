@@ -20,7 +20,7 @@ from pyarrow import parquet
 from timing import Timed, children_ms, in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.table_verdicts import judge_items
+from rulec.monitoring.batch.table_verdicts import verify_items
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import FORMATS, Format, format_of, read_chunks, write_traces
 
@@ -94,7 +94,7 @@ def to_verdicts(file: Path, rules: rulec.CompiledRulebook) -> Callable[[], objec
     def judged() -> int:
         with file.open("rb") as stream:
             chunks = read_chunks(stream, str(file), format_of(str(file)))
-            return sum(len(judge_items(items, rules)[1]) for items in chunks)
+            return sum(len(verify_items(items, rules)[1]) for items in chunks)
 
     return judged
 

@@ -19,7 +19,7 @@ from timing import Timed, in_turns, processor_time
 import rulec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.partition import NavigationGraph
-from rulec.planning import Maneuvers, judged
+from rulec.planning import Maneuvers, evaluate
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import Choice, Scenario
 from rulec.scenario.recorded.recorded_scene import to_scenario
@@ -72,7 +72,7 @@ def busiest(file: Path, rounds: int) -> Result:
     tasks = {
         "as a scenario along ego's road": lambda: to_scenario(recording, NEVER_CONGESTED, ""),
         "partition paper, 0.5 s": partial(cut, scene, 0.5),
-        "counts under R1 for every car": lambda: judged(graph, r1),
+        "counts under R1 for every car": lambda: evaluate(graph, r1),
         "the same two, 0.25 s": partial(count, scene, r1, 0.25),
         "partition fine and all of de, 0.5 s": partial(count, scene, law, 0.5),
         "partition fine and all of de, 0.25 s": partial(count, scene, finer_law, 0.25),

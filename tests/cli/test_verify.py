@@ -117,8 +117,8 @@ def test_explanations_as_data(verify):
     assert explanation["decisive"] == violation["step"] == 3
     assert explanation["states"] == [0, 1, 2, 3]
     assert explanation["cite"] == "Article 11.1, 11.6"
-    facts = {fact["reads"]: fact["values"] for fact in explanation["facts"]}
-    assert facts == {"CONGESTED": [False] * 4, "position(v1)": ["b", "r", "r", "f"]}
+    axioms = {fact["reads"]: fact["values"] for fact in explanation["facts"]}
+    assert axioms == {"CONGESTED": [False] * 4, "position(v1)": ["b", "r", "r", "f"]}
     assert explanation["parts"][0]["depth"] == 0
     assert explanation["parts"][0]["values"][0] is False
     assert explanation["repair"] == [{"state": 3, "says": "not f(v)"}]

@@ -10,10 +10,10 @@ import pytest
 
 from rulec.api.rulebook_questions import analyze_rulebook, run_examples
 from rulec.api.workflow import compile_rulebook, find_maneuvers
-from rulec.book_tests.verdict_coverage import unexercised
+from rulec.book_tests.verdict_coverage import uncovered_verdicts
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.codes import EXPLANATIONS, STAGES
-from rulec.monitoring.verify import judge
+from rulec.monitoring.verify import verify_or_reason
 from rulec.partition import navigation_graph
 from rulec.rulebook.loader import diagnose, parse_rulebook
 from rulec.scenario.scenario_files import read_scenario
@@ -39,7 +39,7 @@ def run_on_examples(text, folder):
     path.write_text(text, encoding="utf-8")
     run = run_examples(path)
     assert all(one.passed for one in run.outcomes)
-    return [*run.warnings, *unexercised(run)]
+    return [*run.warnings, *uncovered_verdicts(run)]
 
 
 def analyzed(text, folder):
@@ -57,7 +57,7 @@ def judged(text, folder):
     path = folder / "traces.jsonl"
     path.write_text(text, encoding="utf-8")
     rules = compile_rulebook("esterle2019")
-    answers = [judge(item, rules) for item in read_traces(path)]
+    answers = [verify_or_reason(item, rules) for item in read_traces(path)]
     return [one for answer in answers for one in getattr(answer, "error", NOTHING).diagnostics]
 
 

@@ -8,9 +8,9 @@ from roads import RECORDINGS
 
 from rulec.api.workflow import machines
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import JudgedRecording
-from rulec.extraction.selection.requested import Wanted
-from rulec.extraction.violation_tally import Tally
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection.requested import RequestedDrives
+from rulec.extraction.violation_tally import ViolationTally
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
 from rulec.scenario.recording_files import read_recording
@@ -28,8 +28,8 @@ ALMOST_ALL = 0.95
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_its_drives(file):
-    judged = JudgedRecording(read_recording(file), PAPER, Wanted(), file.name)
-    tally = Tally()
+    judged = RecordingVerdicts(read_recording(file), PAPER, RequestedDrives(), file.name)
+    tally = ViolationTally()
     seen = []
     for one in judged.answers():
         tally.add(one)
@@ -50,7 +50,7 @@ def test_all_of_them_by_a_country_in_a_minute():
         recording = read_recording(file)
         if recording.step_s != 0.1:
             continue
-        judged = JudgedRecording(recording, GERMAN, Wanted(), file.name)
+        judged = RecordingVerdicts(recording, GERMAN, RequestedDrives(), file.name)
         drives += sum(not isinstance(one, NoDrive) for one in judged.answers())
     assert drives > 200
     assert time.process_time() - begin < 60

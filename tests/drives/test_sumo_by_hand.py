@@ -9,7 +9,7 @@ import pytest
 from sumo_files import SUMO
 
 from rulec.api.workflow import machines
-from rulec.extraction.recording_verdicts import JudgedRecording, Wanted
+from rulec.extraction.recording_verdicts import RecordingVerdicts, Wanted
 from rulec.scenario.recording_files import read_recording
 
 FILE = SUMO / "fcd.xml.gz"
@@ -111,7 +111,7 @@ def simulated():
 
 @pytest.mark.parametrize("book", ["de", "gb"])
 def test_what_they_did(simulated, book):
-    judged = JudgedRecording(simulated, machines(book), Wanted(tuple(EXPECTED)), str(FILE))
+    judged = RecordingVerdicts(simulated, machines(book), Wanted(tuple(EXPECTED)), str(FILE))
     found = {}
     for one in judged.answers():
         times = found.setdefault(one.drive.ego, {})

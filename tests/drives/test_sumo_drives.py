@@ -6,7 +6,7 @@ import pytest
 from sumo_files import ROAD_NET, body, data, moment, written
 
 from rulec.api.workflow import machines
-from rulec.extraction.recording_verdicts import JudgedRecording, Wanted
+from rulec.extraction.recording_verdicts import RecordingVerdicts, Wanted
 from rulec.scenario.recording_files import read_recording
 
 STEP_S = 0.5
@@ -39,7 +39,7 @@ def judged(folder, bodies, book, net=ROAD_NET):
     """Ego -> the hard rules that it violated, and when first; and whether a mirror was needed."""
     steps = [moment(STEP_S * k, *each) for k, each in enumerate(zip(*bodies, strict=True))]
     found = read_recording(written(folder, data(*steps), net=net))
-    answers = JudgedRecording(found, BOOKS[book], Wanted(), "by hand")
+    answers = RecordingVerdicts(found, BOOKS[book], Wanted(), "by hand")
     times = {}
     for one in answers.answers():
         known = times.setdefault(one.drive.ego, {})

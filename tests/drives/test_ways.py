@@ -8,14 +8,14 @@ from roads import lanelet, recording, straight, vehicle
 
 from rulec.extraction.drives import Drive, Drives, NoDrive
 from rulec.extraction.selection.thresholds import USUAL
-from rulec.extraction.tracks.driven_route import stretches
-from rulec.extraction.tracks.map_matching import whereabouts
-from rulec.extraction.tracks.tracks import everyone
+from rulec.extraction.tracks.driven_route import driven_stretches
+from rulec.extraction.tracks.map_matching import match_to_map
+from rulec.extraction.tracks.tracks import tracks_of
 
 
 def ways(found, ego=0):
-    moments = whereabouts(found, everyone(found, USUAL))[ego]
-    return [(one.first, one.last, one.way) for one in stretches(found, moments)]
+    moments = match_to_map(found, tracks_of(found, USUAL))[ego]
+    return [(one.first, one.last, one.way) for one in driven_stretches(found, moments)]
 
 
 def along(*places, **more):

@@ -11,8 +11,8 @@ from random_maneuvers import Given, scene
 from seeds import seeds
 
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.planning import judged
-from rulec.planning.product.accepted_edges import passages
+from rulec.planning import evaluate
+from rulec.planning.product.accepted_edges import accepted_edges
 
 MANY = 10**9
 
@@ -108,7 +108,7 @@ def the_classes(found, brute):
 
 
 def the_passages(found, brute):
-    on = passages(found.hard, found.product)
+    on = accepted_edges(found.hard, found.product)
     for paths, nodes, edges in (
         (brute.paths, on.possible_nodes, on.possible),
         (brute.satisfying, on.accepted_nodes, on.accepted),
@@ -148,7 +148,7 @@ def test_answers_are_those_of_all_paths(with_past, chance):
         after = Monitor(compiled, graph.step_s)
         for state, there in past:
             after.step(state, there)
-    found = judged(Given(graph), compiled, after)
+    found = evaluate(Given(graph), compiled, after)
     brute = BruteForce(graph, rulebook, past)
     wrong = [
         (question.__name__, answer, expected)

@@ -57,5 +57,5 @@ def test_a_book_says_whose_law_it_is_and_on_which_day(name: str) -> None:
 def test_each_rule_has_an_automaton_that_can_be_kept_and_violated(name: str) -> None:
     for rule in compiled(name).rules:
         assert rule.hoa.startswith("HOA: v1")
-        accepting = {verdict for row in rule.machine.accepting for verdict in row}
-        assert accepting == {True, False}, rule.name
+        outputs = {verdict for row in rule.machine.outputs for verdict in row}
+        assert outputs == {True, False}, rule.name

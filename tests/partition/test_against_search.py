@@ -9,7 +9,7 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace.graph_paths import all_traces
@@ -47,6 +47,6 @@ def test_counts_of_random_scenarios(scenario, partition):
     traces = list(all_traces(graph, "t", MOST + 1))
     assert len(traces) == total
     satisfying = sum(verify(trace, rules).satisfied for trace in traces)
-    explored = explore(effects(graph, instances(graph, rules)))
+    explored = explore(node_transformers(graph, instances(graph, rules)))
     assert explored.accepted == satisfying
     assert len(list(cheapest(explored))) == satisfying

@@ -17,10 +17,10 @@ from rulec.api.workflow import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify
 from rulec.partition import navigation_graph
-from rulec.planning import judged
+from rulec.planning import evaluate
 from rulec.planning.probability import violation_events
-from rulec.planning.probability.alternative_predictions import otherwise
-from rulec.planning.probability.rule_probability import chances
+from rulec.planning.probability.alternative_predictions import alternative_counts
+from rulec.planning.probability.rule_probability import rule_probabilities
 from rulec.planning.product.graph_product import count_paths
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.rulebook.loader import parse_rulebook
@@ -209,10 +209,10 @@ def touched(rule, trace, hit, rules):
 def test_they_are_the_sums_over_all_worlds(scenario, partition, extent, data):
     graph = scene_of(scenario, partition=partition, extent=extent)
     rules = PAPER if partition == "paper" else FINE
-    found = judged(graph, rules)
+    found = evaluate(graph, rules)
     assume(0 < found.traces <= MOST_PATHS)
     path = data.draw(st.sampled_from(list(paths(graph.trace_graph()))))
-    told = chances(found, Maneuver(path, 0.0, None))
+    told = rule_probabilities(found, Maneuver(path, 0.0, None))
     expected = dict.fromkeys((rule.name for rule in rules.rules), Fraction(0))
     of_one = {(rule, one.id): Fraction(0) for rule in ALONE for one in scenario.obstacles}
     clear = hard = Fraction(0)
@@ -244,9 +244,9 @@ def test_they_are_the_sums_over_all_worlds(scenario, partition, extent, data):
 def test_counts_in_other_worlds_are_those_of_all_paths(scenario, partition):
     graph = scene_of(scenario, partition=partition)
     rules = PAPER if partition == "paper" else FINE
-    found = judged(graph, rules)
+    found = evaluate(graph, rules)
     assume(0 < found.traces <= MOST_PATHS // 4)
-    for one in otherwise(found):
+    for one in alternative_counts(found):
         obstacles = [
             replace(other, motion=other.alternatives[one.number - 1].motion)
             if other.id == one.obstacle
@@ -278,12 +278,12 @@ def test_without_other_predictions_all_is_certain(scenario, partition):
         ),
     )
     graph = scene_of(certain, partition=partition)
-    found = judged(graph, PAPER if partition == "paper" else FINE)
+    found = evaluate(graph, PAPER if partition == "paper" else FINE)
     assume(found.traces)
     for maneuver in found.cheapest(3):
-        told = chances(found, maneuver)
+        told = rule_probabilities(found, maneuver)
         assert (told.clear, told.hard) == (1, 1)
-    assert otherwise(found) == []
+    assert alternative_counts(found) == []
     assert count_paths(graph.trace_graph()) == found.traces
 
 
@@ -338,7 +338,7 @@ def test_of_rules_that_count_too(scenario, data):
     graph = navigation_graph(scenario, partition="fine")
     assume(count_paths(graph.trace_graph()))
     path = data.draw(st.sampled_from(list(islice(paths(graph.trace_graph()), 100))))
-    told = chances(judged(graph, COUNTING), Maneuver(path, 0.0, None))
+    told = rule_probabilities(evaluate(graph, COUNTING), Maneuver(path, 0.0, None))
     expected = dict.fromkeys((rule.name for rule in COUNTING.rules), Fraction(0))
     hard = Fraction(0)
     for weight, obstacles in worlds(scenario):
@@ -370,8 +370,8 @@ def test_where_too_many_worlds_make_a_difference_it_is_not_known(monkeypatch):
     )
     road = Road((0.0, 40.0), (0.0, 3.0, 6.0))
     scenario = Scenario("queue", road, Ego(20.0, 1.5), others)
-    found = judged(navigation_graph(scenario, partition="fine"), COUNTING)
-    told = chances(found, Maneuver((found.graph.start,) * 5, 0.0, None))
+    found = evaluate(navigation_graph(scenario, partition="fine"), COUNTING)
+    told = rule_probabilities(found, Maneuver((found.graph.start,) * 5, 0.0, None))
     room = told.rules[0]
     assert (room.rule.name, room.kept, room.bindings) == ("room", None, ())
     assert told.hard is None
@@ -400,11 +400,11 @@ def test_what_was_before_counts_whatever_comes_true():
     graph = navigation_graph(Scenario("turned", road, Ego(5.0, 1.5), (o1,)))
     past = Trace("past", 1.0, {"o1": "vehicle"}, ({"position": {"o1": "b"}, "surface": "R_cw"},))
     stays = Maneuver((graph.start,) * len(graph.layers), 0.0, None)
-    assert chances(judged(graph, rules), stays).hard == 1
-    found = judged(graph, rules, past)
+    assert rule_probabilities(evaluate(graph, rules), stays).hard == 1
+    found = evaluate(graph, rules, past)
     assert found.satisfying == 0
-    told = chances(found, stays)
+    told = rule_probabilities(found, stays)
     assert (told.clear, told.hard) == (1, Fraction(2, 5))
-    (other,) = otherwise(found)
+    (other,) = alternative_counts(found)
     # Where o1 is still ahead, nothing is to its right
     assert other.satisfying == other.traces > 0

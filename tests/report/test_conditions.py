@@ -9,7 +9,7 @@ from hypothesis import given
 from machines import READS, VOCABULARY, machines
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Threshold
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Threshold
 from rulec.logic.formula import Atom, Comparison, Count, Quantity
 from rulec.report.automata.automaton_model import automaton_of
 from rulec.report.automata.guard_text import Wording
@@ -95,14 +95,14 @@ def test_what_is_said_shares_out_the_letters(machine):
         symbol = machine.letters[letter]
         if symbol == IMPOSSIBLE:
             continue
-        for state, row in enumerate(machine.following):
+        for state, row in enumerate(machine.successors):
             true = [
                 one
                 for one in automaton.transitions
                 if one.source == state and is_true(one.condition, world)
             ]
             assert [(one.target, one.accepted) for one in true] == [
-                (row[symbol], machine.accepting[state][symbol])
+                (row[symbol], machine.outputs[state][symbol])
             ]
 
 
@@ -131,7 +131,7 @@ def cube(p=(0, 1), place=(0, 1, 2), speed=(0, 1, 2, 3), q=(0, 1)):
     ],
 )
 def test_the_words(cubes, text):
-    machine = Machine(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
+    machine = MealyMonitor(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
     assert Wording(rule_with(machine), VOCABULARY).condition(cubes) == text
 
 
@@ -153,7 +153,7 @@ GAPS = (
 )
 def test_a_comparison_is_said_as_the_rulebook_says_it(formula, digit, text):
     read = NumberRead(GAPS, (Threshold(Fraction(0), inclusive=True),))
-    machine = Machine((read,), (0, 0), ((0,),), ((True,),), None, 0)
+    machine = MealyMonitor((read,), (0, 0), ((0,),), ((True,),), None, 0)
     wording = Wording(rule_with(machine, formula), VOCABULARY)
     assert wording.condition([(frozenset({digit}),)]) == text
 
@@ -163,14 +163,14 @@ def test_a_count_that_holds_a_comparison_is_denied_as_a_whole():
     terms = ((Fraction(1), Count("x", "thing", body)),)
     text = "count x: thing (speed < 3 km/h) >= 8"
     read = NumberRead(terms, (Threshold(Fraction(8), inclusive=True),))
-    machine = Machine((read,), (0, 0), ((0,),), ((True,),), None, 0)
+    machine = MealyMonitor((read,), (0, 0), ((0,),), ((True,),), None, 0)
     wording = Wording(rule_with(machine, Comparison(terms, ">=", Fraction(8), text)), VOCABULARY)
     assert wording.condition([(frozenset({0}),)]) == f"not ({text})"
 
 
 def test_the_state_of_an_example():
-    machine = Machine(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
+    machine = MealyMonitor(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
     wording = Wording(rule_with(machine), VOCABULARY)
-    facts = {("p", ()): True, ("q", ()): False, ("place", ("x",)): "far", ("speed", ()): 0.1}
-    assert wording.state(facts) == "p and not q and far(x) and speed = 0.1 km/h"
+    axioms = {("p", ()): True, ("q", ()): False, ("place", ("x",)): "far", ("speed", ()): 0.1}
+    assert wording.state(axioms) == "p and not q and far(x) and speed = 0.1 km/h"
     assert wording.state({}) == "true"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.diagnostics.source_text import Place
+from rulec.diagnostics.source_text import SourceLocation
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.findings.source_excerpt import MAX_WIDTH
 
@@ -74,10 +74,10 @@ def test_the_summary_counts():
 
 
 def test_a_file_without_a_line():
-    assert show(Place("a.rules")) == "error[R0202]: message\n --> a.rules\n\n1 error\n"
+    assert show(SourceLocation("a.rules")) == "error[R0202]: message\n --> a.rules\n\n1 error\n"
 
 
-@pytest.mark.parametrize("place", [None, Place("a.rules")])
+@pytest.mark.parametrize("place", [None, SourceLocation("a.rules")])
 def test_what_was_expected_is_said_without_a_line_too(place):
     lines = show(place, expected="expected this", help="do that").splitlines()
     assert "  = note: expected this" in lines

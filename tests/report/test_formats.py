@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.diagnostics import Diagnostic, Label, Place, Source, Span
+from rulec.diagnostics import Diagnostic, Label, Source, SourceLocation, Span
 from rulec.diagnostics.codes import CODES
 from rulec.report.findings.concise import as_lines
 from rulec.report.findings.diagnostics_json import as_json
@@ -27,7 +27,7 @@ WHOLE = Diagnostic(
     notes=("by the way",),
 )
 BARE = Diagnostic("R0207", "a remark", None, severity="warning")
-FILE_ONLY = Diagnostic("R0102", "too large", Place("/tmp/ü.rules"))
+FILE_ONLY = Diagnostic("R0102", "too large", SourceLocation("/tmp/ü.rules"))
 EVERY = [WHOLE, BARE, FILE_ONLY]
 
 
@@ -146,7 +146,7 @@ diagnostics = st.builds(
     anything,
     st.none()
     | st.builds(
-        Place,
+        SourceLocation,
         anything.filter(lambda name: "\0" not in name),
         st.none() | st.integers(1, 99),
         st.none() | st.integers(1, 99),

@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.logic.kleene import holds
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.rulebook.loader import parse_rulebook
 
 BOOK = """rulebook r type car signal near(c: car) default false
@@ -19,5 +19,5 @@ def test_a_counted_variable_keeps_its_object(use, near, expected):
     """Some near car has another one near: that takes two."""
     book = parse_rulebook(BOOK.replace("USE", use))
     state = {"near": dict.fromkeys(near, True)}
-    moment = Moment(state, dict.fromkeys("abc", "car"), book.vocabulary)
+    moment = StateView(state, dict.fromkeys("abc", "car"), book.vocabulary)
     assert holds(book.rules[0].formula, {}, moment) is expected

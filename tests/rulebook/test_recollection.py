@@ -10,7 +10,7 @@ import pytest
 
 from rulec.rulebook import loader
 from rulec.rulebook.files import batch_check, check_cache
-from rulec.rulebook.files.check_cache import Question, cache_folder, recall, remember
+from rulec.rulebook.files.check_cache import CheckQuestion, cache_folder, recall, remember
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require p }\n"
@@ -112,10 +112,10 @@ def test_the_day_counts(folder, made):
 
 
 def test_a_rulebook_is_asked_again_on_another_day(folder):
-    question = Question("a.rules", "a.rules", b"x", (), "", "2026-01-01")
+    question = CheckQuestion("a.rules", "a.rules", b"x", (), "", "2026-01-01")
     remember(question, (), ())
     assert recall(question) == ()
-    tomorrow = Question("a.rules", "a.rules", b"x", (), "", "2026-01-02")
+    tomorrow = CheckQuestion("a.rules", "a.rules", b"x", (), "", "2026-01-02")
     assert recall(tomorrow) is None
 
 
@@ -227,7 +227,7 @@ def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
 def test_the_longest_unused_go_first(folder, monkeypatch, used, left):
     """Half of them, once there are too many; recalling is using."""
     monkeypatch.setattr(check_cache, "MOST_FILES", 3)
-    questions = [Question(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
+    questions = [CheckQuestion(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
     for age, question in enumerate(questions[:3]):
         remember(question, (), ())
         os.utime(cache_folder() / f"{question.place()}.json", (age, age))

@@ -19,17 +19,17 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.monitoring.batch import batch_verify, joint_codes
-from rulec.monitoring.batch.batch_verify import judge_chunk, verify_many
+from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
 from rulec.monitoring.batch.column_reader import NotGivenError
 from rulec.monitoring.batch.columnize import gathered
-from rulec.monitoring.batch.engine import judge_cells, judge_columns
+from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.sum_thresholds import digits_of_sum
 from rulec.monitoring.batch.trace_groups import grouped
 from rulec.monitoring.batch.value_encoding import OddError
-from rulec.monitoring.bits.bit_verdicts import judge_on_bits
+from rulec.monitoring.bits.bit_verdicts import verify_on_bits
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import judge, verify
+from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
@@ -39,8 +39,8 @@ from rulec.trace import Trace
 @settings(max_examples=settings.default.max_examples // 2)
 def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     compiled = compile_here(rulebook)
-    alone = [told(judge(trace, compiled)) for trace in traces]
-    assert [told(one) for one in judge_chunk(traces, compiled, fewest=1)] == alone
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
+    assert [told(one) for one in verify_chunk(traces, compiled, fewest=1)] == alone
 
 
 @given(rulebooks(), chunks())
@@ -48,18 +48,18 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces):
 def test_cells_and_columns_say_the_same(rulebook, traces):
     """Whether states are told apart as a whole, or by what is read of them."""
     compiled = compile_here(rulebook)
-    sound = [one for one in traces if isinstance(judge(one, compiled), Verdict)]
+    sound = [one for one in traces if isinstance(verify_or_reason(one, compiled), Verdict)]
     sound = [one for one in sound if one.objects == sound[0].objects]
     sound = [one for one in sound if one.present == sound[0].present]
     if not sound:
         return
     group = grouped(sound)
     expected = violations(verify(sound[place], compiled) for place in group.order)
-    assert listed(judge_cells(group.cells, compiled), sound) == expected
+    assert listed(verify_cells(group.cells, compiled), sound) == expected
     with suppress(OddError, NotGivenError):
         columns = gathered(group.cells, TIMED_VOCABULARY)
-        assert listed(judge_columns(columns, compiled), sound) == expected
-        assert kept(judge_on_bits(columns, compiled)) == kept_by(judge_columns(columns, compiled))
+        assert listed(verify_columns(columns, compiled), sound) == expected
+        assert kept(verify_on_bits(columns, compiled)) == kept_by(verify_columns(columns, compiled))
 
 
 def listed(judged, traces):
@@ -149,14 +149,14 @@ def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
         traces.append(Trace(str(place), 1.0, objects, states, present))
     compiled = crowded(semantics)
     alone = [verify(trace, compiled) for trace in traces]
-    assert judge_chunk(traces, compiled) == alone
+    assert verify_chunk(traces, compiled) == alone
     group = grouped(traces)
     expected = violations(alone[place] for place in group.order)
-    assert listed(judge_cells(group.cells, compiled), traces) == expected
+    assert listed(verify_cells(group.cells, compiled), traces) == expected
     columns = gathered(group.cells, TIMED_VOCABULARY)
-    judged = judge_columns(columns, compiled)
+    judged = verify_columns(columns, compiled)
     assert listed(judged, traces) == expected
-    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
+    assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
 
 
 def test_three_hundred_objects():
@@ -171,12 +171,12 @@ def test_three_hundred_objects():
     ]
     alone = [verify(trace, compiled) for trace in traces]
     assert sum(len(one.violations) for one in alone) > 300
-    assert judge_chunk(traces, compiled) == alone
+    assert verify_chunk(traces, compiled) == alone
     columns = gathered(grouped(traces).cells, TIMED_VOCABULARY)
     expected = violations(alone[place] for place in grouped(traces).order)
-    judged = judge_columns(columns, compiled)
+    judged = verify_columns(columns, compiled)
     assert listed(judged, traces) == expected
-    assert kept(judge_on_bits(columns, compiled)) == kept_by(judged)
+    assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
 
 
 def test_any_number_of_traces_and_what_is_none(monkeypatch):
@@ -204,8 +204,8 @@ def test_what_can_be_no_trace_is_not_judged():
         Trace("e", 1.0, {}, ("speed",)),
     ]
     for one in bad:
-        answers = judge_chunk([one] * 5, compiled)
-        assert [told(answer) for answer in answers] == [told(judge(one, compiled))] * 5
+        answers = verify_chunk([one] * 5, compiled)
+        assert [told(answer) for answer in answers] == [told(verify_or_reason(one, compiled))] * 5
         assert isinstance(answers[0], NotJudged)
 
 
@@ -222,7 +222,7 @@ def test_more_is_read_than_one_number_can_tell_apart(monkeypatch, most_cells):
     compiled = crowded("stutter")
     alone = [verify(trace, compiled) for trace in traces]
     group = grouped(traces)
-    judged = judge_columns(gathered(group.cells, TIMED_VOCABULARY), compiled)
+    judged = verify_columns(gathered(group.cells, TIMED_VOCABULARY), compiled)
     assert listed(judged, traces) == violations(alone[place] for place in group.order)
 
 
@@ -283,8 +283,8 @@ def test_states_that_cannot_be(more, n_states, chance):
         Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
         for n in range(20)
     ]
-    alone = [told(judge(trace, queue(more))) for trace in traces]
-    assert [told(one) for one in judge_chunk(traces, queue(more))] == alone
+    alone = [told(verify_or_reason(trace, queue(more))) for trace in traces]
+    assert [told(one) for one in verify_chunk(traces, queue(more))] == alone
 
 
 PATIENT = """rulebook patient
@@ -299,7 +299,7 @@ hard rule answer { require always (asked implies eventually[<= 100 steps] told) 
 def test_a_large_machine_and_states_that_cannot_be_and_are_not_met():
     """As many states as steps that are left; those of the traces are all different."""
     compiled = compile_here(parse_rulebook(PATIENT, "patient.rules"))
-    assert len(compiled.rules[0].machine.following) > 100
+    assert len(compiled.rules[0].machine.successors) > 100
     said, traces = [(True, False), (False, True), (False, False)], []
     for n in range(20):
         words = [said[(n + step) % 3] for step in range(1 + n % 4)]
@@ -310,5 +310,5 @@ def test_a_large_machine_and_states_that_cannot_be_and_are_not_met():
         traces.append(Trace(str(n), 1.0, {}, tuple(states)))
     # Who is asked at last is never told: the last state is repeated for ever.
     unanswered = [one.id for one in traces if one.states[-1]["asked"]]
-    found = judge_chunk(traces, compiled)
+    found = verify_chunk(traces, compiled)
     assert [one.trace for one in found if one.violations] == unanswered

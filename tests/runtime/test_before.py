@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import rulec
 from rulec.automata.compiler import compile_rulebook
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.trace_history import only_trace, past_of
@@ -89,7 +89,7 @@ BEHIND = {"position": {"o1": "b"}}
 
 
 def test_a_past_that_leads_elsewhere_is_refused():
-    place = Place("past.jsonl", 1)
+    place = SourceLocation("past.jsonl", 1)
     half = refused(Trace("t", 0.5, {"o1": "vehicle"}, (BEHIND,), place=place))
     assert (half.code, half.place) == ("R0511", place)
     assert "steps of 0.5 s" in half.message
@@ -119,7 +119,7 @@ def test_who_has_left_may_come_back_as_another():
 
 def test_there_is_one_past():
     trace = Trace("t", 1.0, {}, ({},))
-    place = Place("past.jsonl")
+    place = SourceLocation("past.jsonl")
     assert only_trace([trace], place) is trace
     with pytest.raises(RulecError, match="several traces"):
         only_trace([trace, trace], place)

@@ -9,11 +9,11 @@ from hypothesis import given
 from random_priorities import RULES
 
 from rulec.automata.stutter_invariance import stutter_invariant
-from rulec.planning.product.cell_tracks import places
+from rulec.planning.product.cell_tracks import cell_tracks
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
-from rulec.planning.product.node_transformers import effects
-from rulec.planning.ranking.homotopy import Classes, count_classes, variants
+from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.ranking.homotopy import HomotopyClasses, count_classes, variants
 from rulec.trace import TraceGraph
 
 STUTTERING = replace(
@@ -24,8 +24,8 @@ STUTTERING = replace(
 @given(graphs(objects=("car1",)))
 def test_rules_that_do_not_count_steps_divide_no_class(graph):
     graph = replace(graph, present={})
-    found = effects(graph, instances(graph, STUTTERING))
-    assert count_classes(found, places(graph)).divided == 0
+    found = node_transformers(graph, instances(graph, STUTTERING))
+    assert count_classes(found, cell_tracks(graph)).divided == 0
 
 
 STAYING, CHANGING = (None, 0), (2, 6)
@@ -57,10 +57,10 @@ TWO_LANES = [{0: STAYING, 1: CHANGING}, {0: CHANGING, 1: STAYING}]
 
 def test_lanes_side_by_side_have_a_class_for_every_number_of_changes():
     graph = graph_of(*[TWO_LANES] * 30)
-    assert places(graph) == ((0, 1),) * 31
-    found = effects(graph, [])
-    assert count_classes(found, places(graph)) == Classes(31, 0, 0)
-    listed = list(variants(explore(found), places(graph)))
+    assert cell_tracks(graph) == ((0, 1),) * 31
+    found = node_transformers(graph, [])
+    assert count_classes(found, cell_tracks(graph)) == HomotopyClasses(31, 0, 0)
+    listed = list(variants(explore(found), cell_tracks(graph)))
     assert [one.places for one in listed] == [
         (0, 1) * (n // 2) + (0,) * (n % 2) for n in range(1, 32)
     ]
@@ -74,16 +74,16 @@ def test_a_rule_that_is_about_where_one_ends_divides_classes_by_place():
         *[TWO_LANES] * 4, states=(({"p": False, "q": False}, {"p": True, "q": False}),) * 5
     )
     never_p = replace(RULES, rules=tuple(one for one in RULES.rules if one.name == "never_p"))
-    assert count_classes(effects(graph, instances(graph, never_p)), places(graph)) == Classes(
-        1, 4, 0
-    )
+    assert count_classes(
+        node_transformers(graph, instances(graph, never_p)), cell_tracks(graph)
+    ) == HomotopyClasses(1, 4, 0)
 
 
 def test_a_place_is_cells_that_go_on_as_each_other_and_say_the_same():
     splitting = [{0: STAYING, 1: STAYING}]
     joining = [{0: STAYING, 2: CHANGING}, {0: STAYING}]
     graph = graph_of(splitting, joining, [{0: STAYING}, {1: STAYING}, {1: CHANGING}])
-    assert places(graph) == ((0,), (0, 0), (0, 1, 2), (0, 1, 3))
+    assert cell_tracks(graph) == ((0,), (0, 0), (0, 1, 2), (0, 1, 3))
     quiet, loud = {"p": False, "q": False}, {"p": True, "q": False}
     states = ((quiet,), (quiet, loud), (quiet, quiet, quiet), (loud, quiet, quiet))
-    assert places(replace(graph, states=states)) == ((0,), (0, 1), (0, 2, 3), (4, 2, 5))
+    assert cell_tracks(replace(graph, states=states)) == ((0,), (0, 1), (0, 2, 3), (4, 2, 5))

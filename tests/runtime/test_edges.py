@@ -10,7 +10,7 @@ from machines import READS, machines
 from words import formulas
 
 from rulec.automata.guards import edges, literals
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 
 
 def letters_of(cubes, sizes):
@@ -31,8 +31,8 @@ def possible(machine):
 
 def check(machine):
     sizes = [read.size for read in machine.reads]
-    for state in range(len(machine.following)):
-        if state in (machine.dead, machine.safe):
+    for state in range(len(machine.successors)):
+        if state in (machine.rejecting_sink, machine.accepting_sink):
             continue
         seen = {}
         for edge in edges(machine):
@@ -43,8 +43,8 @@ def check(machine):
         for letter in possible(machine):
             symbol = machine.letters[letter]
             edge = seen[letter]
-            assert edge.target == machine.following[state][symbol]
-            assert edge.accepted == machine.accepting[state][symbol]
+            assert edge.target == machine.successors[state][symbol]
+            assert edge.accepted == machine.outputs[state][symbol]
         assert sum(edge.otherwise for edge in set(seen.values())) <= 1
 
 
@@ -74,7 +74,7 @@ def test_no_cube_is_needless(machine):
 def test_letters_that_no_state_has_make_conditions_shorter():
     """p and q exclude each other: where p holds, no need to say that q does not."""
     reads = (READS[0], READS[3])
-    machine = Machine(
+    machine = MealyMonitor(
         reads, (0, 1, 0, IMPOSSIBLE), ((0, 1), (1, 1)), ((True, False), (False, False)), 1, None
     )
     cubes = {edge.target: edge.cubes for edge in edges(machine)}
@@ -87,7 +87,7 @@ def test_what_is_easily_said_is_said_in_one_cube():
         int(p == 1 and place in (0, 2) and speed in (0, 2, 3))
         for _, speed, place, p in product(range(2), range(4), range(3), range(2))
     ]
-    machine = Machine(
+    machine = MealyMonitor(
         READS, tuple(letters), ((0, 1), (1, 1)), ((True, False), (False, True)), None, None
     )
     stay, go = [edge for edge in edges(machine) if edge.source == 0]

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from rulec.api.workflow import compile_rulebook
 from rulec.book_tests.example_runs import run_all
-from rulec.book_tests.verdict_coverage import unexercised, verdicts
+from rulec.book_tests.verdict_coverage import uncovered_verdicts, verdicts
 from rulec.rulebook.loader import parse_rulebook
 
 HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"
@@ -18,7 +18,7 @@ def run_of(*rules, pattern=None):
 
 
 def said(*rules, pattern=None):
-    return [one.message for one in unexercised(run_of(*rules, pattern=pattern))]
+    return [one.message for one in uncovered_verdicts(run_of(*rules, pattern=pattern))]
 
 
 KEPT, BROKEN = "accept { p and q }", "reject { p }"
@@ -63,7 +63,7 @@ def test_the_verdicts_that_a_rule_has(formula, expected):
 def test_states_that_a_fact_rules_out_show_nothing():
     run = run_of("fact not (p and q)", "hard rule A { require never (p and q) accept { p } }")
     assert verdicts(run.compiled.rules[0].machine) == {True}
-    assert list(unexercised(run)) == []
+    assert list(uncovered_verdicts(run)) == []
 
 
 def test_a_verdict_that_a_rule_never_has_is_not_asked_for():
@@ -72,13 +72,13 @@ def test_a_verdict_that_a_rule_never_has_is_not_asked_for():
 
 
 def test_a_warning_says_where_and_what_to_write():
-    (one,) = unexercised(run_of(REQUIRE % KEPT))
+    (one,) = uncovered_verdicts(run_of(REQUIRE % KEPT))
     assert (one.code, one.severity, one.place.line) == ("R0408", "warning", 4)
     assert one.expected == "expected `reject { … }`"
     assert one.notes == ("all of its examples would also pass if it required nothing",)
-    (one,) = unexercised(run_of(REQUIRE % ""))
+    (one,) = uncovered_verdicts(run_of(REQUIRE % ""))
     assert one.expected == "expected `accept { … }` and `reject { … }`"
-    (one,) = unexercised(run_of(REQUIRE % BROKEN))
+    (one,) = uncovered_verdicts(run_of(REQUIRE % BROKEN))
     assert one.notes == ("all of its examples would also pass if it forbade everything",)
 
 

@@ -12,10 +12,10 @@ from recorded import chunks, rulebooks, told
 from timed import TIMED_VOCABULARY
 
 from rulec.monitoring.batch import batch_verify
-from rulec.monitoring.batch.batch_verify import judge_chunk
+from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.batch.machines import chunked_run
 from rulec.monitoring.batch.machines.chunked_run import visited
-from rulec.monitoring.verify import judge
+from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
 
@@ -44,9 +44,9 @@ def test_states_are_those_that_are_passed_one_by_one(n_states, n_letters, length
 def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     """As if any trace were long."""
     compiled = compile_here(rulebook)
-    alone = [told(judge(trace, compiled)) for trace in traces]
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
     with mock.patch.object(chunked_run, "FEWEST_STEPS", 1):
-        assert [told(one) for one in judge_chunk(traces, compiled, fewest=1)] == alone
+        assert [told(one) for one in verify_chunk(traces, compiled, fewest=1)] == alone
 
 
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
@@ -61,7 +61,7 @@ def test_one_long_trace(semantics, lost, monkeypatch):
     if lost is not None:
         states[lost] = {**states[lost], "place": {"a": "near", "b": "gone"}}
     trace = Trace("t", 1.0, {"a": "car", "b": "car"}, tuple(states))
-    expected = judge(trace, compiled)
+    expected = verify_or_reason(trace, compiled)
     found = [(one.rule, one.binding, one.step) for one in expected.violations]
     late = [("in time", {"v": "a"}, None)]
     early = [] if lost is None else [("apart", {"v": "a", "w": "b"}, lost)]
@@ -69,4 +69,4 @@ def test_one_long_trace(semantics, lost, monkeypatch):
     monkeypatch.setattr(
         batch_verify, "judge", lambda *_: pytest.fail("it was judged state by state")
     )
-    assert judge_chunk([trace], compiled) == [expected]
+    assert verify_chunk([trace], compiled) == [expected]

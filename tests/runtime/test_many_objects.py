@@ -27,7 +27,7 @@ from rulec.logic.formula import (
 from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
@@ -270,4 +270,4 @@ def test_a_graph_of_one_path_counts_objects_as_its_trace_does(semantics, trace):
     for one in rules.rules:
         alone = replace(rules, rules=(one,))
         kept = not verify(trace, alone).violations
-        assert explore(effects(graph, instances(graph, alone))).accepted == kept
+        assert explore(node_transformers(graph, instances(graph, alone))).accepted == kept

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.breakpoints import floors_of
+from rulec.monitoring.online.breakpoints import breakpoints_of
 from rulec.monitoring.online.rule_group import Learned
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.monitoring.online.state_shape import Outline
+from rulec.monitoring.online.state_shape import StateShape
 from rulec.rulebook.loader import parse_rulebook
 
 RULES = compile_rulebook(
@@ -130,7 +130,7 @@ def test_with_and_without_outlines_and_memory_a_monitor_says_the_same(drive, siz
         with pytest.MonkeyPatch.context() as patched:
             # As `verify` reads a state.
             patched.setattr(
-                "rulec.monitoring.online.bound_rules.Scene._reading_of", lambda *_: None
+                "rulec.monitoring.online.bound_rules.BoundRules._reading_of", lambda *_: None
             )
             assert remembering == answer(other, state)
 
@@ -168,7 +168,7 @@ def test_an_answer_cannot_be_changed():
 def is_remembered(monitor, state, monkeypatch):
     """Is a state taken without being read?"""
     with monkeypatch.context() as patched:
-        patched.delattr("rulec.monitoring.online.bound_rules.Scene.read")
+        patched.delattr("rulec.monitoring.online.bound_rules.BoundRules.read")
         try:
             monitor.step(state, BOTH)
         except AttributeError:
@@ -221,7 +221,7 @@ PAIRS = {
     "between": {"a": {"b": 1.5}},
     "follows": {"a": {"b": False}},
 }
-KEY = Outline([*PAIRS], BOTH, RULES.vocabulary, floors_of(RULES)).key
+KEY = StateShape([*PAIRS], BOTH, RULES.vocabulary, breakpoints_of(RULES)).key
 
 
 @pytest.mark.parametrize(
@@ -271,7 +271,7 @@ A_NEAR, BOTH_NEAR = {"place": {"a": "near"}}, {"place": {"a": "near", "b": "near
     ],
 )
 def test_nor_has_more_than_a_single_name_says(objects, state, odd):
-    key = Outline([*state], objects, RULES.vocabulary, floors_of(RULES)).key
+    key = StateShape([*state], objects, RULES.vocabulary, breakpoints_of(RULES)).key
     assert key(deepcopy(state)) == key(state)
     with pytest.raises(LookupError):
         key(odd)

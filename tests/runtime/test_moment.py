@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     Same,
 )
 from rulec.logic.kleene import Unknown, counted, holds, number_of, total
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem
 
@@ -36,7 +36,7 @@ STATE = {
     "place": {"car1": "near", "car2": "near", "tree": "far"},
     "gap": {"car1": {"car2": 0.1, "tree": 7.5}, "car2": {"car1": 0.1}},
 }
-HERE = Moment(STATE, OBJECTS, VOCABULARY)
+HERE = StateView(STATE, OBJECTS, VOCABULARY)
 
 
 def times(factor, term):
@@ -58,7 +58,7 @@ def test_objects_of_a_type_count_and_those_of_its_subtypes():
 
 
 def test_objects_that_are_not_there_do_not_count_and_need_no_values():
-    here = Moment({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
+    here = StateView({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
     assert counted(Count("x", "thing", near("x")), {}, here) == ("car1",)
 
 
@@ -76,14 +76,14 @@ def test_only_the_one_that_a_variable_names(same):
         assert counted(Count("x", "thing", body), {"v": "tree"}, HERE) == ()
     unknown = counted(Count("x", "car", both(same, close("v", "x"))), {"v": "car1"}, HERE)
     assert unknown == Unknown("gap", ("car1", "car1"))
-    away = Moment({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
+    away = StateView({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
     assert counted(Count("x", "car", same), {"v": "car2"}, away) == ()
 
 
 def test_a_count_within_a_count():
     has_company = less(0, times(-1, Count("y", "car", both(near("y"), no(Same("x", "y"))))))
     assert counted(Count("x", "thing", has_company), {}, HERE) == ("car1", "car2", "tree")
-    alone = Moment(
+    alone = StateView(
         {"place": {"car1": "near", "tree": "far"}}, {"car1": "car", "tree": "thing"}, VOCABULARY
     )
     assert counted(Count("x", "thing", has_company), {}, alone) == ("tree",)
@@ -159,7 +159,7 @@ def test_what_decides_is_named_not_what_could_be_done_without():
 
 
 def test_a_signal_and_a_value():
-    here = Moment({"p": True, "q": False}, {}, VOCABULARY)
+    here = StateView({"p": True, "q": False}, {}, VOCABULARY)
     assert holds(P, {}, here) is True
     assert holds(Q, {}, here) is False
     assert holds(Atom("place", ("v",), "near"), {"v": "tree"}, HERE) is False

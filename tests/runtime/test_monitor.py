@@ -9,7 +9,7 @@ from books import P, Q, always, book, eventually, far, implies, near, no, rule
 
 import rulec
 from rulec.automata.compiler import compile_rulebook
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Constant
 from rulec.monitoring.online.monitor_state import SoFar
 from rulec.monitoring.online.replay import replayed
@@ -155,9 +155,9 @@ def test_what_is_no_state_is_said_with_its_place_and_changes_nothing(state, obje
     judge.step({"place": {"a": "near"}}, CAR)
     before = judge.snapshot()
     with pytest.raises(RulecError) as refused:
-        judge.step(state, objects, Place("drive.jsonl", 7))
+        judge.step(state, objects, SourceLocation("drive.jsonl", 7))
     (diagnostic,) = refused.value.diagnostics
-    assert (diagnostic.code, diagnostic.place) == (code, Place("drive.jsonl", 7))
+    assert (diagnostic.code, diagnostic.place) == (code, SourceLocation("drive.jsonl", 7))
     assert judge.snapshot() == before
 
 
@@ -192,7 +192,7 @@ def test_a_state_that_cannot_be_is_refused(state):
 
 def test_a_state_that_cannot_be_is_refused_where_no_fact_counts():
     """Then letters are read off values that are remembered."""
-    rulebook = replace(FACTS, facts=FACTS.facts[:1])
+    rulebook = replace(FACTS, axioms=FACTS.axioms[:1])
     judge = Monitor(compile_rulebook(rulebook))
     judge.step({"standing": {"a": False}, "turning": {"a": True}}, CAR)
     with pytest.raises(RulecError, match="state 1 cannot be"):

@@ -59,7 +59,7 @@ bodies = st.recursive(
 )
 
 
-def is_counted(body, name, facts):
+def is_counted(body, name, axioms):
     """Straight from the definitions, every value being given or having a default."""
     match body:
         case Same(_, other):
@@ -67,12 +67,12 @@ def is_counted(body, name, facts):
         case Atom(declaration, arguments, value):
             key = (declaration, tuple(name if one == "x" else one for one in arguments))
             default = VOCABULARY.declarations[declaration].default
-            assert key in facts or default is not None
-            return facts.get(key, default) == (True if value is None else value)
+            assert key in axioms or default is not None
+            return axioms.get(key, default) == (True if value is None else value)
         case Unary(_, operand):
-            return not is_counted(operand, name, facts)
+            return not is_counted(operand, name, axioms)
         case Binary(operator, left, right):
-            a, b = is_counted(left, name, facts), is_counted(right, name, facts)
+            a, b = is_counted(left, name, axioms), is_counted(right, name, axioms)
             return {
                 BinaryOperator.AND: a and b,
                 BinaryOperator.OR: a or b,
@@ -90,11 +90,11 @@ def test_the_counts_come_out(body, variables, sizes):
         return
     everyone = [*variables, *scene.objects]
     assert len({one.name for one in everyone}) == len(everyone)
-    for facts, size in zip(scene.states, sizes, strict=True):
+    for axioms, size in zip(scene.states, sizes, strict=True):
         counted = [
             one.name
             for one in everyone
-            if one.type != "stone" and is_counted(body, one.name, facts)
+            if one.type != "stone" and is_counted(body, one.name, axioms)
         ]
         assert len(counted) == size
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from recorded import chunks, rulebooks, told
 
 from rulec.monitoring.batch import batch_verify
-from rulec.monitoring.batch.batch_verify import judge_chunk
+from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged
-from rulec.monitoring.verify import judge
+from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 
@@ -37,8 +37,8 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces, data):
     traces = [
         with_names(trace, dict(zip("abc", data.draw(orders)[:3], strict=True))) for trace in traces
     ]
-    alone = [told(judge(trace, compiled)) for trace in traces]
-    assert [told(one) for one in judge_chunk(traces, compiled, fewest=1)] == alone
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
+    assert [told(one) for one in verify_chunk(traces, compiled, fewest=1)] == alone
 
 
 PAIRS = """rulebook pairs
@@ -76,11 +76,11 @@ def drive(chance, number, n_states=3):
 def test_they_are_judged_together(monkeypatch):
     chance = Random(7)
     traces = [drive(chance, number) for number in range(100)]
-    alone = [judge(trace, pairs()) for trace in traces]
+    alone = [verify_or_reason(trace, pairs()) for trace in traces]
     bound = {item for one in alone for each in one.violations for item in each.binding.values()}
     assert len(bound) > 100
     monkeypatch.setattr(batch_verify, "judge", lambda *_: pytest.fail("a trace was judged alone"))
-    assert judge_chunk(traces, pairs()) == alone
+    assert verify_chunk(traces, pairs()) == alone
 
 
 def test_a_trace_that_speaks_of_another_ones_objects_is_refused():
@@ -88,6 +88,8 @@ def test_a_trace_that_speaks_of_another_ones_objects_is_refused():
     traces = [drive(chance, number) for number in range(8)]
     traces[5] = with_names(traces[5], {})
     traces[5].states[1]["slow"]["3.0"] = True
-    answers = judge_chunk(traces, pairs())
-    assert [told(one) for one in answers] == [told(judge(one, pairs())) for one in traces]
+    answers = verify_chunk(traces, pairs())
+    assert [told(one) for one in answers] == [
+        told(verify_or_reason(one, pairs())) for one in traces
+    ]
     assert [isinstance(one, NotJudged) for one in answers] == [n == 5 for n in range(8)]

@@ -10,7 +10,7 @@ from hypothesis import given
 from rulec.automata.compiler import compile_rulebook
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace import TraceGraph
 from rulec.trace.graph_paths import paths
@@ -49,7 +49,7 @@ def test_paths_do_not_wander_into_dead_ends():
         goals=(2,),
     )
     assert list(paths(graph)) == [(0,) + (2,) * (n - 1)]
-    (only,) = cheapest(explore(effects(graph, instances(graph, RULES))))
+    (only,) = cheapest(explore(node_transformers(graph, instances(graph, RULES))))
     assert only.cost == 1.0
 
 
@@ -71,7 +71,7 @@ def test_counts_beyond_any_machine_number():
     )
     assert count_paths(graph) == 2 ** (n - 1)
     # Of these only the one without any p has nothing that would have to be answered.
-    assert explore(effects(graph, instances(graph, RULES))).accepted == 1
+    assert explore(node_transformers(graph, instances(graph, RULES))).accepted == 1
 
 
 def test_a_layer_may_be_empty():
@@ -89,6 +89,6 @@ def test_a_layer_may_be_empty():
         start=0,
         goals=(),
     )
-    explored = explore(effects(graph, instances(graph, RULES)))
+    explored = explore(node_transformers(graph, instances(graph, RULES)))
     assert explored.accepted == 0
     assert list(cheapest(explored)) == []

@@ -13,8 +13,8 @@ from random_priorities import LEVELS, RULES, closed, rulebooks
 
 from rulec.api.workflow import compile_rulebook, navigation_graph
 from rulec.monitoring.verify import verify
-from rulec.planning import judged, partition_for
-from rulec.planning.ranking.penalties import Rank, ranks_of
+from rulec.planning import evaluate, partition_for
+from rulec.planning.ranking.penalties import PenaltyRank, ranks_of
 from rulec.trace.graph_paths import paths, trace_of
 
 
@@ -86,7 +86,11 @@ def test_hard_rules_stand_above_soft_ones_and_equal_levels_are_one():
         priorities=closed({("a", "b"), ("b", "a"), ("b", "c")}),
     )
     ranks = ranks_of(rulebook)
-    assert ranks.ranks == (Rank("hard", ("c",)), Rank("hard", ("",)), Rank("soft", ("a", "b")))
+    assert ranks.ranks == (
+        PenaltyRank("hard", ("c",)),
+        PenaltyRank("hard", ("",)),
+        PenaltyRank("soft", ("a", "b")),
+    )
     assert ranks.above == (frozenset(), frozenset(), frozenset({0, 1}))
     assert [ranks.weight(one) for one in rulebook.rules] == [3, 6, 12, 6, 2]
     # Level c is below a and b, but its rules are hard; no level, and c, are not comparable.
@@ -110,7 +114,7 @@ def test_a_whole_rulebook_on_a_scenario(scenario, name):
         ),
     ):
         graph = navigation_graph(scenario, partition=partition_for(rulebook, None))
-        found = judged(graph, rulebook)
+        found = evaluate(graph, rulebook)
         every = {path: penalty(rulebook, found.paths, path) for path in paths(found.paths)}
         best = found.best()
         order = rulebook.priorities

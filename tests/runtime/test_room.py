@@ -11,7 +11,7 @@ from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_instances import HARD, SOFT, instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.limits import room_for
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import ranks_of
 
@@ -34,7 +34,7 @@ def with_room(most, work):
 
 @given(GRAPHS, rulebooks())
 def test_a_product_needs_room_for_its_nodes(graph, rulebook):
-    found = effects(graph, instances(graph, rulebook))
+    found = node_transformers(graph, instances(graph, rulebook))
     counts = explore(found).counts
     n_nodes = sum(map(len, counts[1:]))
     assert with_room(n_nodes, lambda: explore(found).counts) == counts
@@ -44,7 +44,7 @@ def test_a_product_needs_room_for_its_nodes(graph, rulebook):
 
 @given(GRAPHS, rulebooks(), st.integers(0, 30))
 def test_with_little_room_a_ranking_is_the_same_or_none(graph, rulebook, most):
-    found = effects(graph, instances(graph, rulebook, strengths=(*HARD, *SOFT)))
+    found = node_transformers(graph, instances(graph, rulebook, strengths=(*HARD, *SOFT)))
     ranks = ranks_of(rulebook)
 
     def best():

@@ -14,10 +14,10 @@ from words import VOCABULARY, formulas, letters, words
 
 from rulec.diagnostics import RulecError
 from rulec.logic.semantics import holds
-from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import NotJudged
-from rulec.monitoring.verify import judge
+from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
 
@@ -49,14 +49,14 @@ def test_verdicts_are_those_of_all_continuations(formula, ends, word):
     """By walking through the machine, behind every prefix, with every state that there could be."""
     rules = compiled(formula, ends)
     machine = rules.rules[0].machine
-    columns = Columns([*EVERY_STATE, *word], VOCABULARY, str)
+    columns = LetterReader([*EVERY_STATE, *word], VOCABULARY, str)
     symbols = columns.word(rules.rules[0], {"x": "car1"}, 0, len(EVERY_STATE) + len(word) - 1)
     possible = set(symbols[: len(EVERY_STATE)])
     state, expected = 0, []
     for symbol in symbols[len(EVERY_STATE) :]:
-        outcomes = {machine.accepting[state][symbol]}
-        if_it_ended_here = machine.accepting[state][symbol]
-        state = machine.following[state][symbol]
+        outcomes = {machine.outputs[state][symbol]}
+        if_it_ended_here = machine.outputs[state][symbol]
+        state = machine.successors[state][symbol]
         outcomes |= outcomes_from(machine, state, possible)
         expected.append(
             {(True,): "satisfied", (False,): "violated"}.get(
@@ -77,8 +77,8 @@ def outcomes_from(machine, state, possible):
     while waiting:
         here = waiting.pop()
         for symbol in possible:
-            outcomes.add(machine.accepting[here][symbol])
-            after = machine.following[here][symbol]
+            outcomes.add(machine.outputs[here][symbol])
+            after = machine.successors[here][symbol]
             if after not in seen:
                 seen.add(after)
                 waiting.append(after)
@@ -135,7 +135,7 @@ def test_at_the_end_it_says_what_verify_says(rulebook, journey):
     rules = compile_here(rulebook)
     monitor = Monitor(rules)
     for number, (state, objects) in enumerate(journey, 1):
-        expected = judge(as_trace(journey[:number]), rules)
+        expected = verify_or_reason(as_trace(journey[:number]), rules)
         if isinstance(expected, NotJudged):
             with pytest.raises(RulecError) as refused:
                 monitor.step(state, objects)
@@ -176,7 +176,7 @@ def test_what_is_refused_and_why_is_what_verify_says(rulebook, journey):
     for state, there in journey:
         if there != objects:
             continue
-        answer = judge(Trace("t", 1.0, objects, (*taken, state)), rules)
+        answer = verify_or_reason(Trace("t", 1.0, objects, (*taken, state)), rules)
         if isinstance(answer, NotJudged):
             with pytest.raises(RulecError) as refused:
                 monitor.step(state, objects)
@@ -248,4 +248,4 @@ def test_changes_tell_every_verdict(rulebook, journey):
 
 def start_of(rules, name):
     machine = next(one.machine for one in rules.rules if one.name == name)
-    return "satisfied" if machine.safe == 0 else "holds so far"
+    return "satisfied" if machine.accepting_sink == 0 else "holds so far"

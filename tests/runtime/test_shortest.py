@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from words import VOCABULARY, formulas
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import Machine, NumberRead, Read, Threshold
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
 from rulec.book_tests.example_runs import run_all
 from rulec.logic.formula import Atom, Count, Quantity
 from rulec.logic.semantics import holds
@@ -41,14 +41,14 @@ def test_their_verdicts_and_their_length(formula):
     traces = shortest_traces(compiled.rules[0], VOCABULARY)
     for states, accepts in ((traces.accepted, True), (traces.rejected, False)):
         if states is None:
-            assert machine.safe == 0 if not accepts else machine.dead == 0
+            assert machine.accepting_sink == 0 if not accepts else machine.rejecting_sink == 0
             continue
         assert holds(formula, letters(states)) is accepts
         example = Example(accepts, tuple(state.facts for state in states))
         shown = book(rule_with(one, example))
         assert run_all(shown, compiled).outcomes[0].passed
     if traces.rejected is not None:
-        symbols = range(len(machine.following[0]))
+        symbols = range(len(machine.successors[0]))
         for length in range(1, min(len(traces.rejected), 5)):
             for word in product(symbols, repeat=length):
                 assert run(machine, word)[0]
@@ -70,7 +70,7 @@ def test_the_accepted_one_differs_in_one_state_where_that_is_possible(formula):
         machine = compiled.machine
         word = [machine.letters[_letter(machine, state.facts)] for state in traces.rejected]
         for place in range(len(word)):
-            for symbol in range(len(machine.following[0])):
+            for symbol in range(len(machine.successors[0])):
                 assert not run(machine, [*word[:place], symbol, *word[place + 1 :]])[0]
 
 
@@ -113,13 +113,13 @@ def of_numbers(reads, bad, variables=()):
     total = 1
     for read in reads:
         total *= read.size
-    machine = Machine(
+    machine = MealyMonitor(
         reads,
         tuple(int(letter in bad) for letter in range(total)),
         ((0, 1), (1, 1)),
         ((True, False), (False, False)),
-        dead=1,
-        safe=None,
+        rejecting_sink=1,
+        accepting_sink=None,
     )
     return CompiledRule("r", "hard", variables, "", "", P, machine, "")
 

@@ -9,10 +9,10 @@ from books import P, Q, always, book, implies, rule
 from rulec.api.workflow import compile_rulebook, find_maneuvers, machines
 from rulec.automata import step_compilation
 from rulec.automata.step_compilation import AnyStep
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import judge, verify
+from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace, TraceGraph
@@ -33,7 +33,7 @@ BOOK = book(ANSWERED, PLAIN)
 def trace(text, step_s):
     """``"p.q"``: in each state `p`, `q` or neither."""
     states = tuple({"p": letter == "p", "q": letter == "q"} for letter in text)
-    return Trace("t", step_s, {}, states, place=Place("t.jsonl", 3))
+    return Trace("t", step_s, {}, states, place=SourceLocation("t.jsonl", 3))
 
 
 def violated(verdict):
@@ -70,7 +70,7 @@ def test_the_machine_of_another_step_does_not_judge():
         "rule `answered` was compiled for steps of 1 s; the trace has steps of 0.5 s"
     )
     assert problem.help == "compile its source with `--step 0.5`"
-    assert problem.place == Place("t.jsonl", 3)
+    assert problem.place == SourceLocation("t.jsonl", 3)
 
 
 def test_without_bounds_in_seconds_one_machine_judges_all():
@@ -89,17 +89,17 @@ def test_a_step_is_the_decimal_that_is_written():
 
 def test_a_step_that_does_not_fit_is_a_problem_of_that_trace_alone():
     every = machines(BOOK)
-    answers = [judge(trace("pq", step), every) for step in (1, 0.3, 0.5, 0.3)]
+    answers = [verify_or_reason(trace("pq", step), every) for step in (1, 0.3, 0.5, 0.3)]
     assert [type(one) for one in answers] == [Verdict, NotJudged, Verdict, NotJudged]
     (problem,) = answers[1].error.diagnostics
     assert problem.code == "R0407"
-    assert problem.place == Place("t.jsonl", 3)
+    assert problem.place == SourceLocation("t.jsonl", 3)
 
 
 def test_a_trace_without_a_step_is_no_question_to_the_compiler():
     every = machines(BOOK)
     for step_s in (0.0, -1.0, float("nan"), float("inf")):
-        assert judge(trace("pq", step_s), every).error.diagnostics[0].code == "R0501"
+        assert verify_or_reason(trace("pq", step_s), every).error.diagnostics[0].code == "R0501"
 
 
 @pytest.fixture
@@ -181,4 +181,4 @@ def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
     with pytest.raises(RulecError) as caught:
         find_maneuvers("s1", compile_rulebook(BOOK, step_s=0.5))
     (problem,) = caught.value.diagnostics
-    assert (problem.code, problem.place) == ("R0507", Place("s1"))
+    assert (problem.code, problem.place) == ("R0507", SourceLocation("s1"))

@@ -18,8 +18,8 @@ from recorded import chunks, rulebooks, told
 
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.monitoring.batch import table_verdicts
-from rulec.monitoring.batch.table_verdicts import judge_items, rulebook_for
-from rulec.monitoring.verify import judge
+from rulec.monitoring.batch.table_verdicts import rulebook_for, verify_items
+from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.arrow import trace_cuts
@@ -39,7 +39,7 @@ from rulec.trace.arrow import parquet as parquet_table  # noqa: E402
 def answers(data, form, rules):
     found = []
     for items in read_chunks(io.BytesIO(data), "t", form):
-        found += judge_items(items, rules)[1]
+        found += verify_items(items, rules)[1]
     return [told(one) for one in found]
 
 
@@ -56,7 +56,7 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
 
 def row_by_row(data, form, rules):
     read = [one for items in read_chunks(io.BytesIO(data), "t", form) for one in items]
-    return [told(judge(one, rules)) for one in read]
+    return [told(verify_or_reason(one, rules)) for one in read]
 
 
 def as_csv(rows):
@@ -185,7 +185,7 @@ def drives():
 @pytest.mark.parametrize("block_bytes", [20_000, 1 << 22])
 def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     data = written(drives(), form)
-    alone = [judge(trace, traffic()) for trace in drives()]
+    alone = [verify_or_reason(trace, traffic()) for trace in drives()]
     bound = {item for one in alone for lost in one.violations for item in lost.binding.values()}
     assert len(bound) > 100
     assert any(one.violations == () for one in alone)
@@ -207,7 +207,7 @@ def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
     for module in (trace_blocks, trace_cuts, csv_table):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
-    expected = [judge(trace, traffic()) for trace in drives()[:60]]
+    expected = [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
     assert by_columns(data, "csv", traffic(), 3_000) == expected
 
 
@@ -217,8 +217,8 @@ def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     place = next(n for n, row in enumerate(rows) if row[:2] == ["t60", "1"])
     rows[place][1] = "7"
     found = by_columns(FORMS[form](rows), form, traffic(), 5_000)
-    assert found[:60] == [judge(trace, traffic()) for trace in drives()[:60]]
-    assert found[61:] == [judge(trace, traffic()) for trace in drives()[61:100]]
+    assert found[:60] == [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
+    assert found[61:] == [verify_or_reason(trace, traffic()) for trace in drives()[61:100]]
     trace, (problem,) = found[60]
     assert trace is None
     assert problem.message == "the step is `7`; here it is 0 or 1"
@@ -272,16 +272,16 @@ def test_the_rulebook_of_a_trace_is_the_one_for_its_step():
     assert isinstance(items, Block)
     assert rulebook_for(items, 3, lambda step: asked.append(step) or traffic()) is traffic()
     assert asked == [Fraction(1, 2)]
-    found, answered = judge_items(items, traffic())
+    found, answered = verify_items(items, traffic())
     assert found is items
-    assert answered[3] == judge(drives()[3], traffic())
+    assert answered[3] == verify_or_reason(drives()[3], traffic())
     assert items[3] == drives()[3]
 
 
 def test_large_csv_without_arrow(monkeypatch):
     monkeypatch.setattr(csv_table, "find_spec", lambda _: None)
     data = written(drives()[:40], "csv")
-    expected = [judge(trace, traffic()) for trace in drives()[:40]]
+    expected = [verify_or_reason(trace, traffic()) for trace in drives()[:40]]
     assert by_columns(data, "csv", traffic()) == expected
 
 

@@ -8,10 +8,10 @@ from measured import MEASURED, closer, gap, number, others_near
 from words import VOCABULARY
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Atom, Constant, Quantity, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import judge, verify
+from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
@@ -34,7 +34,7 @@ def trace(*places, objects=CARS, present=None, **constant):
         }
         for text in places
     )
-    return Trace("t", 1.0, objects, states, present or {}, Place("t.jsonl", 3))
+    return Trace("t", 1.0, objects, states, present or {}, SourceLocation("t.jsonl", 3))
 
 
 def violations(book_rule, judged):
@@ -197,7 +197,7 @@ def test_what_does_not_fit_is_said(judged, code, words, way_out):
     assert words in diagnostic.message
     assert "state 0" in diagnostic.message or "object" in diagnostic.message
     assert way_out in diagnostic.help
-    assert diagnostic.place == Place("t.jsonl", 3)
+    assert diagnostic.place == SourceLocation("t.jsonl", 3)
 
 
 def test_values_are_only_needed_where_a_rule_reads_them():
@@ -206,7 +206,7 @@ def test_values_are_only_needed_where_a_rule_reads_them():
 
 def test_one_bad_trace_does_not_stop_the_others():
     broken = RulecError(())
-    answers = [judge(item, RULES) for item in (trace("ggg"), broken, trace("..."))]
+    answers = [verify_or_reason(item, RULES) for item in (trace("ggg"), broken, trace("..."))]
     assert [type(answer) for answer in answers] == [Verdict, NotJudged, NotJudged]
     assert (answers[1].trace, answers[2].trace) == (None, "t")
 
@@ -214,7 +214,7 @@ def test_one_bad_trace_does_not_stop_the_others():
 def measured(formula, state):
     rules = compile_rulebook(Rulebook("test", MEASURED, (rule("A", formula, "v: car"),)))
     cars = {"car1": "car", "car2": "car"}
-    return verify(Trace("t", 1.0, cars, (state,), place=Place("t.jsonl", 3)), rules)
+    return verify(Trace("t", 1.0, cars, (state,), place=SourceLocation("t.jsonl", 3)), rules)
 
 
 @pytest.mark.parametrize("value", [True, "5", None, float("nan"), float("inf"), -float("inf")])
@@ -254,7 +254,7 @@ def test_a_missing_number_is_named(formula, state, words):
     with pytest.raises(RulecError) as caught:
         measured(always(formula), state)
     (diagnostic,) = caught.value.diagnostics
-    assert (diagnostic.code, diagnostic.place) == ("R0504", Place("t.jsonl", 3))
+    assert (diagnostic.code, diagnostic.place) == ("R0504", SourceLocation("t.jsonl", 3))
     assert f"state 0 does not say {words}, which rule `A` needs" in diagnostic.message
 
 

@@ -3,7 +3,7 @@
 from words import VOCABULARY
 
 from rulec.automata import compiler
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Rule, Rulebook, Variable
@@ -68,8 +68,8 @@ def compile_here(rulebook, step_s=None):
         semantics=rulebook.semantics,
         levels=rulebook.levels,
         priorities=rulebook.priorities,
-        facts=tuple(
-            CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
+        axioms=tuple(
+            CompiledAxiom(one.variables, one.formula, at(one.span)) for one in rulebook.axioms
         ),
     )
 

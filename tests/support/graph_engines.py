@@ -9,7 +9,7 @@ from reading import number
 
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.product.graph_instances import HARD, SOFT, instances, violations
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.pruning import violating
 from rulec.planning.trace_history import past_of
 from rulec.trace import Trace, TraceGraph
@@ -45,7 +45,7 @@ def path(rulebook, compiled, trace):
 def count(rulebook, compiled, trace):
     """Which rules there are paths against."""
     graph = chain(trace)
-    found = violating(effects(graph, instances(graph, compiled, strengths=BOTH)))
+    found = violating(node_transformers(graph, instances(graph, compiled, strengths=BOTH)))
     assert all(product.accepted == 1 for product in found.values())
     return tuple(sorted(found))
 

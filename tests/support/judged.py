@@ -1,14 +1,14 @@
 """Recordings before a rulebook, as mappings that tests can look into."""
 
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import JudgedRecording
-from rulec.extraction.selection.requested import Wanted
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection.requested import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 
 
 def violated(found, book, **wanted):
     """Ego -> the rules that it violated, with when first (s of the recording)."""
-    judged = JudgedRecording(found, book, Wanted(**wanted), "by hand")
+    judged = RecordingVerdicts(found, book, RequestedDrives(**wanted), "by hand")
     answers = {}
     for one in judged.answers():
         assert not isinstance(one, NoDrive)

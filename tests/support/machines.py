@@ -5,7 +5,7 @@ from math import prod
 
 from hypothesis import strategies as st
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, Threshold
 from rulec.logic.formula import Quantity
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
@@ -46,7 +46,7 @@ def machines(draw):
     letters = draw(st.lists(st.integers(lowest, n_classes - 1), min_size=total, max_size=total))
     row = st.lists(st.integers(0, n_states - 1), min_size=n_classes, max_size=n_classes)
     verdicts = st.lists(st.booleans(), min_size=n_classes, max_size=n_classes)
-    return Machine(
+    return MealyMonitor(
         tuple(reads),
         tuple(letters),
         tuple(tuple(draw(row)) for _ in range(n_states)),

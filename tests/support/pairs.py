@@ -93,15 +93,15 @@ def formulas(atoms):
     )
 
 
-def sides(formulas, variables=(), semantics=("stutter", "stutter"), facts=()):
+def sides(formulas, variables=(), semantics=("stutter", "stutter"), axioms=()):
     """Both rules compiled, each in a rulebook of its own."""
     found = []
     for number, (formula, how) in enumerate(zip(formulas, semantics, strict=True)):
         rule = Rule("r", "hard", tuple(variables), formula)
-        book = Rulebook(f"book{number}", VOCABULARY, (rule,), semantics=how, facts=facts)
+        book = Rulebook(f"book{number}", VOCABULARY, (rule,), semantics=how, axioms=axioms)
         compiled = compile_here(book)
         header = replace(compiled, rules=())
-        found.append(Side(header, facts, compiled.rules[0], number))
+        found.append(Side(header, axioms, compiled.rules[0], number))
     return found
 
 

@@ -15,14 +15,14 @@ from rulec.vocabulary import Enumeration
 
 def possible_letters(formula, variables, rulebook):
     """Each is the set of the formula's propositions that are true in it."""
-    facts = [
+    axioms = [
         (fact.formula, names)
-        for fact in rulebook.facts
+        for fact in rulebook.axioms
         if not counts(fact)
         for names in ways_to_say(fact, variables, rulebook.vocabulary)
     ]
     own = set(atoms_of(formula))
-    spoken = own | {said_of(one, names) for fact, names in facts for one in atoms_of(fact)}
+    spoken = own | {said_of(one, names) for fact, names in axioms for one in atoms_of(fact)}
     subjects = {}
     for one in spoken:
         subjects.setdefault(subject(one), []).append(one)
@@ -32,7 +32,9 @@ def possible_letters(formula, variables, rulebook):
     ]
     whole = (frozenset().union(*parts) for parts in product(*cases))
     return frozenset(
-        letter & own for letter in whole if all(holds(fact, names, letter) for fact, names in facts)
+        letter & own
+        for letter in whole
+        if all(holds(fact, names, letter) for fact, names in axioms)
     )
 
 

@@ -24,7 +24,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.model import Fact, Rule, Rulebook, Variable
+from rulec.rulebook.model import Axiom, Rule, Rulebook, Variable
 
 NO = UnaryOperator.NOT
 JOINING = [one for one in BinaryOperator if one.value in BOOLEAN]
@@ -208,7 +208,7 @@ def fact(chance, rules):
     said = formula(
         chance, lambda chance: chance.choice(leaves), chance.randint(1, 3), (NO,), tuple(JOINING)
     )
-    return Fact(about.variables, said)
+    return Axiom(about.variables, said)
 
 
 def rulebook(chance, step_s, for_graphs=False):
@@ -229,6 +229,6 @@ def rulebook(chance, step_s, for_graphs=False):
     )
     while True:
         known = tuple(fact(chance, rules) for _ in range(n_facts))
-        book = Rulebook("random", WORLD, rules, semantics=semantics, facts=known)
+        book = Rulebook("random", WORLD, rules, semantics=semantics, axioms=known)
         if all(possible_letters(one.formula, one.variables, book) for one in rules):
             return replace(book, levels=LEVELS, priorities=closed(pairs))

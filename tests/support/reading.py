@@ -104,7 +104,7 @@ class Reading:
         read = {name for rule in self.rulebook.rules for name in names_in(rule.formula)}
         return any(
             self.truth(fact.formula, objects, n) is False
-            for fact in self.rulebook.facts
+            for fact in self.rulebook.axioms
             if counts(fact) and read & set(names_in(fact.formula))
             for objects, first, last in self.choices(fact)
             for n in range(first, last + 1)

@@ -17,8 +17,8 @@ from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columnize import gathered
 from rulec.monitoring.batch.trace_groups import grouped
-from rulec.monitoring.bits.bit_verdicts import judge_on_bits
-from rulec.monitoring.verify import judge
+from rulec.monitoring.bits.bit_verdicts import verify_on_bits
+from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.table_writer import kinds_in
 from rulec.trace.formats.trace_files import read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
@@ -31,7 +31,7 @@ def by_oracle(rulebook, compiled, trace):
 
 
 def one_by_one(rulebook, compiled, traces):
-    return [told(judge(trace, compiled)) for trace in traces]
+    return [told(verify_or_reason(trace, compiled)) for trace in traces]
 
 
 def compiled_file(rulebook, compiled, traces):
@@ -157,7 +157,7 @@ def across(rulebook, compiled, traces):
     for alike in shapes.values():
         group = grouped(alike)
         columns = gathered(group.cells, compiled.vocabulary)
-        for task, kept in judge_on_bits(columns, compiled):
+        for task, kept in verify_on_bits(columns, compiled):
             for place, keeps in zip(group.order, kept.tolist(), strict=True):
                 if not keeps:
                     rule, objects = task.rule.name, tuple(task.objects.values())

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_trace
 
-PLACE = Place("t.jsonl", 3)
+PLACE = SourceLocation("t.jsonl", 3)
 OBJECTS = {"v1": "vehicle"}
 
 

@@ -17,17 +17,17 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
-from rulec.rulebook.model import Fact
+from rulec.rulebook.model import Axiom
 from rulec.trace import Trace
 from rulec.witnesses.joint_alphabet import Alphabet
 from rulec.witnesses.letter_functions import machine_column
-from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_word import shortest
 from rulec.witnesses.trace_synthesis import alone, staged
 from rulec.witnesses.undecided import UndecidedError
 
 
-def violation(side: Side, others: Sequence[Side], given: Sequence[Fact] = ()) -> Trace | None:
+def counterexample(side: Side, others: Sequence[Side], given: Sequence[Axiom] = ()) -> Trace | None:
     """A shortest trace that a rule forbids and all others allow; None if there is none.
 
     ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
@@ -57,12 +57,12 @@ def violation(side: Side, others: Sequence[Side], given: Sequence[Fact] = ()) ->
     return staged(situations, scene, (*steps, Fraction(1))[0], shows)
 
 
-def _scene(side: Side, others: Sequence[Side], given: Sequence[Fact]) -> Scene:
+def _scene(side: Side, others: Sequence[Side], given: Sequence[Axiom]) -> ObjectUniverse:
     """The objects that a rule speaks of, in the words of all the rulebooks."""
     sides = (side, *others)
     read = {name for one in sides for name in read_by(one.rule)}
-    facts = tuple(dict.fromkeys((*(fact for one in sides for fact in one.facts), *given)))
-    asked = read | {name for fact in facts for name in names_in(fact.formula)}
+    axioms = tuple(dict.fromkeys((*(fact for one in sides for fact in one.axioms), *given)))
+    asked = read | {name for fact in axioms for name in names_in(fact.formula)}
     vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
     for other in others:
         if other.rulebook.vocabulary == vocabulary:
@@ -72,7 +72,7 @@ def _scene(side: Side, others: Sequence[Side], given: Sequence[Fact]) -> Scene:
             raise UndecidedError(f"`{name}` is not declared alike in both")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
     objects = {variable.name: variable.type for variable in side.rule.variables}
-    return Scene(objects, vocabulary, facts, unsaid - read)
+    return ObjectUniverse(objects, vocabulary, axioms, unsaid - read)
 
 
 def read_by(rule: CompiledRule) -> frozenset[str]:

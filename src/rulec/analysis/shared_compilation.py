@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.bounds import speaks_of_seconds
 from rulec.logic.free_names import names_in
-from rulec.rulebook.model import Fact, Rule, Rulebook
+from rulec.rulebook.model import Axiom, Rule, Rulebook
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class Side:
     """
 
     rulebook: CompiledRulebook
-    facts: tuple[Fact, ...]
+    axioms: tuple[Axiom, ...]
     rule: CompiledRule
     law: int
 
@@ -57,9 +57,9 @@ class Distinct:
                 {
                     name: Side(
                         replace(header, rules=()),
-                        book.facts,
+                        book.axioms,
                         _named(self._machines[key], chosen[name]),
-                        self._laws.setdefault((key, book.facts), len(self._laws)),
+                        self._laws.setdefault((key, book.axioms), len(self._laws)),
                     )
                     for name, key in keys.items()
                 }
@@ -76,7 +76,7 @@ def _key(rule: Rule, book: Rulebook) -> Key:
         rule.step_s if speaks_of_seconds(rule.formula) else None,
         tuple(book.vocabulary.declarations[name] for name in read),
         book.semantics,
-        book.facts,
+        book.axioms,
     )
 
 

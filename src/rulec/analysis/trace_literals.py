@@ -23,7 +23,7 @@ def in_words_of(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabul
 
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
-    facts = []
+    axioms = []
     for (name, items), declaration in keys_of(vocabulary, trace.objects):
         value = value_in(state, name, items, declaration)
         if name not in names or value is None or value == declaration.default:
@@ -31,10 +31,10 @@ def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabu
         if len(set(items)) < len(items):
             continue
         if isinstance(declaration, Enumeration):
-            facts.append(str(Atom(name, items, str(value))))
+            axioms.append(str(Atom(name, items, str(value))))
         elif isinstance(declaration, Quantity):
             number = number_in_words(Fraction(str(value)))
-            facts.append(f"{Atom(name, items)} = {number} {declaration.unit}")
+            axioms.append(f"{Atom(name, items)} = {number} {declaration.unit}")
         else:
-            facts.append(f"{'' if value else 'not '}{Atom(name, items)}")
-    return " and ".join(facts) or "true"
+            axioms.append(f"{'' if value else 'not '}{Atom(name, items)}")
+    return " and ".join(axioms) or "true"

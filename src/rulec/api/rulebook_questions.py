@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from rulec.analysis.audit.rulebook_audit import Audit, audit
-from rulec.analysis.diff.rulebook_comparison import Difference, difference, setting_pairs
+from rulec.analysis.diff.rulebook_comparison import RulebookDiff, difference, setting_pairs
 from rulec.analysis.lineage.book_lineage import read_with_inheritance
 from rulec.analysis.lint.rulebook_findings import findings
 from rulec.automata.step_compilation import AnyStep
@@ -63,7 +63,7 @@ def compare_rulebooks(
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     tell: Callable[[float], object] = lambda _: None,
     most: int = 1,
-) -> Difference:
+) -> RulebookDiff:
     """Compare the rules of two rulebooks, given by name or by their sources' paths.
 
     ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from rulec.automata.step_compilation import AnyStep
-    from rulec.extraction.recording_verdicts import JudgedRecording
-    from rulec.extraction.selection.requested import Wanted
+    from rulec.extraction.recording_verdicts import RecordingVerdicts
+    from rulec.extraction.selection.requested import RequestedDrives
     from rulec.partition import GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.trace_history import Before
@@ -116,27 +116,29 @@ def find_maneuvers(
     that has taken one, or its snapshot. Without a ``partition`` it is the one whose relations the
     rulebook reads.
     """
-    from rulec.planning import judged, partition_for
+    from rulec.planning import evaluate, partition_for
 
     rules = machines(rulebook)
     source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
     options["partition"] = partition_for(source, options.get("partition"))
     graph = navigation_graph(scenario, **options)
-    return judged(graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step), after)
+    return evaluate(
+        graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step), after
+    )
 
 
-def judge_recording(
+def verify_recording(
     recording: str | Path | Recording,
     rulebook: Rules,
-    wanted: Wanted | None = None,
+    wanted: RequestedDrives | None = None,
     net: str | Path | None = None,
-) -> JudgedRecording:
+) -> RecordingVerdicts:
     """What the vehicles of recorded traffic did, judged; ``net`` is for SUMO's data."""
-    from rulec.extraction.recording_verdicts import JudgedRecording
-    from rulec.extraction.selection.requested import Wanted
+    from rulec.extraction.recording_verdicts import RecordingVerdicts
+    from rulec.extraction.selection.requested import RequestedDrives
     from rulec.scenario.recording_files import read_recording
 
     file = recording if isinstance(recording, str | Path) else recording.name
     if isinstance(recording, str | Path):
         recording = read_recording(Path(recording), None if net is None else Path(net))
-    return JudgedRecording(recording, machines(rulebook), wanted or Wanted(), str(file))
+    return RecordingVerdicts(recording, machines(rulebook), wanted or RequestedDrives(), str(file))

@@ -158,17 +158,17 @@ def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposi
     Of an enumeration's values exactly one is true; of comparisons of one number those that it
     passes.
     """
-    facts: list[Formula] = []
+    axioms: list[Formula] = []
     for read in reads:
         if isinstance(read, NumberRead):
             about = [one for one in propositions if isinstance(one, Comparison)]
-            facts += _number_facts(read, [one for one in about if one.terms == read.terms])
+            axioms += _number_facts(read, [one for one in about if one.terms == read.terms])
             continue
         atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
-        facts += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
+        axioms += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
         if atoms and not read.others:
-            facts.append(joined(OR, atoms))
-    return joined(AND, facts) if facts else Constant(True)
+            axioms.append(joined(OR, atoms))
+    return joined(AND, axioms) if axioms else Constant(True)
 
 
 def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:

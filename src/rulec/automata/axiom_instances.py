@@ -34,31 +34,31 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.renaming import renamed
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
 
 
 @dataclass(frozen=True, slots=True)
-class FactInstance:
+class AxiomInstance:
     """A fact, said of a rule's variables: ``variables`` are those in the places of its own."""
 
-    fact: Fact
+    fact: Axiom
     variables: tuple[str, ...]
     formula: Formula
 
 
-def fact_instances(
-    variables: Sequence[Variable], facts: Iterable[Fact], vocabulary: Vocabulary
-) -> tuple[FactInstance, ...]:
+def axiom_instances(
+    variables: Sequence[Variable], axioms: Iterable[Axiom], vocabulary: Vocabulary
+) -> tuple[AxiomInstance, ...]:
     """Every fact in every way to say it of distinct variables of its types, or of subtypes.
 
     Facts without variables are said once, facts that count are left out.
     """
     types = {variable.name: variable.type for variable in variables}
     return tuple(
-        FactInstance(fact, chosen, renamed(fact.formula, dict(zip(own, chosen, strict=True))))
-        for fact in facts
+        AxiomInstance(fact, chosen, renamed(fact.formula, dict(zip(own, chosen, strict=True))))
+        for fact in axioms
         if not counts(fact.formula)
         for own in [[variable.name for variable in fact.variables]]
         for chosen in choices([variable.type for variable in fact.variables], types, vocabulary)
@@ -76,7 +76,7 @@ def counts(formula: Formula) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class FactGroup:
+class AxiomGroup:
     """Instances of facts that have to do with each other.
 
     ``natural`` is what is known, besides, of all that they speak of, in their propositions and
@@ -84,7 +84,7 @@ class FactGroup:
     """
 
     natural: Formula
-    instances: tuple[FactInstance, ...]
+    instances: tuple[AxiomInstance, ...]
 
     @property
     def known(self) -> Formula:
@@ -92,9 +92,9 @@ class FactGroup:
         return joined(AND, [self.natural, *(one.formula for one in self.instances)])
 
 
-def fact_groups(
-    propositions: Iterable[Proposition], instances: Iterable[FactInstance], vocabulary: Vocabulary
-) -> tuple[FactGroup, ...]:
+def axiom_groups(
+    propositions: Iterable[Proposition], instances: Iterable[AxiomInstance], vocabulary: Vocabulary
+) -> tuple[AxiomGroup, ...]:
     """The facts in groups that do not bear on each other, for a rule of these propositions."""
     every = tuple(propositions)
     groups = []
@@ -102,7 +102,7 @@ def fact_groups(
         about = _subjects(group)
         touched = [one for one in every if _subject(one) in about]
         natural = _natural([*touched, *(one.formula for one in group)], vocabulary)
-        groups.append(FactGroup(natural, group))
+        groups.append(AxiomGroup(natural, group))
     return tuple(groups)
 
 
@@ -114,9 +114,9 @@ def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
     return knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
 
 
-def linked(instances: Iterable[FactInstance]) -> Iterator[tuple[FactInstance, ...]]:
+def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:
     """The instances in groups that have nothing to do with each other."""
-    groups: list[tuple[set[object], list[FactInstance]]] = []
+    groups: list[tuple[set[object], list[AxiomInstance]]] = []
     for one in instances:
         about, members = _subjects([one]), [one]
         for group in [group for group in groups if group[0] & about]:
@@ -159,7 +159,7 @@ def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything
     raise TypeError("what is known is said by `not`, `and` and `or`")
 
 
-def _subjects(instances: Iterable[FactInstance]) -> set[object]:
+def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
     return {_subject(atom) for one in instances for atom in atoms_of(one.formula)}
 
 

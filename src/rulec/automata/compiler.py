@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from fractions import Fraction
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.axiom_instances import fact_groups, fact_instances
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.axiom_instances import axiom_groups, axiom_instances
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.compiler_messages import no_machine, no_spot
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
@@ -93,8 +93,8 @@ def compile_rulebook(
         spot=spot,
         semantics=rulebook.semantics,
         traffic=rulebook.traffic,
-        facts=tuple(
-            CompiledFact(one.variables, one.formula, at(one.span)) for one in rulebook.facts
+        axioms=tuple(
+            CompiledAxiom(one.variables, one.formula, at(one.span)) for one in rulebook.axioms
         ),
         levels=rulebook.levels,
         priorities=rulebook.priorities,
@@ -160,8 +160,8 @@ def _job(rulebook: Rulebook, rule: Rule, step: Fraction | None, cpu_limit_s: int
         remarks.append(f"one letter is {time_in_words(step, 's')}")
     vocabulary = rulebook.vocabulary
     reads = reads_of(formula, vocabulary)
-    instances = fact_instances(rule.variables, rulebook.facts, vocabulary)
-    groups = fact_groups(propositions_of(formula), instances, vocabulary)
+    instances = axiom_instances(rule.variables, rulebook.axioms, vocabulary)
+    groups = axiom_groups(propositions_of(formula), instances, vocabulary)
     return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, groups, cpu_limit_s)
 
 

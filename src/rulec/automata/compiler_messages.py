@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.automata.axiom_instances import FactInstance
+from rulec.automata.axiom_instances import AxiomInstance
 from rulec.automata.spot_worker import Failed
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
@@ -42,10 +42,10 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
     )
 
 
-def _contradiction(rule: Rule, instances: tuple[FactInstance, ...]) -> Diagnostic:
-    facts = list(dict.fromkeys(one.fact for one in instances))
-    first, *others = facts
-    said = ", ".join(f"`{in_words(one.formula)}`" for one in facts)
+def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:
+    axioms = list(dict.fromkeys(one.fact for one in instances))
+    first, *others = axioms
+    said = ", ".join(f"`{in_words(one.formula)}`" for one in axioms)
     types = {variable.name: variable.type for variable in rule.variables}
     who = sorted({f"a `{types[name]}`" for one in instances for name in one.variables})
     return Diagnostic(

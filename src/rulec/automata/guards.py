@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 
 Cube = tuple[frozenset[int], ...]
 """For each of a machine's reads the digits that are allowed."""
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class GuardedEdge:
     """The steps from ``source`` to ``target`` after which an ending trace gets one verdict.
 
     They are the letters of ``cubes`` together, but for those that no state can have. Of the edges
@@ -33,19 +33,19 @@ class Edge:
     otherwise: bool = False
 
 
-def edges(machine: Machine) -> tuple[Edge, ...]:
+def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
     """All edges but those of the states in which the verdict is final, state by state."""
     cover = _Covers(machine)
-    found: list[Edge] = []
-    for source, row in enumerate(machine.following):
-        if source in (machine.dead, machine.safe):
+    found: list[GuardedEdge] = []
+    for source, row in enumerate(machine.successors):
+        if source in (machine.rejecting_sink, machine.accepting_sink):
             continue
         onsets: dict[tuple[int, bool], int] = {}
         for symbol, target in enumerate(row):
-            key = (target, machine.accepting[source][symbol])
+            key = (target, machine.outputs[source][symbol])
             onsets[key] = onsets.get(key, 0) | cover.of_class[symbol]
         leaving = [
-            Edge(source, target, accepted, cover.cubes(onset))
+            GuardedEdge(source, target, accepted, cover.cubes(onset))
             for (target, accepted), onset in sorted(onsets.items())
         ]
         found += _with_otherwise(leaving, cover.sizes)
@@ -59,18 +59,18 @@ def literals(cubes: Sequence[Cube], sizes: Sequence[int]) -> int:
     )
 
 
-def _with_otherwise(leaving: Sequence[Edge], sizes: Sequence[int]) -> Iterator[Edge]:
+def _with_otherwise(leaving: Sequence[GuardedEdge], sizes: Sequence[int]) -> Iterator[GuardedEdge]:
     lengths = [literals(edge.cubes, sizes) for edge in leaving]
     longest = lengths.index(max(lengths))
     for number, edge in enumerate(leaving):
         last_resort = number == longest and len(leaving) > 1 and lengths[number] > 1
-        yield Edge(edge.source, edge.target, edge.accepted, edge.cubes, last_resort)
+        yield GuardedEdge(edge.source, edge.target, edge.accepted, edge.cubes, last_resort)
 
 
 class _Covers:
     """Sets of a machine's letters as the bits of integers, and their smallest covers."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MealyMonitor) -> None:
         self.sizes = [read.size for read in machine.reads]
         total = len(machine.letters)
         self._everything = (1 << total) - 1
@@ -80,7 +80,7 @@ class _Covers:
             ones = ((1 << stride) - 1) * (self._everything // ((1 << (stride * size)) - 1))
             self._digits.append([ones << (digit * stride) for digit in range(size)])
             stride *= size
-        n_classes = len(machine.following[0])
+        n_classes = len(machine.successors[0])
         members: list[list[int]] = [[] for _ in range(n_classes)]
         impossible: list[int] = []
         for letter, symbol in enumerate(machine.letters):

@@ -73,7 +73,7 @@ class NumberRead:
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class MealyMonitor:
     """A deterministic machine that judges a finite word.
 
     The verdict is that of its rulebook's semantics: on the word with its last letter repeated for
@@ -81,25 +81,26 @@ class Machine:
 
     A letter is a number in mixed radix: the digit of ``reads[0]`` counts ones, that of ``reads[1]``
     counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class do
-    the same everywhere; ``IMPOSSIBLE`` are those that facts exclude. ``following[state][class]`` is
-    the next state; ``accepting[state][class]`` is the verdict on a word that ends with such a
-    letter read in that state. Runs start in state 0. From state ``dead`` no word is accepted, from
-    state ``safe`` every word is; None where there is no such state. The machine is minimal.
+    the same everywhere; ``IMPOSSIBLE`` are those that axioms exclude. ``successors[state][class]``
+    is the next state; ``outputs[state][class]`` is the verdict on a word that ends with such a
+    letter read in that state. Runs start in state 0. From state ``rejecting_sink`` no word is
+    accepted, from state ``accepting_sink`` every word is; None where there is no such state. The
+    machine is minimal.
     """
 
     reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]
-    following: tuple[tuple[int, ...], ...]
-    accepting: tuple[tuple[bool, ...], ...]
-    dead: int | None
-    safe: int | None
+    successors: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[bool, ...], ...]
+    rejecting_sink: int | None
+    accepting_sink: int | None
 
 
 def trap(
-    following: Sequence[Sequence[int]], accepting: Sequence[Sequence[bool]], *, verdict: bool
+    successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[bool]], *, verdict: bool
 ) -> int | None:
     """The state that gives ``verdict`` whatever comes; a minimal machine has at most one."""
-    for state, row in enumerate(following):
-        if set(row) == {state} and all(value is verdict for value in accepting[state]):
+    for state, row in enumerate(successors):
+        if set(row) == {state} and all(value is verdict for value in outputs[state]):
             return state
     return None

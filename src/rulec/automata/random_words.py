@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator
 
 from rulec.automata.alphabet import letters_with, propositions_of
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.logic.bounds import operations_of, range_of
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics, holds
@@ -16,7 +16,7 @@ _EFFORT = 200_000
 """About so many values are evaluated altogether, if that is possible with the fewest words."""
 
 
-def agrees(machine: Machine, formula: Formula, semantics: Semantics) -> bool:
+def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> bool:
     """Does the machine judge random words of possible letters, always the same, as it should?
 
     Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
@@ -56,11 +56,11 @@ def _word(chance: random.Random, letters: list[int], bounds: list[int]) -> Itera
             yield number
 
 
-def verdict(machine: Machine, numbers: list[int]) -> bool:
+def verdict(machine: MealyMonitor, numbers: list[int]) -> bool:
     """The machine's verdict on a word of letters, given by their numbers."""
     state, accepted = 0, False
     for number in numbers:
         symbol = machine.letters[number]
-        accepted = machine.accepting[state][symbol]
-        state = machine.following[state][symbol]
+        accepted = machine.outputs[state][symbol]
+        state = machine.successors[state][symbol]
     return accepted

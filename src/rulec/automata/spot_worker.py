@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rulec.automata.alphabet import count_letters, propositions_of
-from rulec.automata.axiom_instances import FactGroup, FactInstance, possible_letters
-from rulec.automata.mealy_monitor import Machine, NumberRead, Read
+from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance, possible_letters
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.random_words import agrees
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Constant, Formula
@@ -38,7 +38,7 @@ class Job:
     reads: tuple[Read | NumberRead, ...]
     remarks: tuple[str, ...]
     semantics: Semantics
-    groups: tuple[FactGroup, ...]
+    groups: tuple[AxiomGroup, ...]
     cpu_s: int
 
 
@@ -54,7 +54,7 @@ class Ready:
 class Done:
     """A rule's machine, and its automaton in HOA."""
 
-    machine: Machine
+    machine: MealyMonitor
     hoa: str
 
 
@@ -68,7 +68,7 @@ class Failed:
 
     why: Literal["letters", "memory", "check", "facts", "bug"]
     traceback: str = ""
-    contradiction: tuple[FactInstance, ...] = ()
+    contradiction: tuple[AxiomInstance, ...] = ()
 
 
 def main() -> None:
@@ -105,17 +105,17 @@ def _answer(job: Job) -> Done | Failed:
     n_letters = count_letters(job.reads)
     if n_letters > MOST_LETTERS:
         return Failed("letters")
-    facts = []
+    axioms = []
     for group in job.groups:
         said = spot_bridge.projected(group.known, propositions_of(job.formula))
         if said == Constant(False):
             return Failed("facts", contradiction=_contradiction(group))
-        facts += [said] if said != Constant(True) else []
+        axioms += [said] if said != Constant(True) else []
     try:
-        found = spot_bridge.translate(job.formula, job.reads, job.semantics, facts)
+        found = spot_bridge.translate(job.formula, job.reads, job.semantics, axioms)
     except spot_bridge.CheckError:
         return Failed("check")
-    possible = possible_letters(job.reads, facts) if facts else None
+    possible = possible_letters(job.reads, axioms) if axioms else None
     automaton = spot_bridge.explore(found, job.reads)
     machine = build_machine(automaton, job.reads, n_letters, possible)
     if not found.is_checked and not agrees(machine, job.formula, job.semantics):
@@ -126,7 +126,7 @@ def _answer(job: Job) -> Done | Failed:
     return Done(machine, spot_bridge.in_hoa(found.automaton, job.name, remarks))
 
 
-def _contradiction(group: FactGroup) -> tuple[FactInstance, ...]:
+def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
     """Facts of the group that cannot hold together, each of them needed for that."""
     from rulec.automata import spot_bridge
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 
 
-def stutter_invariant(machine: Machine) -> bool:
+def stutter_invariant(machine: MealyMonitor) -> bool:
     """Is a word judged the same however often each of its letters stands there in a row?
 
     A letter read once more must change neither the verdict, if the word ends with it, nor what
@@ -13,8 +13,8 @@ def stutter_invariant(machine: Machine) -> bool:
     that is seen in the table.
     """
     return all(
-        following[after][symbol] == after and accepting[after][symbol] == verdicts[symbol]
-        for following, accepting in [(machine.following, machine.accepting)]
-        for row, verdicts in zip(following, accepting, strict=True)
+        successors[after][symbol] == after and outputs[after][symbol] == verdicts[symbol]
+        for successors, outputs in [(machine.successors, machine.outputs)]
+        for row, verdicts in zip(successors, outputs, strict=True)
         for symbol, after in enumerate(row)
     )

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, trap
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, trap
 
 Output = TypeVar("Output")
 
@@ -45,7 +45,7 @@ def build_machine(
     reads: tuple[Read | NumberRead, ...],
     n_letters: int,
     possible: int | None = None,
-) -> Machine:
+) -> MealyMonitor:
     """The minimal machine of the automaton over ``n_letters`` letters.
 
     ``possible`` are the letters, one at least, that states can have, as bits; None for all of them.
@@ -54,9 +54,9 @@ def build_machine(
     """
     met = (1 << n_letters) - 1 if possible is None else possible
     classes = sorted(_letter_classes(automaton, met), key=lambda members: members & -members)
-    following, accepting = _tables(automaton, classes)
-    following, accepting = minimise(following, accepting, automaton.initial)
-    columns = list(zip(*following, *accepting, strict=True))
+    successors, outputs = _tables(automaton, classes)
+    successors, outputs = minimise(successors, outputs, automaton.initial)
+    columns = list(zip(*successors, *outputs, strict=True))
     merged = {column: index for index, column in enumerate(dict.fromkeys(columns))}
     kept = [columns.index(column) for column in merged]
     letters = [IMPOSSIBLE] * n_letters
@@ -65,13 +65,13 @@ def build_machine(
             lowest = members & -members
             letters[lowest.bit_length() - 1] = merged[column]
             members ^= lowest
-    return Machine(
+    return MealyMonitor(
         reads,
         tuple(letters),
-        tuple(tuple(row[c] for c in kept) for row in following),
-        tuple(tuple(row[c] for c in kept) for row in accepting),
-        dead=trap(following, accepting, verdict=False),
-        safe=trap(following, accepting, verdict=True),
+        tuple(tuple(row[c] for c in kept) for row in successors),
+        tuple(tuple(row[c] for c in kept) for row in outputs),
+        rejecting_sink=trap(successors, outputs, verdict=False),
+        accepting_sink=trap(successors, outputs, verdict=True),
     )
 
 
@@ -90,8 +90,8 @@ def _letter_classes(automaton: DeterministicAutomaton, met: int) -> list[int]:
 def _tables(
     automaton: DeterministicAutomaton, classes: Sequence[int]
 ) -> tuple[list[list[int]], list[list[bool]]]:
-    following = [[0] * len(classes) for _ in automaton.edges]
-    accepting = [[False] * len(classes) for _ in automaton.edges]
+    successors = [[0] * len(classes) for _ in automaton.edges]
+    outputs = [[False] * len(classes) for _ in automaton.edges]
     over = automaton.after_the_end
     ends_well = None if over is None else _loop_verdicts(over, automaton)
     for column, members in enumerate(classes):
@@ -102,9 +102,9 @@ def _tables(
         else:
             verdicts = [ends_well[edge.target] for edge in taken]
         for state, edge in enumerate(taken):
-            following[state][column] = edge.target
-            accepting[state][column] = verdicts[state]
-    return following, accepting
+            successors[state][column] = edge.target
+            outputs[state][column] = verdicts[state]
+    return successors, outputs
 
 
 def _edge_on(edges: Sequence[Edge], letter: int) -> Edge:
@@ -132,14 +132,14 @@ def _loop_verdicts(
 
 
 def minimise(
-    following: list[list[int]], outputs: list[list[Output]], initial: int
+    successors: list[list[int]], outputs: list[list[Output]], initial: int
 ) -> tuple[list[list[int]], list[list[Output]]]:
     """Merge states that no word tells apart; number them from ``initial`` in breadth-first order.
 
     Moore's partition refinement, with the outputs (verdicts) as what tells apart.
     """
     blocks = _number(map(tuple, outputs))
-    columns = list(zip(*following, strict=True))
+    columns = list(zip(*successors, strict=True))
     while True:
         targets = (map(blocks.__getitem__, column) for column in columns)
         refined = _number(zip(blocks, *targets, strict=True))
@@ -152,12 +152,12 @@ def minimise(
     position = {blocks[initial]: 0}
     rows = [representative[blocks[initial]]]
     for row in rows:
-        for target in following[row]:
+        for target in successors[row]:
             if blocks[target] not in position:
                 position[blocks[target]] = len(rows)
                 rows.append(representative[blocks[target]])
     return (
-        [[position[blocks[t]] for t in following[row]] for row in rows],
+        [[position[blocks[t]] for t in successors[row]] for row in rows],
         [outputs[row] for row in rows],
     )
 

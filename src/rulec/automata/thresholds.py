@@ -45,7 +45,7 @@ def floor_of(threshold: Threshold) -> float:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Scale:
+class ThresholdScale:
     """A number that a rule reads, made ready for many states.
 
     ``variables`` and ``names`` are those that it depends on. ``quantity`` is the quantity that it
@@ -67,8 +67,8 @@ class Scale:
 
 
 @lru_cache(maxsize=1 << 12)
-def scale(read: NumberRead) -> Scale:
-    """What ``Scale`` says of a read."""
+def scale(read: NumberRead) -> ThresholdScale:
+    """What ``ThresholdScale`` says of a read."""
     variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
     names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
     quantity = None
@@ -76,6 +76,6 @@ def scale(read: NumberRead) -> Scale:
         ((coefficient, term),) = read.terms
         if coefficient == 1 and isinstance(term, Quantity):
             quantity = term
-    return Scale(
+    return ThresholdScale(
         read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))
     )

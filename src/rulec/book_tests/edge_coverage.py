@@ -6,17 +6,17 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.alphabet import letters_with
-from rulec.automata.axiom_instances import fact_instances
+from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.book_tests.example_runs import ExampleRun, Outcome, example_trace, own_names
 from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import columns_of
 from rulec.rulebook.model import Rule
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.coverage_witness import Wanted, possible_letters, truths, wanted
+from rulec.witnesses.coverage_witness import CoverageWitness, possible_letters, truths, wanted
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class MissingEdge:
 
     source: int
     target: int
-    states: tuple[Wanted, ...]
+    states: tuple[CoverageWitness, ...]
     accepted: bool
 
 
@@ -75,9 +75,9 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [one for one in run.outcomes if one.rule is rule]
         if outcomes or run.pattern is None:
-            known = fact_instances(rule.variables, run.rulebook.facts, run.rulebook.vocabulary)
-            facts = [one.formula for one in known]
-            found.append(_coverage(rule, compiled, outcomes, run.compiled, facts))
+            known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
+            axioms = [one.formula for one in known]
+            found.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
     return tuple(found)
 
 
@@ -86,7 +86,7 @@ def _coverage(
     compiled: CompiledRule,
     outcomes: Sequence[Outcome],
     rulebook: CompiledRulebook,
-    facts: Sequence[Formula],
+    axioms: Sequence[Formula],
 ) -> RuleCoverage:
     machine, vocabulary = compiled.machine, rulebook.vocabulary
     letters = possible_letters(machine)
@@ -94,15 +94,15 @@ def _coverage(
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
-        symbol: wanted(letter, machine, rule.formula, vocabulary, facts)
+        symbol: wanted(letter, machine, rule.formula, vocabulary, axioms)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
         MissingEdge(
             source,
-            machine.following[source][symbol],
+            machine.successors[source][symbol],
             tuple(states[one] for one in (*paths[source], symbol)),
-            machine.accepting[source][symbol],
+            machine.outputs[source][symbol],
         )
         for source, symbol in edges
         if (source, symbol) not in taken
@@ -123,7 +123,7 @@ def _coverage(
 
 def _moments(
     rule: Rule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
-) -> Iterator[Moment]:
+) -> Iterator[StateView]:
     for one in outcomes:
         trace = example_trace(rule, one.example)
         columns = columns_of(trace, rulebook)
@@ -131,28 +131,28 @@ def _moments(
 
 
 def _edges(
-    machine: Machine, reachable: Container[int], symbols: Iterable[int]
+    machine: MealyMonitor, reachable: Container[int], symbols: Iterable[int]
 ) -> Iterator[tuple[int, int]]:
-    for state in range(len(machine.following)):
-        if state not in (machine.dead, machine.safe) and state in reachable:
+    for state in range(len(machine.successors)):
+        if state not in (machine.rejecting_sink, machine.accepting_sink) and state in reachable:
             for symbol in sorted(symbols):
                 yield state, symbol
 
 
-def _taken(machine: Machine, word: Sequence[int]) -> Iterator[tuple[int, int]]:
+def _taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, int]]:
     state = 0
     for symbol in word:
         yield state, symbol
-        state = machine.following[state][symbol]
+        state = machine.successors[state][symbol]
 
 
-def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
+def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
     """For every state that can be reached a shortest word of letter classes that leads to it."""
     paths: dict[int, tuple[int, ...]] = {0: ()}
     waiting = [0]
     for state in waiting:
         for symbol in sorted(symbols):
-            target = machine.following[state][symbol]
+            target = machine.successors[state][symbol]
             if target not in paths:
                 paths[target] = (*paths[state], symbol)
                 waiting.append(target)
@@ -160,7 +160,7 @@ def _shortest_paths(machine: Machine, symbols: Iterable[int]) -> Mapping[int, tu
 
 
 def _possible(
-    proposition: Proposition, machine: Machine, vocabulary: Vocabulary
+    proposition: Proposition, machine: MealyMonitor, vocabulary: Vocabulary
 ) -> tuple[bool, ...]:
     """The values that a proposition can have, true first."""
     if isinstance(proposition, Comparison):

@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import speaks_of_seconds
-from rulec.monitoring.axioms import ImpossibleStateError, check_counting_facts
+from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import columns_of, run
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.trace import Trace
@@ -96,7 +96,7 @@ def _outcome(
     columns = columns_of(trace, compiled, where)
     last = len(trace.states) - 1
     try:
-        check_counting_facts(compiled, last + 1, columns.moment, where, trace.place)
+        check_counting_axioms(compiled, last + 1, columns.moment, where, trace.place)
         word = columns.word(machine, own_names(rule), 0, last)
     except ImpossibleStateError as error:
         raise _no_state(rule, example, error) from None

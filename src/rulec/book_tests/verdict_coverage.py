@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.book_tests.example_runs import ExampleRun, Outcome
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.diagnostic import at
@@ -12,7 +12,7 @@ from rulec.rulebook.model import Rule
 from rulec.witnesses.coverage_witness import possible_letters
 
 
-def unexercised(run: ExampleRun) -> Iterator[Diagnostic]:
+def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
     """A warning (R0408) for each rule whose examples show one verdict only, though it has both.
 
     Rules with an example that fails are left out, for that has to be mended first. So is every rule
@@ -32,17 +32,17 @@ def unexercised(run: ExampleRun) -> Iterator[Diagnostic]:
             yield _unexercised(rule, missing, any_examples=bool(outcomes))
 
 
-def verdicts(machine: Machine) -> set[bool]:
+def verdicts(machine: MealyMonitor) -> set[bool]:
     """The verdicts that a rule has for some trace: accepted (True), rejected (False), or both."""
     symbols = sorted(possible_letters(machine))
     found: set[bool] = set()
     waiting = [0]
     seen = {0}
     for state in waiting:
-        found.update(machine.accepting[state][symbol] for symbol in symbols)
+        found.update(machine.outputs[state][symbol] for symbol in symbols)
         if len(found) == 2:
             break
-        new = {machine.following[state][symbol] for symbol in symbols} - seen
+        new = {machine.successors[state][symbol] for symbol in symbols} - seen
         seen |= new
         waiting += sorted(new)
     return found

@@ -6,14 +6,14 @@ Nothing here prints. ``rulec.report`` turns diagnostics into text.
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
 from rulec.diagnostics.nearest import nearest_name
 from rulec.diagnostics.phrases import any_of, did_you_mean, named
-from rulec.diagnostics.source_text import Place, Source, Span
+from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
 __all__ = [
     "Diagnostic",
     "Label",
-    "Place",
     "RulecError",
     "Source",
+    "SourceLocation",
     "Span",
     "any_of",
     "did_you_mean",

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.diagnostics.codes import CODES
-from rulec.diagnostics.source_text import Place, Span
+from rulec.diagnostics.source_text import SourceLocation, Span
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
     """A second place worth showing, with a few words on it."""
 
-    place: Place
+    place: SourceLocation
     message: str
 
 
@@ -29,7 +29,7 @@ class Diagnostic:
 
     code: str
     message: str
-    place: Place | None = None
+    place: SourceLocation | None = None
     expected: str = ""
     help: str = ""
     labels: tuple[Label, ...] = ()
@@ -41,7 +41,7 @@ class Diagnostic:
             raise ValueError(f"unregistered diagnostic code {self.code!r}")
 
 
-def at(span: Span | None) -> Place | None:
+def at(span: Span | None) -> SourceLocation | None:
     """The place of a span that may be missing."""
     return None if span is None else span.place
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SourceLocation:
     """A place in a file, as a reader counts: lines and columns start at 1.
 
     ``end_column`` is the column behind the last character. ``excerpt`` is the text of line ``line``
@@ -75,9 +75,9 @@ class Span:
         return self.source.text[self.start : self.end]
 
     @property
-    def place(self) -> Place:
+    def place(self) -> SourceLocation:
         """The span as a reader counts, with the text of its first line."""
         line, column = self.source.position(self.start)
         end_line, end_column = self.source.position(max(self.start, self.end))
         excerpt = self.source.line(line)
-        return Place(self.source.name, line, column, end_line, end_column, excerpt)
+        return SourceLocation(self.source.name, line, column, end_line, end_column, excerpt)

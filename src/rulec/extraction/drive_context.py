@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from rulec.extraction.selection.thresholds import Thresholds
 from rulec.extraction.signals.relations import lanes_touched
-from rulec.extraction.tracks.driven_road import Road
-from rulec.extraction.tracks.road_extents import Placed
-from rulec.extraction.tracks.tracks import Everyone, Flags, Values
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.tracks import Flags, Tracks, Values
 from rulec.scenario.recorded.recording import Recording
 
 Side = Literal["left", "right"]
@@ -22,7 +22,7 @@ KMH = 3.6
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class View:
+class DriveContext:
     """Columns are the states of the drive; ``rows`` are those of everybody who is ever there.
 
     ``others`` and ``people`` have a row for each of them, ``near`` says when they are there for
@@ -33,12 +33,12 @@ class View:
     recording: Recording
     thresholds: Thresholds
     side: Side
-    road: Road
+    road: DrivenRoad
     first_step: int
-    ego: Everyone
-    own: Placed
-    people: Everyone
-    others: Placed
+    ego: Tracks
+    own: RoadExtents
+    people: Tracks
+    others: RoadExtents
     near: Flags
     touched: Flags
     in_the_road: Flags
@@ -73,23 +73,23 @@ def standing_at_0(speed_kmh: Values, thresholds: Thresholds) -> Values:
     return rest
 
 
-def view(
+def drive_context(
     recording: Recording,
     thresholds: Thresholds,
     side: Side,
-    road: Road,
-    everyone: Everyone,
-    all_placed: Placed,
+    road: DrivenRoad,
+    everyone: Tracks,
+    all_placed: RoadExtents,
     near: Flags,
     ground: tuple[Flags, Flags],
     ego: int,
     columns: tuple[int, int],
-) -> View:
+) -> DriveContext:
     """The part of a recording that one drive is about."""
     span = slice(columns[0], columns[1] + 1)
     rows = near[:, span].any(axis=1).nonzero()[0]
     others = _cut(all_placed, rows, span)
-    return View(
+    return DriveContext(
         recording,
         thresholds,
         side,
@@ -106,5 +106,7 @@ def view(
     )
 
 
-def _cut(all_placed: Placed, rows: NDArray[intp] | list[int], span: slice) -> Placed:
-    return Placed(*(getattr(all_placed, one.name)[rows][:, span] for one in fields(all_placed)))
+def _cut(all_placed: RoadExtents, rows: NDArray[intp] | list[int], span: slice) -> RoadExtents:
+    return RoadExtents(
+        *(getattr(all_placed, one.name)[rows][:, span] for one in fields(all_placed))
+    )

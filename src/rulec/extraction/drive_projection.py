@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rulec.extraction.signals.signal_columns import Column, Words
+from rulec.extraction.signals.signal_columns import Column, SignalColumns
 from rulec.partition.cell_valuations import PAPER_SURFACE
 from rulec.trace.vocabulary_projection import could_mean, known_types
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
@@ -25,11 +25,11 @@ UNITS = {
 
 
 def fitted(
-    words: Words,
+    words: SignalColumns,
     kinds: Sequence[Sequence[str]],
     vocabulary: Vocabulary,
     names: frozenset[str] | None,
-) -> Words:
+) -> SignalColumns:
     """The words that a vocabulary knows, only those among ``names`` if that is given.
 
     ``kinds`` are the types of the objects, a row each, the most specific first.
@@ -49,7 +49,7 @@ def fitted(
                 (wanted,) = declaration.parameters
                 own = np.array([_is(types, wanted, vocabulary) for types in kinds], dtype=bool)
                 only[name] = own & only.get(name, True)
-    return Words(world, about, words.unknown, only)
+    return SignalColumns(world, about, words.unknown, only)
 
 
 def _spelled(name: str, column: Column, declaration: Declaration) -> Column:

@@ -8,16 +8,16 @@ from itertools import groupby
 
 import numpy as np
 
-from rulec.extraction.drive_context import Side, view
+from rulec.extraction.drive_context import Side, drive_context
 from rulec.extraction.selection.relevance import near
 from rulec.extraction.selection.thresholds import USUAL, Thresholds
-from rulec.extraction.to_trace import EVERYTHING, Drive, Telling, told
-from rulec.extraction.tracks.driven_road import Road, road_along
-from rulec.extraction.tracks.driven_route import Stretch, stretches
+from rulec.extraction.to_trace import EVERYTHING, Drive, TraceWriter, to_trace
+from rulec.extraction.tracks.driven_road import DrivenRoad, road_along
+from rulec.extraction.tracks.driven_route import RouteStretch, driven_stretches
 from rulec.extraction.tracks.junction_lanelets import in_junctions
-from rulec.extraction.tracks.map_matching import Moments, whereabouts
-from rulec.extraction.tracks.road_extents import Placed, placed
-from rulec.extraction.tracks.tracks import Everyone, everyone
+from rulec.extraction.tracks.map_matching import Moments, match_to_map
+from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
+from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.tracks.vru_surface import on_crosswalks, on_lanes
 from rulec.scenario.recorded.obstacle_types import WORDS
 from rulec.scenario.recorded.recording import Recording
@@ -46,20 +46,20 @@ class Drives:
         recording: Recording,
         side: Side,
         thresholds: Thresholds = USUAL,
-        telling: Telling = EVERYTHING,
+        telling: TraceWriter = EVERYTHING,
     ) -> None:
         self.recording = recording
         self._thresholds = thresholds
         self._telling = telling
         self._side: Side = side
-        self._people = everyone(recording, thresholds)
+        self._people = tracks_of(recording, thresholds)
         self._junctions = in_junctions(recording)
         self._ground = (
             on_lanes(recording, self._people),
             on_crosswalks(recording, self._people),
         )
-        self._moments = whereabouts(recording, self._people)
-        self._roads: dict[tuple[str, ...], tuple[Road, Placed | None] | str] = {}
+        self._moments = match_to_map(recording, self._people)
+        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
         """Whoever moves and steers, in the order of the file."""
@@ -81,7 +81,7 @@ class Drives:
         found = [
             one
             for part in _unbroken(self._people, row, self._moments.get(row, {}))
-            for one in stretches(self.recording, part)
+            for one in driven_stretches(self.recording, part)
             if one.last - one.first + 1 >= FEWEST_STATES
         ]
         if not found:
@@ -90,7 +90,7 @@ class Drives:
             name = ego if number == 1 else f"{ego}#{number}"
             yield self._drive(row, name, stretch)
 
-    def _drive(self, row: int, name: str, stretch: Stretch) -> Drive | NoDrive:
+    def _drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
         ego = self._people.participants[row].id
         answer = self._road(stretch.way)
         if isinstance(answer, str):
@@ -103,11 +103,11 @@ class Drives:
             row = int(np.searchsorted(rows, row))
             people, columns = people.part(rows, span), (0, stretch.last - stretch.first)
             ground = ground[0][rows, span], ground[1][rows, span]
-            everybody = placed(people, road)
+            everybody = road_extents(people, road)
         if np.isnan(everybody.w[row, columns[0] : columns[1] + 1]).any():
             return NoDrive(ego, "it is far from its road for a while")
         there = near(row, people, everybody, road, self._thresholds)
-        seen = view(
+        seen = drive_context(
             self.recording,
             self._thresholds,
             self._side,
@@ -119,21 +119,21 @@ class Drives:
             row,
             columns,
         )
-        return told(seen, ego, name, self._telling)
+        return to_trace(seen, ego, name, self._telling)
 
-    def _road(self, way: tuple[str, ...]) -> tuple[Road, Placed | None] | str:
+    def _road(self, way: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
         """A road, and everybody's place along it unless that were too much to remember."""
         if way not in self._roads:
             try:
                 road = road_along(self.recording, way, self._junctions)
                 few = self._people.there.size <= MOST_PLACES
-                self._roads[way] = road, placed(self._people, road) if few else None
+                self._roads[way] = road, road_extents(self._people, road) if few else None
             except ValueError as reason:
                 self._roads[way] = f"its road makes no sense, {reason}"
         return self._roads[way]
 
 
-def _unbroken(people: Everyone, row: int, moments: Moments) -> Iterator[Moments]:
+def _unbroken(people: Tracks, row: int, moments: Moments) -> Iterator[Moments]:
     """The moments of somebody, parted where the recording does not have them for a while."""
     gone = np.cumsum(~people.there[row])
     for _, columns in groupby(moments, key=lambda column: int(gone[column])):

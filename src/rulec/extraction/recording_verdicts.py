@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.selection.requested import Wanted, wanted_drives
+from rulec.extraction.selection.requested import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
-from rulec.monitoring.batch.batch_verify import judge_chunk
+from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import RulebookFor
 from rulec.scenario.recorded.recording import Recording
@@ -21,14 +21,14 @@ MOST_STATES = 1 << 13
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class DriveVerdict:
     """A drive and what the rulebook says of it."""
 
     drive: Drive
     answer: Verdict | NotJudged
 
 
-class JudgedRecording:
+class RecordingVerdicts:
     """A recording's drives before a rulebook; they are worked out when they are asked for.
 
     Raises:
@@ -40,20 +40,20 @@ class JudgedRecording:
         self,
         recording: Recording,
         rulebook: CompiledRulebook | RulebookFor,
-        wanted: Wanted,
+        wanted: RequestedDrives,
         file: str,
     ) -> None:
         step = exact(recording.step_s)
         self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
         rules = self.rules
-        self.drives = wanted_drives(
+        self.drives = selected_drives(
             recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
         self.egos = self.drives.egos
 
-    def answers(self) -> Iterator[Judged | NoDrive]:
+    def answers(self) -> Iterator[DriveVerdict | NoDrive]:
         """What each vehicle did, in the order of the file."""
         waiting: list[Drive | NoDrive] = []
         states = 0
@@ -65,11 +65,11 @@ class JudgedRecording:
                 waiting, states = [], 0
         yield from self._judged(waiting)
 
-    def _judged(self, drives: list[Drive | NoDrive]) -> Iterator[Judged | NoDrive]:
+    def _judged(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
         traces = [one.trace for one in drives if isinstance(one, Drive)]
-        answers = iter(judge_chunk(traces, self.rules))
+        answers = iter(verify_chunk(traces, self.rules))
         for one in drives:
-            yield Judged(one, next(answers)) if isinstance(one, Drive) else one
+            yield DriveVerdict(one, next(answers)) if isinstance(one, Drive) else one
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """For every rule what it reads beyond these words, so that it has its default all along.
@@ -85,5 +85,5 @@ class JudgedRecording:
 
 
 def _read_by(rules: CompiledRulebook) -> frozenset[str]:
-    formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.facts]
+    formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.axioms]
     return frozenset(name for formula in formulas for name in names_in(formula))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rulec.extraction.drive_context import View
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.drive_projection import fitted, named_types
 from rulec.extraction.signals.crossing_signals import crossing_words
 from rulec.extraction.signals.ego_signals import ego_words
@@ -18,7 +18,7 @@ from rulec.extraction.signals.lane_change_signals import lane_change_words
 from rulec.extraction.signals.lane_mark_signals import mark_words
 from rulec.extraction.signals.map_signals import map_words
 from rulec.extraction.signals.other_signals import other_words
-from rulec.extraction.signals.signal_columns import Words
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
 from rulec.scenario.recorded.obstacle_types import WORDS
 from rulec.trace import State, Trace, Value
@@ -52,7 +52,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Telling:
+class TraceWriter:
     """In which words: those of a vocabulary, if there is one, and of these only some ``names``.
 
     ``assumed`` is what holds in every state, whatever the recording says.
@@ -63,17 +63,19 @@ class Telling:
     assumed: Mapping[str, Value] = field(default_factory=dict)
 
 
-EVERYTHING = Telling()
+EVERYTHING = TraceWriter()
 
 
-def told(seen: View, ego: str, name: str, telling: Telling) -> Drive:
+def to_trace(seen: DriveContext, ego: str, name: str, telling: TraceWriter) -> Drive:
     """What ``ego`` did, as a trace of that name."""
     words = ego_words(seen) | other_words(seen) | map_words(seen) | junction_words(seen)
     words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen) | mark_words(seen)
     types = [WORDS.get(one.type, WORDS["unknown"]) for one in seen.people.participants]
     if telling.vocabulary is not None:
         words = fitted(words, types, telling.vocabulary, telling.names)
-    words |= Words({name: np.full(seen.states, value) for name, value in telling.assumed.items()})
+    words |= SignalColumns(
+        {name: np.full(seen.states, value) for name, value in telling.assumed.items()}
+    )
     there = list(presences(seen))
     objects = named_types({one.name: types[one.row] for one in there}, telling.vocabulary)
     there = [one for one in there if one.name in objects]
@@ -89,12 +91,12 @@ def told(seen: View, ego: str, name: str, telling: Telling) -> Drive:
     return Drive(ego, start_s, trace, _kinds(words))
 
 
-def _kinds(words: Words) -> dict[str, type]:
+def _kinds(words: SignalColumns) -> dict[str, type]:
     columns = {**words.world, **words.about}
     return {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
 
 
-def _states(words: Words, there: Sequence[Presence], count: int) -> tuple[State, ...]:
+def _states(words: SignalColumns, there: Sequence[Presence], count: int) -> tuple[State, ...]:
     states: list[dict[str, Any]] = [{} for _ in range(count)]
     for name, column in words.world.items():
         unknown = words.unknown.get(name)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import Judged
+from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.monitoring.verdict import Verdict
 
 
 @dataclass(slots=True)
-class Tally:
+class ViolationTally:
     """Filled drive by drive.
 
     ``first_s``: rule -> vehicle -> when it first violated it (s of the recording). ``words`` are
@@ -28,7 +28,7 @@ class Tally:
         """How many drives have a verdict."""
         return len(self.satisfied) + len(self.violated)
 
-    def add(self, one: Judged | NoDrive) -> None:
+    def add(self, one: DriveVerdict | NoDrive) -> None:
         """Count a drive."""
         if isinstance(one, NoDrive):
             self.not_judged.append(one)

@@ -50,7 +50,7 @@ class Unknown:
     objects: tuple[str, ...]
 
 
-class Situation(Protocol):
+class PartialState(Protocol):
     """What is the case in a state, and who is there."""
 
     @property
@@ -68,11 +68,11 @@ class Situation(Protocol):
         """The value of a quantity."""
 
 
-_Judge: TypeAlias = Callable[[Bound, Situation], bool | Unknown]
+_Judge: TypeAlias = Callable[[Bound, PartialState], bool | Unknown]
 
 
 def total(
-    terms: Sequence[tuple[Fraction, Term]], bound: Bound, moment: Situation
+    terms: Sequence[tuple[Fraction, Term]], bound: Bound, moment: PartialState
 ) -> Fraction | Unknown:
     """The sum of coefficient times term: exact."""
     found = Fraction(0)
@@ -84,7 +84,7 @@ def total(
     return found
 
 
-def number_of(term: Term, bound: Bound, moment: Situation) -> Fraction | Unknown:
+def number_of(term: Term, bound: Bound, moment: PartialState) -> Fraction | Unknown:
     """A quantity's value, or how many objects count."""
     match term:
         case Quantity(name, arguments):
@@ -94,7 +94,7 @@ def number_of(term: Term, bound: Bound, moment: Situation) -> Fraction | Unknown
             return objects if isinstance(objects, Unknown) else Fraction(len(objects))
 
 
-def counted(count: Count, bound: Bound, moment: Situation) -> tuple[str, ...] | Unknown:
+def counted(count: Count, bound: Bound, moment: PartialState) -> tuple[str, ...] | Unknown:
     """The objects that count."""
     found = []
     fitting: dict[str, bool] = {}
@@ -126,7 +126,7 @@ def _same_as(variable: str, formula: Formula) -> str | None:
     return None
 
 
-def holds(formula: Formula, bound: Bound, moment: Situation) -> bool | Unknown:
+def holds(formula: Formula, bound: Bound, moment: PartialState) -> bool | Unknown:
     """Does a formula without temporal operators hold? TypeError if it has one."""
     return _judge_of(formula)(bound, moment)
 
@@ -162,7 +162,7 @@ def _atom(name: str, arguments: tuple[str, ...], wanted: bool | str) -> _Judge:
     if len(arguments) == 1:
         return _atom_of_one(name, arguments[0], wanted)
 
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         value = moment.value(name, tuple([bound[one] for one in arguments]))
         return value if isinstance(value, Unknown) else value == wanted
 
@@ -170,7 +170,7 @@ def _atom(name: str, arguments: tuple[str, ...], wanted: bool | str) -> _Judge:
 
 
 def _atom_of_one(name: str, argument: str, wanted: bool | str) -> _Judge:
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         value = moment.value(name, (bound[argument],))
         return value if isinstance(value, Unknown) else value == wanted
 
@@ -180,7 +180,7 @@ def _atom_of_one(name: str, argument: str, wanted: bool | str) -> _Judge:
 def _comparison(
     terms: Sequence[tuple[Fraction, Term]], relation: Relation, limit: Fraction
 ) -> _Judge:
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         number = total(terms, bound, moment)
         return number if isinstance(number, Unknown) else stands(number, relation, limit)
 
@@ -188,7 +188,7 @@ def _comparison(
 
 
 def _negation(operand: _Judge) -> _Judge:
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         truth = operand(bound, moment)
         return truth if isinstance(truth, Unknown) else not truth
 
@@ -198,7 +198,7 @@ def _negation(operand: _Judge) -> _Judge:
 def _joined(left: _Judge, right: _Judge, *, settled_by: bool) -> _Judge:
     """``and``, which one operand that is false settles; or ``or``, which a true one does."""
 
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         first = left(bound, moment)
         if first is settled_by:
             return settled_by
@@ -210,7 +210,7 @@ def _joined(left: _Judge, right: _Judge, *, settled_by: bool) -> _Judge:
 
 
 def _alike(left: _Judge, right: _Judge) -> _Judge:
-    def judge(bound: Bound, moment: Situation) -> bool | Unknown:
+    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
         first, second = left(bound, moment), right(bound, moment)
         if isinstance(first, Unknown):
             return first

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.axiom_instances import counts
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule, CompiledRulebook
-from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.logic.formula import Atom, Count, Term, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.renaming import renamed
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.vocabulary.object_choices import choices
 
 
@@ -32,7 +32,7 @@ class ImpossibleStateError(RulecError):
 class _Said:
     """A fact, said of objects."""
 
-    fact: CompiledFact
+    fact: CompiledAxiom
     bound: Mapping[str, str]
 
     def __str__(self) -> str:
@@ -42,18 +42,18 @@ class _Said:
 def impossible(
     rule: CompiledRule,
     objects: Mapping[str, str],
-    facts: Sequence[CompiledFact],
-    moment: Moment,
+    axioms: Sequence[CompiledAxiom],
+    moment: StateView,
     number: int,
     where: str,
-    place: Place | None,
+    place: SourceLocation | None,
 ) -> ImpossibleStateError:
     """The error about a state whose letter the rule's machine cannot meet.
 
     ``objects`` are those of the rule's variables, ``where`` names the state.
     """
     types = {objects[variable.name]: variable.type for variable in rule.variables}
-    said = list(_instances([one for one in facts if not counts(one.formula)], types, moment))
+    said = list(_instances([one for one in axioms if not counts(one.formula)], types, moment))
     truths = [holds(one.fact.formula, one.bound, moment) for one in said]
     broken = [one for one, truth in zip(said, truths, strict=True) if truth is False][:1]
     if not broken:
@@ -62,12 +62,12 @@ def impossible(
     return _error(broken, moment, number, where, place, f"rule `{rule.name}` depends on it")
 
 
-def check_counting_facts(
+def check_counting_axioms(
     rulebook: CompiledRulebook,
     n_states: int,
-    moment: Callable[[int], Moment],
+    moment: Callable[[int], StateView],
     where: Callable[[int], str],
-    place: Place | None,
+    place: SourceLocation | None,
 ) -> None:
     """Facts that count hold in every state, of the objects that are there, if a rule needs to know.
 
@@ -76,7 +76,7 @@ def check_counting_facts(
     Raises:
         RulecError: R0508.
     """
-    counting = [one for one in rulebook.facts if counts(one.formula)]
+    counting = [one for one in rulebook.axioms if counts(one.formula)]
     if not counting:
         return
     read = {name for rule in rulebook.rules for name in names_in(rule.formula)}
@@ -89,9 +89,9 @@ def check_counting_facts(
 
 
 def _instances(
-    facts: Sequence[CompiledFact], types: Mapping[str, str], moment: Moment
+    axioms: Sequence[CompiledAxiom], types: Mapping[str, str], moment: StateView
 ) -> Iterator[_Said]:
-    for fact in facts:
+    for fact in axioms:
         wanted = [variable.type for variable in fact.variables]
         for chosen in choices(wanted, types, moment.vocabulary):
             names = [variable.name for variable in fact.variables]
@@ -99,7 +99,12 @@ def _instances(
 
 
 def _error(
-    broken: Sequence[_Said], moment: Moment, number: int, where: str, place: Place | None, why: str
+    broken: Sequence[_Said],
+    moment: StateView,
+    number: int,
+    where: str,
+    place: SourceLocation | None,
+    why: str,
 ) -> ImpossibleStateError:
     said = " and ".join(map(str, broken))
     places = dict.fromkeys(one.fact.place for one in broken if one.fact.place is not None)
@@ -119,7 +124,7 @@ def _error(
     )
 
 
-def _values(said: _Said, moment: Moment) -> Iterator[str]:
+def _values(said: _Said, moment: StateView) -> Iterator[str]:
     """The values of what a fact speaks of, in words; of what is known of it."""
     for one in atoms_of(said.fact.formula):
         for read in (one,) if isinstance(one, Atom) else (term for _, term in one.terms):
@@ -128,7 +133,7 @@ def _values(said: _Said, moment: Moment) -> Iterator[str]:
                 yield value
 
 
-def _value(read: Atom | Term, bound: Mapping[str, str], moment: Moment) -> str | None:
+def _value(read: Atom | Term, bound: Mapping[str, str], moment: StateView) -> str | None:
     if isinstance(read, Count):
         number = number_of(read, bound, moment)
         return None if isinstance(number, Unknown) else f"`{term_in_words(read)}` is {number}"

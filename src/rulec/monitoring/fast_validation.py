@@ -18,7 +18,7 @@ _NUMBERS = frozenset({int, float})
 _TRUTHS = frozenset({bool})
 
 
-class Gate:
+class FastValidator:
     """Looks at states in which these objects, of types that the vocabulary knows, are there."""
 
     def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:

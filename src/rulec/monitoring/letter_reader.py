@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
-from rulec.automata.thresholds import Scale, scale
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.automata.thresholds import ThresholdScale, scale
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, total
 from rulec.monitoring.axioms import impossible
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
 from rulec.vocabulary import Vocabulary
 
@@ -24,7 +24,7 @@ Digits = int | list[int]
 """What one read contributes to the letter of every state; a number if it is one for all."""
 
 
-class Columns:
+class LetterReader:
     """States that have passed ``check_state``, read column by column.
 
     What some objects contribute to letters is looked up once, whatever rules and bindings ask.
@@ -37,10 +37,10 @@ class Columns:
         states: Sequence[State],
         vocabulary: Vocabulary,
         where: Callable[[int], str],
-        place: Place | None = None,
+        place: SourceLocation | None = None,
         objects: Mapping[str, str] = NOBODY,
         present: Mapping[str, tuple[int, int]] = ALWAYS_THERE,
-        facts: Sequence[CompiledFact] = (),
+        axioms: Sequence[CompiledAxiom] = (),
     ) -> None:
         self._states = states
         self._vocabulary = vocabulary
@@ -48,18 +48,18 @@ class Columns:
         self._place = place
         self._objects = objects
         self._present = present
-        self._facts = facts
+        self._facts = axioms
         self._values: dict[tuple[object, ...], list[Value]] = {}
         self._known: dict[tuple[object, ...], Digits] = {}
         self._given: dict[str, list[Any]] = {}
         self._one: dict[str, bool] = {}
-        self._moments: dict[int, Moment] = {}
+        self._moments: dict[int, StateView] = {}
 
-    def moment(self, number: int) -> Moment:
+    def moment(self, number: int) -> StateView:
         """A state with the objects that are there."""
         if number not in self._moments:
             there = present_in(number, self._objects, self._present)
-            self._moments[number] = Moment(self._states[number], there, self._vocabulary)
+            self._moments[number] = StateView(self._states[number], there, self._vocabulary)
         return self._moments[number]
 
     def word(
@@ -132,7 +132,7 @@ class Columns:
         return self._given[name]
 
     def _counted_off(
-        self, read: Scale, objects: Mapping[str, str], first: int, last: int, rule: str
+        self, read: ThresholdScale, objects: Mapping[str, str], first: int, last: int, rule: str
     ) -> Digits:
         """The digits of a number: how many thresholds it passes."""
         items = tuple([objects[variable] for variable in read.variables])
@@ -161,7 +161,7 @@ class Columns:
             self._one[name] = len(set(map(id, self._said(name)))) <= 1
         return self._one[name]
 
-    def _digit(self, read: Scale, bound: Mapping[str, str], number: int, rule: str) -> int:
+    def _digit(self, read: ThresholdScale, bound: Mapping[str, str], number: int, rule: str) -> int:
         found = total(read.read.terms, bound, self.moment(number))
         if isinstance(found, Unknown):
             raise self._missing(found.name, found.objects, number, rule)

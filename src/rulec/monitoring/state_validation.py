@@ -7,13 +7,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean, named
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 
 def check_objects(
-    objects: Mapping[str, str], vocabulary: Vocabulary, place: Place | None = None
+    objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
     """Every object is of a type that the vocabulary knows. Raises RulecError R0505."""
     for name, kind in objects.items():
@@ -32,7 +32,7 @@ def check_state(
     objects: Mapping[str, str],
     vocabulary: Vocabulary,
     where: str,
-    place: Place | None = None,
+    place: SourceLocation | None = None,
 ) -> None:
     """Every name and value of a state fits its declaration. Raises RulecError R0502, R0503, R0505.
 
@@ -57,7 +57,7 @@ def _check_value(
     objects: Mapping[str, str],
     vocabulary: Vocabulary,
     where: str,
-    place: Place | None,
+    place: SourceLocation | None,
 ) -> None:
     name = declaration.name
     if not parameters:
@@ -141,5 +141,7 @@ def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
     return _suggest(name, vocabulary.declarations)
 
 
-def _error(code: str, message: str, place: Place | None, help_text: str = "") -> RulecError:
+def _error(
+    code: str, message: str, place: SourceLocation | None, help_text: str = ""
+) -> RulecError:
     return RulecError(Diagnostic(code, message, place, help=help_text))

@@ -17,7 +17,7 @@ from rulec.vocabulary import Declaration, Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class StateView:
     """A state that has passed ``check_state``, and the objects that are there, with their types."""
 
     state: State

@@ -7,13 +7,13 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact
-from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import bindings
-from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
@@ -40,7 +40,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
     columns = columns_of(trace, rulebook)
-    check_counting_facts(
+    check_counting_axioms(
         rulebook, len(trace.states), columns.moment, "state {}".format, trace.place
     )
     violations = []
@@ -62,17 +62,17 @@ def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
 
 def columns_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
-) -> Columns:
+) -> LetterReader:
     """The columns of a trace that has been checked; ``where`` names a state in messages."""
     vocabulary = rulebook.vocabulary
-    return Columns(
+    return LetterReader(
         trace.states,
         vocabulary,
         where,
         trace.place,
         trace.objects,
         trace.present,
-        rulebook.facts,
+        rulebook.axioms,
     )
 
 
@@ -82,7 +82,7 @@ def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Compiled
 
 
 def made_for_step(
-    step_s: float, rulebook: CompiledRulebook | RulebookFor, place: Place | None = None
+    step_s: float, rulebook: CompiledRulebook | RulebookFor, place: SourceLocation | None = None
 ) -> CompiledRulebook:
     """The same for the step of a trace at some place."""
     if isinstance(rulebook, CompiledRulebook):
@@ -94,7 +94,7 @@ def made_for_step(
         raise RulecError([_at(place, one) for one in error.diagnostics]) from None
 
 
-def _at(place: Place | None, problem: Diagnostic) -> Diagnostic:
+def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
     if place is None:
         return problem
     here = () if problem.place is None else (Label(problem.place, "asked for here"),)
@@ -102,7 +102,7 @@ def _at(place: Place | None, problem: Diagnostic) -> Diagnostic:
 
 
 def check_step(
-    rule: CompiledRule, step_s: Fraction, what: str = "this", place: Place | None = None
+    rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
 ) -> None:
     """A rule with bounds in seconds judges states as far apart as it was compiled for.
 
@@ -122,7 +122,7 @@ def check_step(
     )
 
 
-def judge(
+def verify_or_reason(
     item: Trace | RulecError, rulebook: CompiledRulebook | RulebookFor
 ) -> Verdict | NotJudged:
     """As ``verify``, for one of many: what cannot be judged is an answer too.
@@ -137,18 +137,18 @@ def judge(
         return NotJudged(item.id, error)
 
 
-def run(machine: Machine, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
+def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
     """Run a machine over a non-empty word of letter classes, from a state.
 
     Returns:
         Whether it accepts, and the index of the letter with which it was lost, however the word
         goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
     """
-    following, dead = machine.following, machine.dead
+    successors, rejecting_sink = machine.successors, machine.rejecting_sink
     state = before = start
     for index, symbol in enumerate(word):
-        before, state = state, following[state][symbol]
+        before, state = state, successors[state][symbol]
         # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
-        if state == dead and not machine.accepting[before][symbol]:
+        if state == rejecting_sink and not machine.outputs[before][symbol]:
             return False, index
-    return machine.accepting[before][word[-1]], None
+    return machine.outputs[before][word[-1]], None

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells.cell_model import Plane
 from rulec.partition.cells.cell_plane import plane
-from rulec.partition.cells.occupancy import Scene, scene
+from rulec.partition.cells.occupancy import Occupancy, scene
 from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.scenario import Scenario
 from rulec.scenario.time_grid import MAX_LAYERS, Timing
@@ -22,7 +22,7 @@ _TAKEN: Mapping[ExtentName, str] = {
 
 def start_cell(
     first: Plane,
-    places: Scene,
+    places: Occupancy,
     scenario: Scenario,
     timing: Timing,
     partition: PartitionName,

@@ -12,16 +12,16 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
-from rulec.planning.product.cell_tracks import Places, places
+from rulec.planning.product.cell_tracks import Places, cell_tracks
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import Product, count_paths, explore
-from rulec.planning.product.node_transformers import Effects, effects
+from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
-from rulec.planning.ranking.homotopy import Classes, Variant, count_classes, variants
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
-from rulec.planning.ranking.penalties import Penalty, Ranks, ranks_of
+from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.pruning import violating, violating_alone
-from rulec.planning.results import Pruning, Ranked
+from rulec.planning.results import Pruning, RankedManeuver
 from rulec.planning.rule_instances import applied, in_words, past_for
 from rulec.trace import TraceGraph
 
@@ -47,7 +47,7 @@ class Maneuvers:
     rules: CompiledRulebook
     paths: TraceGraph
     traces: int
-    hard: Effects
+    hard: NodeTransformers
     product: Product
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
@@ -71,12 +71,12 @@ class Maneuvers:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
         return list(islice(cheapest(self.product), _number(n)))
 
-    def best(self, n: int = MOST_BEST) -> list[Ranked]:
+    def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
 
         There are several if levels are not comparable; of many, the first ``n``. If there are
         satisfying maneuvers, these are satisfying and violate soft rules least. Raises RulecError
-        as ``judged`` does, for soft rules too.
+        as ``evaluate`` does, for soft rules too.
         """
         return [
             self._ranked(1, penalty, next(cheapest(product)), product.accepted)
@@ -84,7 +84,7 @@ class Maneuvers:
             for product in [with_penalty(self._every, self._ranks, penalty)]
         ]
 
-    def ranked(self, n: int) -> list[Ranked]:
+    def ranked(self, n: int) -> list[RankedManeuver]:
         """The ``n`` best maneuvers, or all if there are fewer: the least violating first.
 
         Each stands behind all that violate less; those with equal penalties are in the order of
@@ -111,7 +111,7 @@ class Maneuvers:
             for rule in self.rules.rules
         ]
 
-    def classes(self) -> Classes:
+    def classes(self) -> HomotopyClasses:
         """How many homotopy classes there are, by their members' verdicts: exact."""
         return count_classes(self.hard, self._places)
 
@@ -126,22 +126,24 @@ class Maneuvers:
 
     @cached_property
     def _places(self) -> Places:
-        return places(self.graph.trace_graph())
+        return cell_tracks(self.graph.trace_graph())
 
     @cached_property
-    def _ranks(self) -> Ranks:
+    def _ranks(self) -> PenaltyOrder:
         return ranks_of(self.rules)
 
     @cached_property
-    def _every(self) -> Effects:
+    def _every(self) -> NodeTransformers:
         """With soft rules, too. Those of which nothing can be violated are left out already."""
         past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
         soft = applied(self.graph, self.paths, self.rules, SOFT, past)
-        return effects(self.paths, [*self.hard.instances, *soft])
+        return node_transformers(self.paths, [*self.hard.instances, *soft])
 
-    def _ranked(self, place: int, penalty: Penalty, found: Maneuver, members: int) -> Ranked:
+    def _ranked(
+        self, place: int, penalty: Penalty, found: Maneuver, members: int
+    ) -> RankedManeuver:
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
-        return Ranked(
+        return RankedManeuver(
             place,
             {rank: weight for rank, weight in weights if weight},
             members,
@@ -167,7 +169,7 @@ def _number(n: int) -> int:
     return min(n, sys.maxsize)
 
 
-def judged(
+def evaluate(
     graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
 ) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
@@ -180,7 +182,7 @@ def judged(
     """
     paths = in_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, after)
-    hard = effects(paths, applied(graph, paths, rules, HARD, past))
+    hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
     counted = count_paths(paths)
     return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)

@@ -9,11 +9,11 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.planning.ranking.penalties import Rank
+from rulec.planning.ranking.penalties import PenaltyRank
 
 
 @dataclass(frozen=True, slots=True)
-class Ranked:
+class RankedManeuver:
     """A maneuver beside others by what it violates: see ``docs/ranking.md``.
 
     ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
@@ -22,7 +22,7 @@ class Ranked:
     """
 
     place: int
-    penalty: Mapping[Rank, Fraction]
+    penalty: Mapping[PenaltyRank, Fraction]
     members: int
     maneuver: Maneuver
     violations: tuple[Violation, ...]

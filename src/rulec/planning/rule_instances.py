@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import Place, RulecError
-from rulec.monitoring.online.carried_state import NO_PAST, Past
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.planning.partition_choice import in_terms_of
 from rulec.planning.product.graph_instances import Instance, instances
 from rulec.planning.scene_projection import fitted
@@ -43,7 +43,7 @@ def past_for(
     rules: CompiledRulebook,
     strengths: Collection[Strength],
     after: Before | None,
-) -> Past:
+) -> CarriedState:
     """What led up to a graph, as far as rules of these strengths remember. Raises RulecError."""
     if after is None:
         return NO_PAST
@@ -57,7 +57,7 @@ def applied(
     paths: TraceGraph,
     rules: CompiledRulebook,
     strengths: Collection[Strength],
-    past: Past,
+    past: CarriedState,
 ) -> list[Instance]:
     """The rules of these strengths, bound to the objects of paths through a graph.
 
@@ -66,5 +66,5 @@ def applied(
     try:
         return instances(paths, rules, graph.step, strengths, past)
     except RulecError as error:
-        place = Place(graph.scenario.name)
+        place = SourceLocation(graph.scenario.name)
         raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None

@@ -11,9 +11,9 @@ from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.online.carried_state import Past
+from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.replay import replayed
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.online.snapshot_file import read_saved
@@ -33,7 +33,7 @@ def past_of(
     rulebook: CompiledRulebook,
     step_s: Fraction,
     strengths: Collection[Strength] = HARD,
-) -> Past:
+) -> CarriedState:
     """What has been when a graph with this step begins, for rules of these strengths.
 
     Its first layer is the state after the last one of what was before.
@@ -63,10 +63,10 @@ def read_past(path: Path) -> Before:
     if path.suffix == ".json":
         saved: Mapping[str, Any] = read_saved(path)
         return saved
-    return only_trace(read_traces(path), Place(str(path)))
+    return only_trace(read_traces(path), SourceLocation(str(path)))
 
 
-def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:
+def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
     """The one trace of a file; in place of a bad one there is what is wrong with it.
 
     Raises:
@@ -92,7 +92,7 @@ def only_trace(items: Iterable[Trace | RulecError], place: Place) -> Trace:
 
 def _monitor(
     before: Before, rulebook: CompiledRulebook, step_s: Fraction, strengths: Collection[Strength]
-) -> tuple[Monitor, Place | None]:
+) -> tuple[Monitor, SourceLocation | None]:
     rules = tuple(rule for rule in rulebook.rules if rule.strength in strengths)
     if isinstance(before, Trace):
         if exact(before.step_s) != step_s:
@@ -110,6 +110,6 @@ def _monitor(
     return before, None
 
 
-def _no_way(message: str, place: Place | None) -> RulecError:
+def _no_way(message: str, place: SourceLocation | None) -> RulecError:
     way_out = "give a past that ends one step before the scenario begins, with the same objects"
     return RulecError(Diagnostic("R0511", message, place, help=way_out))

@@ -100,7 +100,7 @@ class SourceFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Fact:
+class Axiom:
     """What holds in every state, for distinct objects of the variables' types."""
 
     variables: tuple[Variable, ...]
@@ -140,4 +140,4 @@ class Rulebook:
     priorities: frozenset[tuple[str, str]] = frozenset()
     remarks: tuple[Remark, ...] = ()
     at: str = ""
-    facts: tuple[Fact, ...] = ()
+    axioms: tuple[Axiom, ...] = ()

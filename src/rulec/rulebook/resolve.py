@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rulec.diagnostics import Diagnostic, Place
+from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.elaborate import rule_messages
-from rulec.rulebook.elaborate.axioms import fact_of
+from rulec.rulebook.elaborate.axioms import axiom_of
 from rulec.rulebook.elaborate.rule_elaboration import translate_rule
 from rulec.rulebook.examples.axiom_checks import contradicted
-from rulec.rulebook.model import Fact, Rule, Rulebook, SourceFile, Traffic
+from rulec.rulebook.model import Axiom, Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import declare
 from rulec.rulebook.overlay.constant_checks import check_provisions
-from rulec.rulebook.overlay.constants_and_macros import Provisions, in_force
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
 from rulec.rulebook.overlay.priorities import pre_order
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, overlay
 from rulec.syntax import tree
@@ -51,17 +51,17 @@ def resolve(
     spans = {**declared.type_spans, **declared.spans}
     unsure = opaque or not all(one.complete for one in books)
     laid = overlay(books, spans, unsure=unsure)
-    provisions = Provisions(laid, at, traffic or _last_traffic(books))
+    provisions = ConstantsAndMacros(laid, at, traffic or _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
     known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
     mistakes += check_provisions(declared, provisions)
-    facts: list[Fact] = []
+    axioms: list[Axiom] = []
     for fact in (item for one in (*vocabularies, *books) for item in one.items):
         if isinstance(fact, tree.FactItem):
-            known, found = fact_of(fact, declared, provisions)
+            known, found = axiom_of(fact, declared, provisions)
             mistakes += found
-            facts += [known] if known is not None else []
+            axioms += [known] if known is not None else []
     rules: list[Rule | None] = []
     for entry in laid.rules.values():
         rule, found = translate_rule(entry, declared, provisions, known_levels)
@@ -71,7 +71,7 @@ def resolve(
     good = [rule for rule in rules if rule is not None]
     if not declared.mistakes:
         words = declared.vocabulary(file.name.text if file.name else "")
-        mistakes += [one for rule in good for one in contradicted(rule, facts, words)]
+        mistakes += [one for rule in good for one in contradicted(rule, axioms, words)]
     mistakes = _once(mistakes)
     wrong = any(one.severity == "error" for one in mistakes)
     whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
@@ -96,7 +96,7 @@ def resolve(
         priorities,
         tuple(laid.remarks),
         at,
-        tuple(facts),
+        tuple(axioms),
     )
     return rulebook, tuple(mistakes)
 
@@ -105,10 +105,10 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
     """A vocabulary by itself, and what is wrong with it."""
     declared = declare([file])
     mistakes = list(declared.mistakes)
-    provisions = Provisions(Overlay(), "")
+    provisions = ConstantsAndMacros(Overlay(), "")
     for item in file.items:
         if isinstance(item, tree.FactItem):
-            mistakes += fact_of(item, declared, provisions)[1]
+            mistakes += axiom_of(item, declared, provisions)[1]
     if file.name is None or mistakes:
         return None, tuple(mistakes)
     return declared.vocabulary(file.name.text), ()
@@ -122,7 +122,7 @@ def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
 
 def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Each mistake once: a definition's may come back with every use of it."""
-    first: dict[tuple[str, str, Place | None], Diagnostic] = {}
+    first: dict[tuple[str, str, SourceLocation | None], Diagnostic] = {}
     for one in mistakes:
         first.setdefault((one.code, one.message, one.place), one)
     return list(first.values())

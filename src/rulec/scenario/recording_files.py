@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.scene_choice import Choice
@@ -42,7 +42,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
             Diagnostic(
                 "R0613",
                 f"`{path.name}` has its own roads, and takes no net",
-                Place(str(path)),
+                SourceLocation(str(path)),
                 help="leave out --net, which is for SUMO's floating-car data",
             )
         )

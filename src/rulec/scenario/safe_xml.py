@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import IO, cast
 from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.files import opened
 
 LONGEST_TAG = 1_000_000
@@ -45,7 +45,7 @@ class XmlFormat:
         help_text: str = "",
     ) -> RulecError:
         """Why a file is none of these (R0610), and on which line that shows, if on one."""
-        place = Place(str(path)) if line is None else Place(str(path), line)
+        place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
         message = f"the file cannot be read as {self.words}: {why}"
         found = Diagnostic("R0610", message, place, expected=expected, help=help_text or self.help)
         return RulecError(found)

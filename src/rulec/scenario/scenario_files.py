@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, Source, did_you_mean, named
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
 from rulec.scenario.model import Scenario
@@ -66,7 +66,7 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
                 "R0613",
                 f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
                 "chosen",
-                Place(str(path)),
+                SourceLocation(str(path)),
                 help="leave the options for recorded scenes out, or edit the scenario's file",
             )
         )
@@ -90,7 +90,7 @@ def _text(path: Path) -> Source:
             Diagnostic(
                 "R0602",
                 f"the file is too large: at most {LARGEST_BYTES:,} bytes are read",
-                Place(str(path)),
+                SourceLocation(str(path)),
                 help="keep the obstacles near ego, and the part of their motion that matters",
             )
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, Source
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
 from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
 
 
@@ -32,7 +32,7 @@ def _check_size(name: str, size: int) -> None:
             Diagnostic(
                 "R0102",
                 f"the file is too large: at most {MAX_SOURCE_BYTES:,} bytes are read",
-                Place(name),
+                SourceLocation(name),
                 help="split it into several rulebooks",
             )
         )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from rulec.diagnostics import Place
+from rulec.diagnostics import SourceLocation
 
 Value = bool | float | str
 
@@ -28,7 +28,7 @@ class Trace:
     objects: Mapping[str, str]
     states: tuple[State, ...]
     present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: SourceLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula, Quantity
 from rulec.logic.free_names import variables_of
 from rulec.witnesses.letter_functions import body_of, speaks_of_extra, truths_of
-from rulec.witnesses.object_universe import EXTRA, Scene, counts_in
-from rulec.witnesses.state_synthesis import Key, Situation, Value, numbers_for, value_of
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
+from rulec.witnesses.state_synthesis import JointState, Key, Value, numbers_for, value_of
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_COMPANY = 40
@@ -23,7 +23,7 @@ MOST_TRIED = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Companion:
+class CountedObject:
     """A further object: its type, which counts it adds to, and what a state says of it."""
 
     type: str
@@ -31,10 +31,10 @@ class Companion:
     values: Mapping[Key, Value]
 
 
-Company = tuple[Companion, ...]
+Company = tuple[CountedObject, ...]
 
 
-def company_for(situation: Situation, scene: Scene) -> Company | None:
+def company_for(situation: JointState, scene: ObjectUniverse) -> Company | None:
     """As few further objects as make the counts come out; None if none do."""
     counts = _wanted(situation)
     if not counts:
@@ -61,7 +61,9 @@ def company_for(situation: Situation, scene: Scene) -> Company | None:
     return None
 
 
-def company_of(situation: Situation, scene: Scene, types: Sequence[str]) -> Company | None:
+def company_of(
+    situation: JointState, scene: ObjectUniverse, types: Sequence[str]
+) -> Company | None:
     """One companion of each of these types, so that the counts come out; None if they cannot."""
     counts = _wanted(situation)
     kinds = kinds_of(situation, scene, types) if types else []
@@ -81,7 +83,7 @@ def company_of(situation: Situation, scene: Scene, types: Sequence[str]) -> Comp
     return None
 
 
-def _enough(count: Count, situation: Situation) -> int:
+def _enough(count: Count, situation: JointState) -> int:
     """From where on it makes no difference how many more are counted, if there is such a number."""
     most = 0
     for read, _ in situation.sides:
@@ -92,7 +94,7 @@ def _enough(count: Count, situation: Situation) -> int:
     return most
 
 
-def _wanted(situation: Situation) -> list[Count]:
+def _wanted(situation: JointState) -> list[Count]:
     return list(
         dict.fromkeys(
             term for read, _ in situation.sides for _, term in read.terms if isinstance(term, Count)
@@ -100,7 +102,7 @@ def _wanted(situation: Situation) -> list[Count]:
     )
 
 
-def _comes_out(situation: Situation, scene: Scene, counted: Mapping[Count, int]) -> bool:
+def _comes_out(situation: JointState, scene: ObjectUniverse, counted: Mapping[Count, int]) -> bool:
     for read, digit in situation.sides:
         total = Fraction(0)
         for factor, term in read.terms:
@@ -113,7 +115,9 @@ def _comes_out(situation: Situation, scene: Scene, counted: Mapping[Count, int])
     return True
 
 
-def kinds_of(situation: Situation, scene: Scene, types: Sequence[str] = ()) -> list[Companion]:
+def kinds_of(
+    situation: JointState, scene: ObjectUniverse, types: Sequence[str] = ()
+) -> list[CountedObject]:
     """What a further object could be, as far as the counts tell; the most general types first.
 
     That is of any type that is counted, or one of ``types``, which may be there to be counted in
@@ -121,7 +125,7 @@ def kinds_of(situation: Situation, scene: Scene, types: Sequence[str] = ()) -> l
     """
     vocabulary = scene.vocabulary
     counts = _wanted(situation)
-    found: dict[tuple[str, tuple[int, ...]], Companion] = {}
+    found: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
     fitting = [
         kind
         for kind in vocabulary.types
@@ -134,8 +138,8 @@ def kinds_of(situation: Situation, scene: Scene, types: Sequence[str] = ()) -> l
 
 
 def _of_type(
-    kind: str, counts: Sequence[Count], situation: Situation, scene: Scene
-) -> Iterator[Companion]:
+    kind: str, counts: Sequence[Count], situation: JointState, scene: ObjectUniverse
+) -> Iterator[CountedObject]:
     vocabulary = scene.vocabulary
     asked = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
     bodies = [body_of(count, EXTRA) for count in asked]
@@ -156,17 +160,17 @@ def _of_type(
         said = _said(list(zip(reads, digits, strict=True)), situation, scene)
         if said is not None:
             holds = dict(zip(asked, values, strict=False))
-            yield Companion(kind, tuple(int(holds.get(one, False)) for one in counts), said)
+            yield CountedObject(kind, tuple(int(holds.get(one, False)) for one in counts), said)
 
 
-def _facts_about(kind: str, scene: Scene) -> Iterator[Formula]:
+def _facts_about(kind: str, scene: ObjectUniverse) -> Iterator[Formula]:
     with_it = replace(scene, objects={**scene.objects, EXTRA: kind})
     for one in with_it.fact_formulas():
         if not any(True for _ in counts_in(one)) and EXTRA in variables_of(one):
             yield one
 
 
-def _digit(read: Read | NumberRead, situation: Situation, scene: Scene) -> int:
+def _digit(read: Read | NumberRead, situation: JointState, scene: ObjectUniverse) -> int:
     if isinstance(read, Read):
         return read.digit(situation.value((read.name, read.variables), scene.vocabulary))
     total = Fraction(0)
@@ -177,7 +181,7 @@ def _digit(read: Read | NumberRead, situation: Situation, scene: Scene) -> int:
 
 
 def _said(
-    digits: Sequence[tuple[Read | NumberRead, int]], situation: Situation, scene: Scene
+    digits: Sequence[tuple[Read | NumberRead, int]], situation: JointState, scene: ObjectUniverse
 ) -> dict[Key, Value] | None:
     """What a state says of the object so that the reads come out so; None if it cannot."""
     values: dict[Key, Value] = {}
@@ -199,7 +203,7 @@ def _said(
     return values
 
 
-def _given(read: NumberRead, situation: Situation, scene: Scene) -> NumberRead:
+def _given(read: NumberRead, situation: JointState, scene: ObjectUniverse) -> NumberRead:
     """The sum over what is not known yet, the rest moved into the thresholds."""
     known = Fraction(0)
     left = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, Threshold
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, Threshold
 from rulec.automata.thresholds import exact, scale
 from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atoms_of
 from rulec.logic.free_names import variables_of
@@ -23,7 +23,7 @@ _MOST_PLACES = 17
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class CoverageWitness:
     """A state: what it says, and in ``besides`` the comparisons that have to hold in it, in words.
 
     Those are of counts, or of sums of numbers that cannot be chosen one by one.
@@ -41,7 +41,7 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
     return bounds[digit] < bounds[digit + 1]
 
 
-def possible_letters(machine: Machine) -> Mapping[int, int]:
+def possible_letters(machine: MealyMonitor) -> Mapping[int, int]:
     """For every class of letters that some state of the world is in, the first of its letters."""
     first: dict[int, int] = {}
     for letter, symbol in enumerate(machine.letters):
@@ -52,7 +52,7 @@ def possible_letters(machine: Machine) -> Mapping[int, int]:
     return first
 
 
-def truths(comparison: Comparison, machine: Machine) -> set[bool]:
+def truths(comparison: Comparison, machine: MealyMonitor) -> set[bool]:
     """The truth values that a comparison of the machine's rule can have."""
     return {
         stands(_sample(read, digit), comparison.relation, comparison.limit)
@@ -65,11 +65,11 @@ def truths(comparison: Comparison, machine: Machine) -> set[bool]:
 
 def wanted(
     letter: int,
-    machine: Machine,
+    machine: MealyMonitor,
     formula: Formula,
     vocabulary: Vocabulary,
-    facts: Sequence[Formula] = (),
-) -> Wanted:
+    axioms: Sequence[Formula] = (),
+) -> CoverageWitness:
     """A state in which the machine of a rule with this formula reads the letter.
 
     ``facts`` hold in every state. Where numbers that are chosen by themselves would contradict one,
@@ -87,7 +87,7 @@ def wanted(
     for read in sorted(numbers, key=lambda one: len(one.terms)):
         if not _choose(read, digits[read], says, vocabulary):
             besides += _in_words(read, digits[read], formula)
-    for fact in facts:
+    for fact in axioms:
         if holds(fact, _itself(fact), Told(says, frozenset(), {}, vocabulary)) is False:
             about = {term for one in atoms_of(fact) for term in _quantities(one)}
             for read in numbers:
@@ -97,7 +97,7 @@ def wanted(
             for one in about:
                 says.pop((one.name, one.arguments), None)
             besides.append(in_words(fact))
-    return Wanted(says, tuple(dict.fromkeys(besides)))
+    return CoverageWitness(says, tuple(dict.fromkeys(besides)))
 
 
 def _itself(formula: Formula) -> dict[str, str]:
@@ -111,7 +111,7 @@ def _quantities(one: Proposition) -> Iterator[Quantity]:
             yield term
 
 
-def digits_of(letter: int, machine: Machine) -> Iterator[int]:
+def digits_of(letter: int, machine: MealyMonitor) -> Iterator[int]:
     """The digit of each of the machine's reads."""
     for read in machine.reads:
         letter, digit = divmod(letter, read.size)

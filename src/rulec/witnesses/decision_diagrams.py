@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from math import inf
 
-from rulec.witnesses.joint_reads import View
-from rulec.witnesses.letter_functions import Column
+from rulec.witnesses.joint_reads import JointDigits
+from rulec.witnesses.letter_functions import LetterFunction
 
 Children = tuple[int, ...]
 
@@ -72,16 +72,16 @@ def _own(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _Own:
     return _Own(letters, sizes)
 
 
-class Diagrams:
+class DecisionDiagrams:
     """All nodes of some diagrams over the same joint reads."""
 
     def __init__(self) -> None:
         self._nodes = _Nodes()
 
-    def of(self, column: Column, views: Sequence[View]) -> int:
+    def of(self, column: LetterFunction, views: Sequence[JointDigits]) -> int:
         """The diagram of a column: its class as a function of the joint digits."""
         own = _own(column.letters, tuple(read.size for read in column.reads))
-        by_level: dict[int, list[tuple[int, View]]] = {}
+        by_level: dict[int, list[tuple[int, JointDigits]]] = {}
         for place, view in enumerate(views):
             by_level.setdefault(view.joint, []).append((place, view))
         levels = sorted(by_level.items())

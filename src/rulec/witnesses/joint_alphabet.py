@@ -8,11 +8,11 @@ from heapq import heappop, heappush
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.formula import Count
 from rulec.witnesses.counted_objects import company_for
-from rulec.witnesses.decision_diagrams import Diagrams
+from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
-from rulec.witnesses.letter_functions import Column, count_column, fact_column
-from rulec.witnesses.object_universe import Scene
-from rulec.witnesses.state_synthesis import Situation, numbers_for, situation, usual_digit
+from rulec.witnesses.letter_functions import LetterFunction, count_column, fact_column
+from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.state_synthesis import JointState, numbers_for, situation, usual_digit
 from rulec.witnesses.undecided import UndecidedError
 
 Symbol = tuple[int, ...]
@@ -32,16 +32,16 @@ class Alphabet:
     further objects as counts ask for. Raises UndecidedError where that is too much to tell.
     """
 
-    def __init__(self, scene: Scene, machines: Sequence[Column]) -> None:
+    def __init__(self, scene: ObjectUniverse, machines: Sequence[LetterFunction]) -> None:
         self._scene = scene
-        facts = [fact_column(one, scene.vocabulary) for one in scene.fact_formulas()]
-        self._counts = [count_column(one, scene) for one in _counts((*machines, *facts))]
-        columns = [*machines, *(one.column for one in self._counts), *facts]
+        axioms = [fact_column(one, scene.vocabulary) for one in scene.fact_formulas()]
+        self._counts = [count_column(one, scene) for one in _counts((*machines, *axioms))]
+        columns = [*machines, *(one.column for one in self._counts), *axioms]
         self._joint = joint_reads(columns, scene.vocabulary)
         self._n_machines = len(machines)
         self._n_keys = len(machines) + len(self._counts)
         self._n_numbers = sum(isinstance(one, NumberRead) for one in self._joint.reads)
-        self._diagrams = Diagrams()
+        self._diagrams = DecisionDiagrams()
         roots = [
             self._diagrams.of(column, views)
             for column, views in zip(columns, self._joint.views, strict=True)
@@ -62,7 +62,7 @@ class Alphabet:
                 )
             if len(found) > MOST_SYMBOLS:
                 raise UndecidedError("too many different states of the world have to be told apart")
-        self.situations: Mapping[Symbol, Situation] = {
+        self.situations: Mapping[Symbol, JointState] = {
             symbol: best
             for symbol, candidates in found.items()
             if (best := self._best(candidates)) is not None
@@ -79,9 +79,9 @@ class Alphabet:
 
     def _cleared(self, nodes: Sequence[int]) -> tuple[int, ...]:
         """The nodes without the facts that hold; empty if one does not."""
-        keys, facts = nodes[: self._n_keys], nodes[self._n_keys :]
+        keys, axioms = nodes[: self._n_keys], nodes[self._n_keys :]
         open_facts = []
-        for fact in facts:
+        for fact in axioms:
             if self._diagrams.level(fact) < len(self._joint.reads):
                 open_facts.append(fact)
             elif not self._diagrams.value(fact):
@@ -142,7 +142,7 @@ class Alphabet:
         self._plain[nodes] = found
         return found
 
-    def _best(self, candidates: list[tuple[int, int, Steps, Symbol]]) -> Situation | None:
+    def _best(self, candidates: list[tuple[int, int, Steps, Symbol]]) -> JointState | None:
         while candidates:
             _, _, steps, classes = heappop(candidates)
             digits = []
@@ -159,7 +159,7 @@ class Alphabet:
         return None
 
 
-def _counts(columns: Sequence[Column]) -> list[Count]:
+def _counts(columns: Sequence[LetterFunction]) -> list[Count]:
     return list(
         dict.fromkeys(
             term

@@ -10,13 +10,13 @@ from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Term
 from rulec.logic.printing import term_in_words
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.letter_functions import Column
+from rulec.witnesses.letter_functions import LetterFunction
 
 Terms = tuple[tuple[Fraction, Term], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class JointDigits:
     """What a column's read sees of a joint one: ``digits[joint digit]`` is its own digit."""
 
     joint: int
@@ -24,14 +24,14 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointReads:
     """The joint reads, numbers first, and for each column what its reads see of them."""
 
     reads: tuple[Read | NumberRead, ...]
-    views: tuple[tuple[View, ...], ...]
+    views: tuple[tuple[JointDigits, ...], ...]
 
 
-def joint_reads(columns: Sequence[Column], vocabulary: Vocabulary) -> Joint:
+def joint_reads(columns: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
     """Merge what the columns read.
 
     A number is told apart by all their thresholds, an enumeration by all the values that any of
@@ -47,12 +47,14 @@ def joint_reads(columns: Sequence[Column], vocabulary: Vocabulary) -> Joint:
     reads = tuple(_merged(together[subject], vocabulary) for subject in subjects)
     views = tuple(
         tuple(
-            View(position[_subject(read)], _seen(read, reads[position[_subject(read)]], vocabulary))
+            JointDigits(
+                position[_subject(read)], _seen(read, reads[position[_subject(read)]], vocabulary)
+            )
             for read in column.reads
         )
         for column in columns
     )
-    return Joint(reads, views)
+    return JointReads(reads, views)
 
 
 def _subject(read: Read | NumberRead) -> object:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of, reads_of
-from rulec.automata.mealy_monitor import Machine, NumberRead, Read
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
@@ -26,7 +26,7 @@ from rulec.logic.formula import (
 from rulec.logic.free_names import variables_of
 from rulec.logic.renaming import renamed
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.object_universe import EXTRA, Scene, counts_in
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_LETTERS = 1 << 14
@@ -34,14 +34,16 @@ MOST_LETTERS = 1 << 14
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class LetterFunction:
     """``letters[letter]`` is the class of a letter of these reads, which speak of objects."""
 
     reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]
 
 
-def machine_column(machine: Machine, names: Mapping[str, str], scene: Scene) -> Column:
+def machine_column(
+    machine: MealyMonitor, names: Mapping[str, str], scene: ObjectUniverse
+) -> LetterFunction:
     """A rule's machine for a binding of its variables."""
     reads: list[Read | NumberRead] = []
     for read in machine.reads:
@@ -54,7 +56,7 @@ def machine_column(machine: Machine, names: Mapping[str, str], scene: Scene) -> 
                 for factor, term in read.terms
             )
             reads.append(NumberRead(terms, read.thresholds))
-    return Column(tuple(reads), machine.letters)
+    return LetterFunction(tuple(reads), machine.letters)
 
 
 def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
@@ -63,25 +65,27 @@ def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
     return Count(term.variable, term.type, renamed(term.body, names))
 
 
-def fact_column(formula: Formula, vocabulary: Vocabulary) -> Column:
+def fact_column(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
     """Class 1 where the formula of one state holds, else 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
-    return Column(reads, tuple(holds >> letter & 1 for letter in range(count_letters(reads))))
+    return LetterFunction(
+        reads, tuple(holds >> letter & 1 for letter in range(count_letters(reads)))
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class CountColumn:
+class CountFunction:
     """How many of the scene's own objects count: ``counted[class]``.
 
     Its class also tells apart all else that the count depends on, besides further objects.
     """
 
     count: Count
-    column: Column
+    column: LetterFunction
     counted: tuple[int, ...]
 
 
-def count_column(count: Count, scene: Scene) -> CountColumn:
+def count_column(count: Count, scene: ObjectUniverse) -> CountFunction:
     """The column of a count. Raises UndecidedError for a count in which others stand."""
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")
@@ -106,7 +110,9 @@ def count_column(count: Count, scene: Scene) -> CountColumn:
         number = sum(one >> letter & 1 for one in truths)
         key = (number, *(own_digits[n] for n in beside))
         letters.append(classes.setdefault(key, len(classes)))
-    return CountColumn(count, Column(reads, tuple(letters)), tuple(key[0] for key in classes))
+    return CountFunction(
+        count, LetterFunction(reads, tuple(letters)), tuple(key[0] for key in classes)
+    )
 
 
 def body_of(count: Count, name: str) -> Formula:

@@ -47,7 +47,7 @@ class Witnesses:
         self._vocabulary = vocabulary
         self._states: dict[int, Witness | None] = {}
         self._digits = [self._split(letter) for letter in range(len(rule.machine.letters))]
-        self._members: list[list[int]] = [[] for _ in rule.machine.following[0]]
+        self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
         for letter, symbol in enumerate(rule.machine.letters):
             if symbol != IMPOSSIBLE:
                 self._members[symbol].append(letter)
@@ -66,7 +66,7 @@ class Witnesses:
         own = self._machine.letters[letter]
         found = [
             near
-            for symbol in range(len(self._machine.following[0]))
+            for symbol in range(len(self._machine.successors[0]))
             if symbol != own and (near := self._closest(symbol, digits)) is not None
         ]
         return [(_distance(self._digits[near], digits), near) for near in found]

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from rulec.logic.formula import Binary, Comparison, Count, Formula, Term, Unary, atoms_of
 from rulec.logic.renaming import renamed
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class ObjectUniverse:
     """Objects with their types, all of them there all the time, and what holds in every state.
 
     ``unsaid`` are declarations that traces leave out.
@@ -21,7 +21,7 @@ class Scene:
 
     objects: Mapping[str, str]
     vocabulary: Vocabulary
-    facts: tuple[Fact, ...] = ()
+    axioms: tuple[Axiom, ...] = ()
     unsaid: frozenset[str] = frozenset()
 
     def bindings(self, variables: Sequence[Variable]) -> list[dict[str, str]]:
@@ -33,7 +33,7 @@ class Scene:
 
     def fact_formulas(self) -> Iterator[Formula]:
         """What the facts say of the objects."""
-        for fact in self.facts:
+        for fact in self.axioms:
             for names in self.bindings(fact.variables):
                 yield self.renamed(fact.formula, names)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import Witness, Witnesses
 
@@ -33,7 +33,7 @@ def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTrace
     witnesses = Witnesses(rule, vocabulary)
     plainest = {
         symbol: letter
-        for symbol in range(len(machine.following[0]))
+        for symbol in range(len(machine.successors[0]))
         if (letter := witnesses.plainest(symbol)) is not None
     }
     rejected = _shortest(machine, plainest, accepted=False)
@@ -55,7 +55,7 @@ def _states(word: Sequence[int] | None, witnesses: Witnesses) -> tuple[Witness, 
 
 
 def _shortest(
-    machine: Machine, letters: Mapping[int, int], *, accepted: bool, moved: bool = False
+    machine: MealyMonitor, letters: Mapping[int, int], *, accepted: bool, moved: bool = False
 ) -> tuple[int, ...] | None:
     """A shortest word of the letters that stand for their classes, in breadth-first order.
 
@@ -65,9 +65,9 @@ def _shortest(
     seen = {(0, False)}
     for state, has_moved, word in waiting:
         for symbol, letter in letters.items():
-            target = machine.following[state][symbol]
+            target = machine.successors[state][symbol]
             node = (target, has_moved or target != 0)
-            if machine.accepting[state][symbol] is accepted and (node[1] or not moved):
+            if machine.outputs[state][symbol] is accepted and (node[1] or not moved):
                 return (*word, letter)
             if node not in seen:
                 seen.add(node)
@@ -76,7 +76,7 @@ def _shortest(
 
 
 def _near_miss(
-    machine: Machine, rejected: Sequence[int], witnesses: Witnesses
+    machine: MealyMonitor, rejected: Sequence[int], witnesses: Witnesses
 ) -> tuple[int, ...] | None:
     """The rejected word with one letter changed so that it is accepted, the last one if possible.
 
@@ -94,11 +94,11 @@ def _near_miss(
     return None
 
 
-def _judge(machine: Machine, word: Sequence[int]) -> tuple[bool, int]:
+def _judge(machine: MealyMonitor, word: Sequence[int]) -> tuple[bool, int]:
     """Is the word accepted, and how many states does it see?"""
     states, accepted = [0], False
     for letter in word:
         symbol = machine.letters[letter]
-        accepted = machine.accepting[states[-1]][symbol]
-        states.append(machine.following[states[-1]][symbol])
+        accepted = machine.outputs[states[-1]][symbol]
+        states.append(machine.successors[states[-1]][symbol])
     return accepted, len(set(states))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.witnesses.joint_alphabet import Symbol
 from rulec.witnesses.undecided import UndecidedError
 
@@ -16,7 +16,7 @@ Node = tuple[int, ...]
 
 
 def shortest(
-    machines: Sequence[Machine], wanted: Sequence[bool], symbols: Sequence[Symbol]
+    machines: Sequence[MealyMonitor], wanted: Sequence[bool], symbols: Sequence[Symbol]
 ) -> tuple[Symbol, ...] | None:
     """A shortest word, not empty, with these verdicts, in breadth-first order; None if none has.
 
@@ -25,18 +25,21 @@ def shortest(
     start: Node = (0,) * len(machines)
     came: dict[Node, tuple[Node, Symbol] | None] = {start: None}
     waiting = [start]
-    lost = [one.safe if verdict is False else one.dead for one, verdict in _pairs(machines, wanted)]
+    lost = [
+        one.accepting_sink if verdict is False else one.rejecting_sink
+        for one, verdict in _pairs(machines, wanted)
+    ]
     steps = 0
     for node in waiting:
-        rows = [one.accepting[state] for one, state in zip(machines, node, strict=True)]
-        following = [one.following[state] for one, state in zip(machines, node, strict=True)]
+        rows = [one.outputs[state] for one, state in zip(machines, node, strict=True)]
+        successors = [one.successors[state] for one, state in zip(machines, node, strict=True)]
         for symbol in symbols:
             if all(
                 row[which] is verdict
                 for row, which, verdict in zip(rows, symbol, wanted, strict=True)
             ):
                 return (*_way(node, came), symbol)
-            target = tuple([row[which] for row, which in zip(following, symbol, strict=True)])
+            target = tuple([row[which] for row, which in zip(successors, symbol, strict=True)])
             if target in came or any(a == b for a, b in zip(target, lost, strict=True)):
                 continue
             came[target] = node, symbol
@@ -47,7 +50,9 @@ def shortest(
     return None
 
 
-def _pairs(machines: Sequence[Machine], wanted: Sequence[bool]) -> Iterable[tuple[Machine, bool]]:
+def _pairs(
+    machines: Sequence[MealyMonitor], wanted: Sequence[bool]
+) -> Iterable[tuple[MealyMonitor, bool]]:
     return zip(machines, wanted, strict=True)
 
 

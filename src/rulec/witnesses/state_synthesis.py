@@ -14,7 +14,7 @@ from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.fourier_motzkin import Bounded, solve
 from rulec.witnesses.letter_witness import bounds_of
-from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.object_universe import ObjectUniverse
 
 Key = tuple[str, tuple[str, ...]]
 """A declaration and the objects that it is asked about."""
@@ -26,7 +26,7 @@ Sides = tuple[tuple[NumberRead, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class JointState:
     """A state: the values that decide, all others may be anything.
 
     ``sides`` are the sums that decide, ``counted`` is how many of the scene's own objects count.
@@ -49,10 +49,10 @@ class Situation:
 
 
 def situation(
-    scene: Scene,
+    scene: ObjectUniverse,
     digits: Sequence[tuple[Read | NumberRead, int]],
     counted: tuple[tuple[Count, int], ...],
-) -> Situation | None:
+) -> JointState | None:
     """A state in which the reads come out as these digits; None if there is none."""
     sides = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
     numbers = numbers_for(sides, scene.vocabulary, dict(counted)) if sides else {}
@@ -66,7 +66,7 @@ def situation(
     for term, number in numbers.items():
         if isinstance(term, Quantity):
             values[term.name, term.arguments] = float(number)
-    return Situation(values, sides, counted)
+    return JointState(values, sides, counted)
 
 
 def numbers_for(

@@ -12,14 +12,14 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 from rulec.witnesses.counted_objects import company_for, company_of
-from rulec.witnesses.object_universe import EXTRA, Scene
-from rulec.witnesses.state_synthesis import Key, Situation, Value, keys_of, usual
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
+from rulec.witnesses.state_synthesis import JointState, Key, Value, keys_of, usual
 from rulec.witnesses.undecided import UndecidedError
 
 
 def staged(
-    situations: Sequence[Situation],
-    scene: Scene,
+    situations: Sequence[JointState],
+    scene: ObjectUniverse,
     step_s: Fraction,
     shows: Callable[[Trace], bool],
 ) -> Trace:
@@ -78,7 +78,7 @@ def _names(types: Sequence[str], taken: Mapping[str, str]) -> list[str]:
     return names
 
 
-def _fills(scene: Scene, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
+def _fills(scene: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
     """Values of what nobody asks about further objects: the usual ones, then others of each."""
     yield {}
     if not types:
@@ -91,7 +91,7 @@ def _fills(scene: Scene, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
 
 def _written(
     values: Mapping[Key, Value],
-    scene: Scene,
+    scene: ObjectUniverse,
     everyone: Mapping[str, str],
     fill: Mapping[str, Value],
 ) -> dict[str, Any]:
@@ -113,6 +113,8 @@ def _written(
     return state
 
 
-def alone(rulebook: CompiledRulebook, rule: CompiledRule, scene: Scene) -> CompiledRulebook:
+def alone(
+    rulebook: CompiledRulebook, rule: CompiledRule, scene: ObjectUniverse
+) -> CompiledRulebook:
     """A rulebook of one rule, for traces in the words of a scene."""
     return replace(rulebook, vocabulary=scene.vocabulary, rules=(rule,))

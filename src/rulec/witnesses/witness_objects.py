@@ -17,7 +17,7 @@ MOST_OBJECTS = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Staged:
+class NamedObjects:
     """States of an example, and the objects in them besides those that the rule names."""
 
     objects: tuple[Variable, ...]
@@ -26,7 +26,7 @@ class Staged:
 
 def staged(
     states: Sequence[Witness], variables: Sequence[Variable], vocabulary: Vocabulary
-) -> Staged | None:
+) -> NamedObjects | None:
     """The states with objects that come to the counts that they need; None if it is not that easy.
 
     It is for a rule that counts nothing, or has a single count whose body compares no numbers and
@@ -34,7 +34,7 @@ def staged(
     """
     counts = {count for state in states for count, _ in state.counts}
     if not counts:
-        return Staged((), tuple(state.facts for state in states))
+        return NamedObjects((), tuple(state.facts for state in states))
     if len(counts) > 1:
         return None
     (count,) = counts
@@ -57,7 +57,7 @@ def staged(
             if not scene.add(facts, name, counted=number < need):
                 return None
     objects = tuple(Variable(name, count.type) for name in names)
-    return Staged(objects, tuple(facts for facts, _ in needs))
+    return NamedObjects(objects, tuple(facts for facts, _ in needs))
 
 
 class _Scene:

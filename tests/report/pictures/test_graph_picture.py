@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 
 from rulec.api.workflow import find_maneuvers
-from rulec.planning.product.accepted_edges import passages
+from rulec.planning.product.accepted_edges import accepted_edges
 from rulec.report.pictures.drawing.marks import Area, Line, Words
 from rulec.report.pictures.graph_picture import graph_picture
 from rulec.trace.graph_paths import paths
@@ -13,7 +13,7 @@ from rulec.trace.graph_paths import paths
 
 def drawn(scenario, maneuver=None, **options):
     found = find_maneuvers(scenario, "esterle2019", **options)
-    ways = passages(found.hard, found.product)
+    ways = accepted_edges(found.hard, found.product)
     return found, graph_picture(found.graph, ways, maneuver, judged=True)
 
 
@@ -43,7 +43,7 @@ def test_rejected_steps_of_s2():
     found, picture = drawn("s2")
     tips = [one.tip for one in picture.marks if isinstance(one, Area) and one.style == "violated"]
     assert [tip for tip in tips if tip] == ["2 s, cell 2: crossing, f(o1)"]
-    ways = passages(found.hard, found.product)
+    ways = accepted_edges(found.hard, found.product)
     here = {edge for edge in ways.possible[2] if edge[0] == 2}
     assert here
     assert not here & ways.accepted[2]
@@ -58,7 +58,7 @@ def test_rejected_steps_of_s2():
 def test_a_maneuver_is_drawn_through_its_cells():
     found = find_maneuvers("s2", "esterle2019")
     maneuver = found.cheapest(4)[3]
-    ways = passages(found.hard, found.product)
+    ways = accepted_edges(found.hard, found.product)
     picture = graph_picture(found.graph, ways, maneuver, judged=True)
     tips = [one.tip for one in picture.marks if isinstance(one, Area) and one.style == "chosen"]
     assert [tip.partition(":")[0] for tip in tips] == [

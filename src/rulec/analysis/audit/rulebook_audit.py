@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
-from rulec.analysis.lineage.rule_lineage import Inheritance, ProvisionHistory
+from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance
 from rulec.analysis.vocabulary_use import words_used
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.overlay.constants_and_macros import in_force
@@ -220,7 +220,7 @@ def _history(inherited: Inheritance, at: str) -> Iterator[Finding]:
             yield Finding("out-of-force", one.name, print_in_force(one.rule.in_force))
 
 
-def _of_provision(item: ProvisionHistory) -> Iterator[Finding]:
+def _of_provision(item: ConstantHistory) -> Iterator[Finding]:
     """Of a parameter the value that counts, if it counts for a time only."""
     for one in item.settings:
         if one.current and (one.since or one.until):

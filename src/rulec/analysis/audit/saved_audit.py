@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from rulec.analysis.audit.rulebook_audit import Audit
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import opened
 
@@ -38,7 +38,7 @@ def _no_audit(path: Path, reason: str) -> RulecError:
         Diagnostic(
             "R0705",
             f"this is not an audit{reason}",
-            Place(str(path)),
+            SourceLocation(str(path)),
             help="write one with `rulec audit RULEBOOK --output-format json`",
         )
     )

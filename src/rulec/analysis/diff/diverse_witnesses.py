@@ -12,12 +12,12 @@ from collections import deque
 from collections.abc import Iterator
 from fractions import Fraction
 
-from rulec.analysis.counterexample import violation
+from rulec.analysis.counterexample import counterexample
 from rulec.analysis.shared_compilation import Side
 from rulec.automata.thresholds import exact
 from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Unary, UnaryOperator
 from rulec.monitoring.state_view import value_in
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.witnesses.state_synthesis import keys_of
@@ -73,12 +73,12 @@ def unusual(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
 
 def _without(names: frozenset[str], one: Side, other: Side) -> Trace | None:
     try:
-        return violation(one, [other], tuple(_as_usual(names, one.rulebook.vocabulary)))
+        return counterexample(one, [other], tuple(_as_usual(names, one.rulebook.vocabulary)))
     except UndecidedError:
         return None
 
 
-def _as_usual(names: frozenset[str], vocabulary: Vocabulary) -> Iterator[Fact]:
+def _as_usual(names: frozenset[str], vocabulary: Vocabulary) -> Iterator[Axiom]:
     """That these declarations have their defaults, for all objects."""
     for name in sorted(names):
         declaration = vocabulary.declarations[name]
@@ -86,7 +86,7 @@ def _as_usual(names: frozenset[str], vocabulary: Vocabulary) -> Iterator[Fact]:
             Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
         )
         arguments = tuple(variable.name for variable in variables)
-        yield Fact(variables, _has_default(name, arguments, declaration))
+        yield Axiom(variables, _has_default(name, arguments, declaration))
 
 
 def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> Formula:

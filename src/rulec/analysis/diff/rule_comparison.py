@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Literal
 
-from rulec.analysis.counterexample import violation
+from rulec.analysis.counterexample import counterexample
 from rulec.analysis.diff.diverse_witnesses import reasons
 from rulec.analysis.shared_compilation import Side
 from rulec.rulebook.model import Variable
@@ -20,7 +20,7 @@ Relation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class RuleComparison:
     """How two rules stand to each other.
 
     ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
@@ -38,13 +38,13 @@ class Comparison:
     on_common: Relation | None = None
 
 
-def compare(one: Side, other: Side, most: int = 1) -> Comparison:
+def compare(one: Side, other: Side, most: int = 1) -> RuleComparison:
     """Compare two rules, both compiled for the same step if they have bounds in seconds.
 
     Either way ``most`` traces are looked for, each for a reason of its own.
     """
     if one.law == other.law:
-        return Comparison("equal")
+        return RuleComparison("equal")
     found = _compare(one, other, most)
     common = common_types(one.rule.variables, other.rule.variables, one.rulebook.vocabulary)
     if common is None or found.undecided:
@@ -53,12 +53,12 @@ def compare(one: Side, other: Side, most: int = 1) -> Comparison:
     return replace(found, common=common, on_common=_compare(narrow, narrower, 1).relation)
 
 
-def _compare(one: Side, other: Side, most: int) -> Comparison:
+def _compare(one: Side, other: Side, most: int) -> RuleComparison:
     try:
-        first, second = violation(one, [other]), violation(other, [one])
+        first, second = counterexample(one, [other]), counterexample(other, [one])
     except UndecidedError as problem:
-        return Comparison("undecided", undecided=str(problem))
-    return Comparison(
+        return RuleComparison("undecided", undecided=str(problem))
+    return RuleComparison(
         relation_of(first, second),
         () if first is None else reasons(one, other, first, most),
         () if second is None else reasons(other, one, second, most),

@@ -8,9 +8,9 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 
 from rulec.analysis.counterexample import read_by
-from rulec.analysis.diff.rule_comparison import Comparison, Relation, compare
+from rulec.analysis.diff.rule_comparison import Relation, RuleComparison, compare
 from rulec.analysis.diff.shared_vocabulary import shared_words
-from rulec.analysis.lineage.rule_lineage import Inheritance, ProvisionHistory, ProvisionKind
+from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance, ProvisionKind
 from rulec.analysis.shared_compilation import Distinct, at_one_step
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -28,7 +28,7 @@ class RulePair:
     first: Rule
     second: Rule
     machines: tuple[CompiledRule, CompiledRule]
-    comparison: Comparison
+    comparison: RuleComparison
 
     @property
     def name(self) -> str:
@@ -72,7 +72,7 @@ class SettingPair:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class RulebookDiff:
     """How a rulebook differs from another one."""
 
     first: Rulebook
@@ -128,7 +128,7 @@ def setting_pairs(one: Inheritance, other: Inheritance) -> tuple[SettingPair, ..
     return tuple(found)
 
 
-def _value(provision: ProvisionHistory) -> str:
+def _value(provision: ConstantHistory) -> str:
     return next((one.text for one in provision.settings if one.current), "")
 
 
@@ -139,7 +139,7 @@ def difference(
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
     most: int = 1,
-) -> Difference:
+) -> RulebookDiff:
     """Compare the rules that two rulebooks share by name.
 
     Args:
@@ -174,7 +174,7 @@ def difference(
             )
         )
         tell(number)
-    return Difference(
+    return RulebookDiff(
         first,
         second,
         tuple(compared),
@@ -201,7 +201,7 @@ def _only(
     )
 
 
-def _labelled(found: Comparison, first: str, second: str, rule: str) -> Comparison:
+def _labelled(found: RuleComparison, first: str, second: str, rule: str) -> RuleComparison:
     """The comparison with traces that are named for what they show."""
 
     def named(traces: Sequence[Trace], forbids: str, allows: str) -> tuple[Trace, ...]:

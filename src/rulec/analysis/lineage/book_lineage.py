@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 
 from rulec.analysis.lineage.rule_lineage import (
+    ConstantHistory,
     Inheritance,
     Member,
-    ProvisionHistory,
     RuleHistory,
     Setting,
     Step,
@@ -157,7 +157,7 @@ def changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> Iterator[str
             yield spoken
 
 
-def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> ProvisionHistory:
+def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> ConstantHistory:
     first = given[0][0]
     current = _current(given, at)
     settings = tuple(
@@ -166,16 +166,16 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
     )
     match first:
         case tree.OptionItem():
-            return ProvisionHistory("option", name, name, settings)
+            return ConstantHistory("option", name, name, settings)
         case tree.DefineItem(parameters=parameters):
             shown = (
                 f"{one.name.text}: {one.type.text}" if one.type else one.name.text
                 for one in parameters
             )
             head = f"{name}({', '.join(shown)})" if parameters else name
-            return ProvisionHistory("definition", name, head, settings)
+            return ConstantHistory("definition", name, head, settings)
         case _:
-            return ProvisionHistory("parameter", name, name, settings)
+            return ConstantHistory("parameter", name, name, settings)
 
 
 def _current(given: Sequence[tuple[_Given, str, int]], at: str) -> int | None:

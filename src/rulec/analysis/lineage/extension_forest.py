@@ -9,14 +9,14 @@ from rulec.analysis.lineage.rule_lineage import Member
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class ExtensionTree:
     """A rulebook and those that extend it directly, in alphabetical order."""
 
     book: Member
-    children: tuple[Branch, ...] = ()
+    children: tuple[ExtensionTree, ...] = ()
 
 
-def forest(members: Iterable[Member]) -> tuple[Branch, ...]:
+def forest(members: Iterable[Member]) -> tuple[ExtensionTree, ...]:
     """Every rulebook once, by its name; the roots extend none, or one that is not among them.
 
     Rulebooks that go round in a circle hang below the first of them by name.
@@ -43,11 +43,11 @@ def _branch(
     by_name: Mapping[str, Member],
     children: Mapping[str, Sequence[str]],
     placed: set[str],
-) -> Branch:
+) -> ExtensionTree:
     placed.add(name)
     below = [
         _branch(one, by_name, children, placed)
         for one in children.get(name, ())
         if one not in placed
     ]
-    return Branch(by_name[name], tuple(below))
+    return ExtensionTree(by_name[name], tuple(below))

@@ -84,7 +84,7 @@ class Setting:
 
 
 @dataclass(frozen=True, slots=True)
-class ProvisionHistory:
+class ConstantHistory:
     """An option, a parameter or a definition with all that it was given, in order.
 
     ``head`` is how it is used: its name, with a definition's parameters. ``used``: some rule speaks
@@ -104,7 +104,7 @@ class Inheritance:
 
     books: tuple[Member, ...]
     rules: tuple[RuleHistory, ...]
-    provisions: tuple[ProvisionHistory, ...]
+    provisions: tuple[ConstantHistory, ...]
 
     @property
     def book(self) -> str:

@@ -13,14 +13,14 @@ TriggerKind = Literal["implies", "phase", "when", "unless"]
 
 
 @dataclass(frozen=True, slots=True)
-class Trigger:
+class Antecedent:
     """A part of a rule that matters only if it holds at some time."""
 
     kind: TriggerKind
     formula: Formula
 
 
-def triggers(rule: Rule) -> Iterator[Trigger]:
+def antecedents(rule: Rule) -> Iterator[Antecedent]:
     """The rule's condition and exceptions, the left side of what it implies, the first phase.
 
     What an option has switched off is not among them.
@@ -42,15 +42,15 @@ def has_constant(formula: Formula) -> bool:
     return False
 
 
-def _all(rule: Rule) -> Iterator[Trigger]:
+def _all(rule: Rule) -> Iterator[Antecedent]:
     if rule.condition is not None:
-        yield Trigger("when", rule.condition)
+        yield Antecedent("when", rule.condition)
     for exemption in rule.exemptions:
-        yield Trigger("unless", exemption.formula)
+        yield Antecedent("unless", exemption.formula)
     yield from _of(rule.required or rule.formula)
 
 
-def _of(formula: Formula) -> Iterator[Trigger]:
+def _of(formula: Formula) -> Iterator[Antecedent]:
     match formula:
         case Binary(BinaryOperator.AND, left, right):
             yield from _of(left)
@@ -61,27 +61,27 @@ def _of(formula: Formula) -> Iterator[Trigger]:
             yield from _first_phase(operand)
 
 
-def _implied(formula: Formula) -> Iterator[Trigger]:
+def _implied(formula: Formula) -> Iterator[Antecedent]:
     match formula:
         case Binary(BinaryOperator.AND, left, right):
             yield from _implied(left)
             yield from _implied(right)
         case Binary(BinaryOperator.IMPLIES, left, _):
-            yield Trigger("implies", left)
+            yield Antecedent("implies", left)
         case Unary(UnaryOperator.NOT, operand):
             yield from _first_phase(operand)
 
 
-def _first_phase(formula: Formula) -> Iterator[Trigger]:
+def _first_phase(formula: Formula) -> Iterator[Antecedent]:
     match formula:
         case Binary(BinaryOperator.THEN, first, _):
-            yield Trigger("phase", first)
+            yield Antecedent("phase", first)
         case Binary(BinaryOperator.OR, left, right):
             yield from _first_phase(left)
             yield from _first_phase(right)
 
 
-def occurrence(rule: Rule, trigger: Trigger, name: str) -> Rule:
+def occurrence(rule: Rule, trigger: Antecedent, name: str) -> Rule:
     """The rule that this trigger holds at some time."""
     formula = Unary(UnaryOperator.EVENTUALLY, trigger.formula)
     return Rule(name, rule.strength, rule.variables, formula, span=rule.span, step_s=rule.step_s)

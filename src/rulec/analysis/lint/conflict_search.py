@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rulec.analysis.counterexample import read_by
 from rulec.analysis.shared_compilation import Side
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
 from rulec.rulebook.model import Variable
@@ -16,7 +16,7 @@ from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import Alphabet, Symbol
 from rulec.witnesses.letter_functions import machine_column
-from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, Node
 from rulec.witnesses.trace_synthesis import alone, staged
 from rulec.witnesses.undecided import UndecidedError
@@ -45,8 +45,10 @@ def conflict(sides: Sequence[Side]) -> Conflict | None:
     of one rulebook. Raises UndecidedError where there is too much to search.
     """
     vocabulary = sides[0].rulebook.vocabulary
-    scene = Scene(common_objects([one.rule.variables for one in sides], vocabulary), vocabulary)
-    scene = replace(scene, facts=sides[0].facts)
+    scene = ObjectUniverse(
+        common_objects([one.rule.variables for one in sides], vocabulary), vocabulary
+    )
+    scene = replace(scene, axioms=sides[0].axioms)
     bound = [
         (number, side.rule.machine, binding)
         for number, side in enumerate(sides)
@@ -92,7 +94,7 @@ def conflict(sides: Sequence[Side]) -> Conflict | None:
 def share_words(one: Side, other: Side) -> bool:
     """Do two rules read something in common, or something that facts connect?"""
     reached = set(read_by(one.rule))
-    groups = [set(names_in(fact.formula)) for fact in one.facts]
+    groups = [set(names_in(fact.formula)) for fact in one.axioms]
     while joined := [group for group in groups if group & reached and not group <= reached]:
         reached.update(*joined)
     return bool(reached & read_by(other.rule))
@@ -129,7 +131,7 @@ Graph = Mapping[Node, Sequence[_Step]]
 
 
 def _explored(
-    machines: Sequence[Machine], owners: Sequence[int], symbols: Sequence[Symbol]
+    machines: Sequence[MealyMonitor], owners: Sequence[int], symbols: Sequence[Symbol]
 ) -> Graph:
     """The joint states that can be reached, in breadth-first order; those beyond saving end it."""
     start: Node = (0,) * len(machines)
@@ -138,15 +140,15 @@ def _explored(
     seen = {start}
     for node in waiting:
         steps: dict[tuple[Node, frozenset[int]], _Step] = {}
-        lost = any(a == one.dead for a, one in zip(node, machines, strict=True))
+        lost = any(a == one.rejecting_sink for a, one in zip(node, machines, strict=True))
         for symbol in () if lost else symbols:
             unsatisfied = {
                 owner
                 for owner, one, state, which in zip(owners, machines, node, symbol, strict=True)
-                if not one.accepting[state][which]
+                if not one.outputs[state][which]
             }
             target = tuple(
-                one.following[state][which]
+                one.successors[state][which]
                 for one, state, which in zip(machines, node, symbol, strict=True)
             )
             key = (target, frozenset(owners) - unsatisfied)
@@ -161,7 +163,7 @@ def _explored(
 
 
 def _alone(
-    machines: Sequence[Machine], places: Sequence[int], symbols: Sequence[Symbol]
+    machines: Sequence[MealyMonitor], places: Sequence[int], symbols: Sequence[Symbol]
 ) -> frozenset[Node]:
     """The states of one rule's machines from which it can still be kept."""
     own = list(dict.fromkeys(tuple(symbol[place] for place in places) for symbol in symbols))

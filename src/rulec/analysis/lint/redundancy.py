@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import prod
 
-from rulec.analysis.counterexample import violation
+from rulec.analysis.counterexample import counterexample
 from rulec.analysis.lint.conflict_search import share_words
 from rulec.analysis.shared_compilation import Side
 from rulec.witnesses.joint_alphabet import Alphabet
 from rulec.witnesses.letter_functions import machine_column
-from rulec.witnesses.object_universe import Scene
+from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_word import shortest
 
 MOST_PREMISES = 6
@@ -20,7 +20,7 @@ MOST_JOINT_STATES = 5_000
 
 def can_be_violated(side: Side) -> bool:
     """Is there a trace that violates the rule? Raises UndecidedError."""
-    return violation(side, []) is not None
+    return counterexample(side, []) is not None
 
 
 def can_be_kept(side: Side) -> bool:
@@ -29,7 +29,7 @@ def can_be_kept(side: Side) -> bool:
     Raises UndecidedError.
     """
     objects = {variable.name: variable.type for variable in side.rule.variables}
-    scene = Scene(objects, side.rulebook.vocabulary, side.facts)
+    scene = ObjectUniverse(objects, side.rulebook.vocabulary, side.axioms)
     bindings = scene.bindings(side.rule.variables)
     columns = [machine_column(side.rule.machine, binding, scene) for binding in bindings]
     machines = [side.rule.machine] * len(bindings)
@@ -45,14 +45,14 @@ def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
     """
     related = [other for other in others if share_words(side, other)]
     for other in related:
-        if violation(side, [other]) is None:
+        if counterexample(side, [other]) is None:
             return (other,)
     premises = walkable(side, related)
-    if len(premises) < 2 or violation(side, premises) is not None:
+    if len(premises) < 2 or counterexample(side, premises) is not None:
         return ()
     for other in premises:
         fewer = [one for one in premises if one is not other]
-        if violation(side, fewer) is None:
+        if counterexample(side, fewer) is None:
             premises = fewer
     return tuple(premises)
 
@@ -61,10 +61,10 @@ def walkable(side: Side, related: Sequence[Side]) -> list[Side]:
     """Those of the others whose automata stay small together with that of the rule."""
     types = sorted(variable.type for variable in side.rule.variables)
     chosen: list[Side] = []
-    for other in sorted(related, key=lambda one: len(one.rule.machine.following)):
+    for other in sorted(related, key=lambda one: len(one.rule.machine.successors)):
         if sorted(variable.type for variable in other.rule.variables) not in (types, []):
             continue
-        sizes = [len(one.rule.machine.following) for one in (side, *chosen, other)]
+        sizes = [len(one.rule.machine.successors) for one in (side, *chosen, other)]
         if prod(sizes) <= MOST_JOINT_STATES and len(chosen) < MOST_PREMISES:
             chosen.append(other)
     return chosen

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import compare
-from rulec.analysis.lint.antecedents import Trigger, has_constant, occurrence, triggers
+from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.finding_notes import shown, undecided
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
@@ -39,7 +39,7 @@ def findings(
     whens = {
         f"{rule.name} {number}": (rule, trigger)
         for rule in book.rules
-        for number, trigger in enumerate(triggers(rule))
+        for number, trigger in enumerate(antecedents(rule))
     }
     asked = {name: occurrence(*one, name) for name, one in whens.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
@@ -66,7 +66,7 @@ def findings(
     return tuple(diagnostics)
 
 
-def _idle(rule: Rule, occurring: Sequence[tuple[Trigger, Side]]) -> Iterator[Diagnostic]:
+def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, Side]]) -> Iterator[Diagnostic]:
     what = {
         "implies": "what stands before `implies`",
         "phase": "the first phase",

@@ -8,10 +8,10 @@ from itertools import chain
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.bundle.formula_check import problem_in
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead, Read, Threshold, trap
-from rulec.diagnostics import Place
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, Threshold, trap
+from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import BOOLEAN, in_steps, operations_of, speaks_of_seconds
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
@@ -99,7 +99,7 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
-def _fact(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledFact:
+def _fact(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledAxiom:
     variables = _variables(fact.variables, vocabulary, "a fact")
     formula = from_data(fact.tree)
     problem = problem_in(formula, vocabulary, {one.name for one in variables})
@@ -107,7 +107,9 @@ def _fact(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledFact:
     timeless = all(one.operator in BOOLEAN for one in operations_of(formula))
     _require(timeless, "a fact speaks of more than one state")
     _require(in_words(formula) == fact.formula, "a fact has two different formulas")
-    return CompiledFact(variables, formula, Place(fact.file, fact.line) if fact.file else None)
+    return CompiledAxiom(
+        variables, formula, SourceLocation(fact.file, fact.line) if fact.file else None
+    )
 
 
 def _variables(
@@ -165,32 +167,35 @@ def _step(rule: schema.Rule, formula: Formula) -> Fraction | None:
     return step
 
 
-def _machine(read: schema.Machine, rule: str) -> Machine:
+def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
     reads = tuple(_read(one) for one in read.reads)
     n_letters = 1
     for item in reads:
         n_letters *= item.size
-    n_states = len(read.following)
-    n_classes = len(read.following[0]) if read.following else 0
+    n_states = len(read.successors)
+    n_classes = len(read.successors[0]) if read.successors else 0
     fits: list[bool] = [
         n_states > 0,
         len(read.letters) == n_letters,
         all(IMPOSSIBLE <= letter < n_classes for letter in read.letters),
-        all(len(row) == n_classes for row in read.following),
-        all(len(row) == n_classes for row in read.accepting),
-        len(read.accepting) == n_states,
-        all(0 <= state < n_states for state in chain.from_iterable(read.following)),
+        all(len(row) == n_classes for row in read.successors),
+        all(len(row) == n_classes for row in read.outputs),
+        len(read.outputs) == n_states,
+        all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
     ]
     _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
-    traps = [trap(read.following, read.accepting, verdict=verdict) for verdict in (False, True)]
-    _require(traps == [read.dead, read.safe], f"rule `{rule}` names a wrong dead or safe state")
-    return Machine(
+    traps = [trap(read.successors, read.outputs, verdict=verdict) for verdict in (False, True)]
+    _require(
+        traps == [read.rejecting_sink, read.accepting_sink],
+        f"rule `{rule}` names a wrong dead or safe state",
+    )
+    return MealyMonitor(
         reads,
         tuple(read.letters),
-        tuple(tuple(row) for row in read.following),
-        tuple(tuple(row) for row in read.accepting),
-        read.dead,
-        read.safe,
+        tuple(tuple(row) for row in read.successors),
+        tuple(tuple(row) for row in read.outputs),
+        read.rejecting_sink,
+        read.accepting_sink,
     )
 
 

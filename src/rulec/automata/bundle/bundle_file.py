@@ -13,10 +13,10 @@ from typing import Any
 import msgspec
 
 from rulec.automata.bundle.bundle_check import checked
-from rulec.automata.bundle.bundle_schema import File, Header
-from rulec.automata.bundle.compiled_rulebook import CompiledFact, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.bundle_schema import WRITTEN_AS, File, Header
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
@@ -53,7 +53,7 @@ def to_json(rulebook: CompiledRulebook) -> str:
                 for item in vocabulary.declarations.values()
             ],
         },
-        "facts": [_fact(fact) for fact in rulebook.facts],
+        "facts": [_fact(fact) for fact in rulebook.axioms],
         "rules": [_rule(rule) for rule in rulebook.rules],
     }
     text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
@@ -68,7 +68,7 @@ def _on_one_line(found: re.Match[str]) -> str:
     return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
 
 
-def _fact(fact: CompiledFact) -> dict[str, Any]:
+def _fact(fact: CompiledAxiom) -> dict[str, Any]:
     place = fact.place
     return {
         "variables": [(variable.name, variable.type) for variable in fact.variables],
@@ -96,7 +96,10 @@ def _rule(rule: CompiledRule) -> dict[str, Any]:
         "formula": in_words(rule.formula),
         "tree": to_data(rule.formula),
         "machine": {
-            **msgspec.to_builtins(replace(rule.machine, reads=())),
+            **{
+                WRITTEN_AS.get(name, name): value
+                for name, value in msgspec.to_builtins(replace(rule.machine, reads=())).items()
+            },
             "reads": [read_to_data(read) for read in rule.machine.reads],
         },
         "hoa": rule.hoa,
@@ -150,7 +153,7 @@ def _damaged(file: str, message: str) -> RulecError:
         Diagnostic(
             "R0404",
             message,
-            Place(file),
+            SourceLocation(file),
             help="compile it again from its source with `rulec compile`",
         )
     )

@@ -71,15 +71,24 @@ class NumberRead(msgspec.Struct, tag="number", tag_field="kind", forbid_unknown_
     thresholds: list[Threshold]
 
 
-class Machine(msgspec.Struct, forbid_unknown_fields=True):
+WRITTEN_AS = {
+    "successors": "following",
+    "outputs": "accepting",
+    "rejecting_sink": "dead",
+    "accepting_sink": "safe",
+}
+"""Fields of a Mealy monitor by the names that version 3 of the format gives them."""
+
+
+class Machine(msgspec.Struct, forbid_unknown_fields=True, rename=WRITTEN_AS):
     """A rule as a table."""
 
     reads: list[Read | NumberRead]
     letters: list[int]
-    following: list[list[int]]
-    accepting: list[list[bool]]
-    dead: int | None
-    safe: int | None
+    successors: list[list[int]]
+    outputs: list[list[bool]]
+    rejecting_sink: int | None
+    accepting_sink: int | None
 
 
 class Rule(msgspec.Struct, forbid_unknown_fields=True):

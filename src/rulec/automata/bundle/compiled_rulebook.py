@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from rulec.automata.mealy_monitor import Machine
-from rulec.diagnostics import Place
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Traffic, Variable
 from rulec.vocabulary import Vocabulary
@@ -26,7 +26,7 @@ class CompiledRule:
     cite: str
     says: str
     formula: Formula
-    machine: Machine
+    machine: MealyMonitor
     hoa: str
     step_s: Fraction | None = None
     level: str = ""
@@ -37,12 +37,12 @@ class CompiledRule:
 
 
 @dataclass(frozen=True, slots=True)
-class CompiledFact:
+class CompiledAxiom:
     """What holds in every state, and where it is written."""
 
     variables: tuple[Variable, ...]
     formula: Formula
-    place: Place | None = field(default=None, compare=False)
+    place: SourceLocation | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,5 +66,5 @@ class CompiledRulebook:
     priorities: frozenset[tuple[str, str]] = frozenset()
     extends: tuple[str, ...] = ()
     at: str = ""
-    facts: tuple[CompiledFact, ...] = ()
+    axioms: tuple[CompiledAxiom, ...] = ()
     traffic: Traffic = ""

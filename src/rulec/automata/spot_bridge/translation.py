@@ -56,7 +56,7 @@ def translate(
     formula: Formula,
     reads: Sequence[Read | NumberRead],
     semantics: Semantics = "stutter",
-    facts: Sequence[Formula] = (),
+    axioms: Sequence[Formula] = (),
 ) -> Translation:
     """The automaton of ``formula``, whose bounds are in steps, over the letters that there are.
 
@@ -71,7 +71,7 @@ def translate(
     alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
     wording = Wording(names, alive)
     known = knowledge(reads, propositions)
-    for fact in facts:
+    for fact in axioms:
         known = fact if known == Constant(True) else Binary(_AND, known, fact)
     meant = past.present
     if known != Constant(True):

@@ -15,7 +15,7 @@ from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.report.rulebooks.diff_text import FORMATS
 
 if TYPE_CHECKING:
-    from rulec.analysis.diff.rulebook_comparison import Difference
+    from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.diagnostics import RulecError
     from rulec.rulebook.model import Rulebook
 
@@ -114,7 +114,7 @@ def _difference(
     step_s: Fraction | None,
     at: str,
     most: int,
-) -> Difference:
+) -> RulebookDiff:
     from rulec.api.rulebook_questions import compare_rulebooks
     from rulec.report.text.console import print_diagnostics, progress
     from rulec.settings import search_path
@@ -192,7 +192,7 @@ def _alone(books: list[Rulebook]) -> list[str]:
     ]
 
 
-def _write_witnesses(found: Difference, file: str) -> None:
+def _write_witnesses(found: RulebookDiff, file: str) -> None:
     from rulec.files import written_whole
     from rulec.report.text.console import print_aside
     from rulec.trace.formats.json_lines import write_traces

@@ -98,17 +98,17 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
     cheapest satisfying maneuver is shown.
     """
-    from rulec.planning.product.accepted_edges import passages
+    from rulec.planning.product.accepted_edges import accepted_edges
     from rulec.planning.product.graph_product import explore
-    from rulec.planning.product.node_transformers import effects
+    from rulec.planning.product.node_transformers import node_transformers
     from rulec.report.pictures.drawing.picture_formats import Drawing
     from rulec.report.pictures.graph_picture import graph_picture
     from rulec.report.pictures.picture_titles import graph_title
 
     cells, found, maneuver = _judged(**options)
-    hard = found.hard if found else effects(cells.trace_graph(), ())
+    hard = found.hard if found else node_transformers(cells.trace_graph(), ())
     product = found.product if found else explore(hard)
-    ways = passages(hard, product)
+    ways = accepted_edges(hard, product)
     picture = graph_picture(cells, ways, maneuver, judged=found is not None)
     title = graph_title(cells, found, product.accepted)
     write(Drawing(title, [picture]), output, form)

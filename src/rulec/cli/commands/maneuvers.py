@@ -14,7 +14,7 @@ from rulec.cli.options.scenario_options import chosen, graph_options
 from rulec.cli.options.shared_options import at_option, json_option, rulebook_option
 
 if TYPE_CHECKING:
-    from rulec.planning import Maneuvers, Ranked
+    from rulec.planning import Maneuvers, RankedManeuver
 
 
 @click.command()
@@ -85,8 +85,8 @@ def command(
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
     from rulec.api.workflow import find_maneuvers, machines
-    from rulec.planning.probability.alternative_predictions import otherwise
-    from rulec.planning.probability.rule_probability import chances
+    from rulec.planning.probability.alternative_predictions import alternative_counts
+    from rulec.planning.probability.rule_probability import rule_probabilities
     from rulec.planning.trace_history import read_past
     from rulec.report.maneuvers import maneuver_report as report
     from rulec.report.text.console import print_diagnostics, print_result
@@ -107,8 +107,8 @@ def command(
         listed=listed,
         best=best,
         ranked=ranked,
-        chances={one.nodes: chances(found, one) for one in shown} if uncertain else {},
-        worlds=otherwise(found) if worlds else None,
+        chances={one.nodes: rule_probabilities(found, one) for one in shown} if uncertain else {},
+        worlds=alternative_counts(found) if worlds else None,
         prunings=found.prunings() if why else None,
         classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
     )
@@ -117,7 +117,7 @@ def command(
     return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED
 
 
-def _best(found: Maneuvers) -> Sequence[Ranked] | None:
+def _best(found: Maneuvers) -> Sequence[RankedManeuver] | None:
     """The least violating maneuvers; what keeps them from being known is said beside the counts."""
     from rulec.diagnostics import RulecError
     from rulec.report.text.console import print_diagnostics

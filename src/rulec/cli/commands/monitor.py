@@ -55,7 +55,7 @@ def command(
     could not be judged. With --save the trace is not over, and what is pending is no violation.
     """
     from rulec.api.workflow import compile_rulebook
-    from rulec.diagnostics import Place, RulecError
+    from rulec.diagnostics import RulecError, SourceLocation
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
     from rulec.monitoring.online.stream_answers import answer
@@ -70,7 +70,7 @@ def command(
     if restore is None:
         monitor = Monitor(rules, step_s)
     else:
-        monitor = Monitor.restore(rules, saved, Place(str(restore)))
+        monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
     complaints, refused = Complaints(), False
     with saved_at_the_end(monitor, save):
         for one in read_live(sys.stdin.buffer, "standard input"):

@@ -97,7 +97,7 @@ def command(
 def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
     from rulec.api.rulebook_questions import run_examples
-    from rulec.book_tests.verdict_coverage import unexercised
+    from rulec.book_tests.verdict_coverage import uncovered_verdicts
     from rulec.diagnostics import RulecError
     from rulec.report.text.console import print_diagnostics
     from rulec.settings import search_path
@@ -107,5 +107,5 @@ def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
     except RulecError as error:
         print_diagnostics(error.diagnostics)
         return None
-    print_diagnostics([*run.warnings, *unexercised(run)])
+    print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
     return run

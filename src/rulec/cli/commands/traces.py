@@ -123,8 +123,8 @@ def _write_drives(
     """Write what the vehicles of a recording did."""
     from rulec.api.workflow import machines
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.diagnostics import Diagnostic, Place, RulecError
-    from rulec.extraction.selection.requested import wanted_drives
+    from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+    from rulec.extraction.selection.requested import selected_drives
     from rulec.extraction.to_trace import Drive
     from rulec.files import written_whole
     from rulec.report.text.console import print_diagnostics, print_result, progress
@@ -140,7 +140,7 @@ def _write_drives(
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
-    found = wanted_drives(
+    found = selected_drives(
         read_recording(file, options["net"]),
         wanted(egos, about, vocabulary),
         str(file),
@@ -161,7 +161,7 @@ def _write_drives(
     kinds = found.drives.kinds()
     if not kinds:
         message = "nobody in this recording drives on a lane"
-        raise RulecError(Diagnostic("R0612", message, Place(str(file))))
+        raise RulecError(Diagnostic("R0612", message, SourceLocation(str(file))))
     with progress(f"writing {output}", len(found.egos)) as tell:
         form = form or format_of(str(output))
         if str(output) == "-":

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.automata.step_compilation import AnyStep
     from rulec.diagnostics import RulecError
-    from rulec.extraction.selection.requested import Wanted
+    from rulec.extraction.selection.requested import RequestedDrives
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.report.text.console import Complaints
     from rulec.trace import Trace
@@ -156,31 +156,31 @@ class _Run:
         self.violated |= violated > 0
         self.not_answered |= not_judged > 0
 
-    def recording(self, file: str, net: Path | None, wanted: Wanted) -> None:
+    def recording(self, file: str, net: Path | None, wanted: RequestedDrives) -> None:
         """Judge every drive of a recording."""
-        from rulec.api.workflow import judge_recording
+        from rulec.api.workflow import verify_recording
         from rulec.diagnostics import RulecError
-        from rulec.extraction.recording_verdicts import Judged
-        from rulec.extraction.violation_tally import Tally
+        from rulec.extraction.recording_verdicts import DriveVerdict
+        from rulec.extraction.violation_tally import ViolationTally
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
         from rulec.report.text.console import print_result, progress
         from rulec.report.verdicts import recording_table as report
 
         try:
-            judged = judge_recording(Path(file), self.rules, wanted, net)
+            judged = verify_recording(Path(file), self.rules, wanted, net)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True
             return
-        tally = Tally()
+        tally = ViolationTally()
         blocks = []
         with progress(f"judging {file}", len(judged.egos)) as tell:
             for number, one in enumerate(judged.answers(), 1):
                 tell(number)
                 tally.add(one)
                 explained = []
-                if isinstance(one, Judged) and isinstance(one.answer, Verdict):
+                if isinstance(one, DriveVerdict) and isinstance(one.answer, Verdict):
                     chosen = one.answer.violations[: self.to_explain]
                     self.to_explain -= len(chosen)
                     explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
@@ -188,7 +188,7 @@ class _Run:
                         blocks.append(
                             report.in_detail(one, judged, explained, every_part=self.every_part)
                         )
-                elif isinstance(one, Judged) and isinstance(one.answer, NotJudged):
+                elif isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged):
                     self.complaints.add(one.answer.error)
                     self.not_answered = True
                 if self.json_output:
@@ -222,13 +222,13 @@ def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterato
 def _judged(
     stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
 ) -> Iterator[Answer]:
-    from rulec.monitoring.batch.table_verdicts import judge_items
+    from rulec.monitoring.batch.table_verdicts import verify_items
     from rulec.report.text.console import progress
     from rulec.trace.formats.trace_files import read_chunks
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            found, answers = judge_items(traces, rules)
+            found, answers = verify_items(traces, rules)
             for place, answer in enumerate(answers):
                 yield found, place, answer
             if size is not None:

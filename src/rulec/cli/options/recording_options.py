@@ -10,7 +10,7 @@ import click
 from rulec.cli.options.shared_options import Decorated
 
 if TYPE_CHECKING:
-    from rulec.extraction.selection.requested import Wanted
+    from rulec.extraction.selection.requested import RequestedDrives
     from rulec.vocabulary import Vocabulary
 
 
@@ -65,19 +65,19 @@ def given(options: Mapping[str, Any]) -> str | None:
 
 def wanted(
     egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
-) -> Wanted:
+) -> RequestedDrives:
     """What the options say.
 
     Raises:
         click.BadParameter: an assumption or a threshold is none.
     """
     from rulec.extraction.selection.option_values import assumptions, thresholds
-    from rulec.extraction.selection.requested import Wanted
+    from rulec.extraction.selection.requested import RequestedDrives
 
     if options["assumed"] and vocabulary is None:
         raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")
     try:
-        return Wanted(
+        return RequestedDrives(
             egos,
             thresholds(options["thresholds"]),
             {} if vocabulary is None else assumptions(options["assumed"], vocabulary),

@@ -6,16 +6,16 @@ import numpy as np
 
 from rulec.extraction.selection.thresholds import Thresholds
 from rulec.extraction.signals.relations import lanes_touched
-from rulec.extraction.tracks.driven_road import Road
-from rulec.extraction.tracks.road_extents import Placed
-from rulec.extraction.tracks.tracks import Everyone, Flags
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.tracks import Flags, Tracks
 
 _AGAINST = -0.7
 """The cosine of the angle from which on somebody comes towards ego."""
 
 
 def near(
-    ego: int, people: Everyone, all_placed: Placed, road: Road, thresholds: Thresholds
+    ego: int, people: Tracks, all_placed: RoadExtents, road: DrivenRoad, thresholds: Thresholds
 ) -> Flags:
     """Who is there for ego when."""
     own = all_placed.of(ego)
@@ -32,7 +32,7 @@ def near(
     return known
 
 
-def _drives(people: Everyone, thresholds: Thresholds) -> Flags:
+def _drives(people: Tracks, thresholds: Thresholds) -> Flags:
     """Who moves at some time?"""
     fastest = np.nan_to_num(people.speed).max(axis=1, initial=0.0)
     moves: Flags = fastest * 3.6 >= thresholds.standing_kmh

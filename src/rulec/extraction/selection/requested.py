@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean, named
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.selection.thresholds import USUAL, Thresholds
-from rulec.extraction.to_trace import Drive, Telling
+from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored
 from rulec.rulebook.model import Traffic
 from rulec.scenario.recorded.recording import Recording
@@ -17,7 +17,7 @@ from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class RequestedDrives:
     """Whose drives, by which thresholds, and what is taken for granted.
 
     No ``egos`` is everybody. ``assumed`` holds in every state. ``as_recorded``: a recording of
@@ -31,7 +31,7 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class WantedDrives:
+class SelectedDrives:
     """The drives of ``egos``; ``recording`` is the one that they are from, perhaps mirrored."""
 
     recording: Recording
@@ -44,14 +44,14 @@ class WantedDrives:
         return self.drives.of(ego)
 
 
-def wanted_drives(
+def selected_drives(
     recording: Recording,
-    wanted: Wanted,
+    wanted: RequestedDrives,
     file: str,
     traffic: Traffic = "",
     vocabulary: Vocabulary | None = None,
     names: frozenset[str] | None = None,
-) -> WantedDrives:
+) -> SelectedDrives:
     """The drives of a recording, for rules of a side of traffic, in the words of a vocabulary.
 
     Raises:
@@ -62,9 +62,9 @@ def wanted_drives(
     other = own is not None and own != side and not wanted.as_recorded
     if other:
         recording = mirrored(recording)
-    telling = Telling(vocabulary, names, wanted.assumed)
+    telling = TraceWriter(vocabulary, names, wanted.assumed)
     drives = Drives(recording, side, wanted.thresholds, telling)
-    return WantedDrives(recording, other, _chosen(drives.egos(), wanted.egos, file), drives)
+    return SelectedDrives(recording, other, _chosen(drives.egos(), wanted.egos, file), drives)
 
 
 def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
@@ -74,7 +74,7 @@ def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple
                 Diagnostic(
                     "R0612",
                     f"there is no vehicle `{ego}` that drives",
-                    Place(file),
+                    SourceLocation(file),
                     help=did_you_mean(ego, known) or _some(known),
                 )
             )

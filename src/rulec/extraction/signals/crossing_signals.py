@@ -11,19 +11,19 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, View
+from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.map_signals import ahead_of_ego
-from rulec.extraction.signals.signal_columns import Words, named
+from rulec.extraction.signals.signal_columns import SignalColumns, named
 from rulec.extraction.tracks.tracks import Flags, Values
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def crossing_words(view: View) -> Words:
+def crossing_words(view: DriveContext) -> SignalColumns:
     """Words about those who walk, and about those who stop for them."""
     use = _crossing_use(view)
     somebody = ((use > 0) & view.near).any(axis=0)
-    return Words(
+    return SignalColumns(
         about={
             "crossing_use": named(use, _USES),
             "stopped_for_pedestrian": _stopped(view) & somebody,
@@ -35,7 +35,7 @@ def crossing_words(view: View) -> Words:
     )
 
 
-def _crossing_use(view: View) -> NDArray[intp]:
+def _crossing_use(view: DriveContext) -> NDArray[intp]:
     """The number of the use in ``_USES``, of everybody; it means something of who walks only."""
     others, limits = view.others, view.thresholds
     straight = view.road.lanes.straight
@@ -56,7 +56,7 @@ def _crossing_use(view: View) -> NDArray[intp]:
     return found
 
 
-def _towards(view: View) -> Values:
+def _towards(view: DriveContext) -> Values:
     """The speed towards the middle of the road, across it (m/s)."""
     straight = view.road.lanes.straight
     left = view.others.across
@@ -64,7 +64,7 @@ def _towards(view: View) -> Values:
     return towards
 
 
-def _stopped(view: View) -> Flags:
+def _stopped(view: DriveContext) -> Flags:
     """Who stands before the crossing that lies ahead of ego, near to it."""
     start, _ = ahead_of_ego(view)
     stands = view.people.speed * KMH < view.thresholds.standing_kmh

@@ -6,8 +6,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, View, standing_at_0
-from rulec.extraction.signals.signal_columns import Words, named, rounded
+from rulec.extraction.drive_context import KMH, DriveContext, standing_at_0
+from rulec.extraction.signals.signal_columns import SignalColumns, named, rounded
 from rulec.extraction.tracks.tracks import Flags, Values
 
 _EGO_TYPES = {
@@ -22,7 +22,7 @@ _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def ego_words(view: View) -> Words:
+def ego_words(view: DriveContext) -> SignalColumns:
     """Words about ego alone."""
     limits = view.thresholds
     count = view.states
@@ -31,7 +31,7 @@ def ego_words(view: View) -> Words:
     gained = view.ego.acceleration[0]
     there = view.road.lanes_at(view.own.s[0])
     lane = steady_lane(view, there)
-    return Words(
+    return SignalColumns(
         {
             "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
             "ego_length": rounded(np.full(count, _length(view))),
@@ -47,12 +47,12 @@ def ego_words(view: View) -> Words:
     )
 
 
-def _length(view: View) -> float:
+def _length(view: DriveContext) -> float:
     """How long ego is: the longest that it is along its road, which bends make a little longer."""
     return float(np.nanmedian(view.own.s_max - view.own.s_min))
 
 
-def steady_lane(view: View, there: Flags) -> NDArray[intp]:
+def steady_lane(view: DriveContext, there: Flags) -> NDArray[intp]:
     """Ego's lane by its middle; one is left only when the middle is well beyond the mark."""
     straight = view.road.lanes.straight
     found = np.array(view.lane)
@@ -65,7 +65,7 @@ def steady_lane(view: View, there: Flags) -> NDArray[intp]:
     return found
 
 
-def _from_kerb(view: View, lane: NDArray[intp], there: Flags) -> NDArray[intp]:
+def _from_kerb(view: DriveContext, lane: NDArray[intp], there: Flags) -> NDArray[intp]:
     """0 for the lane at the kerb, 2 for the one farthest from it, 1 for one between."""
     state = np.arange(len(lane))
     right: NDArray[intp] = np.cumsum(there, axis=1)[state, lane] - there[state, lane]
@@ -75,7 +75,7 @@ def _from_kerb(view: View, lane: NDArray[intp], there: Flags) -> NDArray[intp]:
     return found
 
 
-def _straddling(view: View, there: Flags) -> Flags:
+def _straddling(view: DriveContext, there: Flags) -> Flags:
     """Is ego in two lanes at once?"""
     straight = view.road.lanes.straight
     reach = view.thresholds.touching_m
@@ -85,7 +85,7 @@ def _straddling(view: View, there: Flags) -> Flags:
     return both
 
 
-def _place_in_lane(view: View, lane: NDArray[intp]) -> NDArray[intp]:
+def _place_in_lane(view: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """0 centred, 1 at the near edge, 2 at the far one."""
     straight = view.road.lanes.straight
     right: Values = view.own.w_min[0] - straight[lane]

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, View
+from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import Words
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Values
 
 
-def flow_words(view: View) -> Words:
+def flow_words(view: DriveContext) -> SignalColumns:
     """Words about traffic as a whole."""
     limits = view.thresholds
     speeds, counts = _around(view)
@@ -23,7 +23,7 @@ def flow_words(view: View) -> Words:
     queues, queue_speeds = _queues(view)
     there = view.road.lanes_at(view.own.s[0])
     dense = np.all(np.logical_or(queues, ~there), axis=1) & np.any(there, axis=1)
-    return Words(
+    return SignalColumns(
         {
             "congested": congested,
             "CONGESTED": congested,
@@ -37,12 +37,12 @@ def flow_words(view: View) -> Words:
     )
 
 
-def _close(view: View) -> Flags:
+def _close(view: DriveContext) -> Flags:
     reach = view.thresholds.flow_reach_m
     return view.with_ego & (relations.gap(view.own, view.others) <= reach)
 
 
-def _around(view: View) -> tuple[Values, Values]:
+def _around(view: DriveContext) -> tuple[Values, Values]:
     """The median speed (km/h) of the vehicles around ego and itself, and how many they are."""
     close = _close(view)
     speeds = np.where(close, np.maximum(view.others.along, 0.0), np.nan)
@@ -50,7 +50,7 @@ def _around(view: View) -> tuple[Values, Values]:
     return np.nanmedian(with_own, axis=0) * KMH, close.sum(axis=0) + 1
 
 
-def _queues(view: View) -> tuple[Flags, Values]:
+def _queues(view: DriveContext) -> tuple[Flags, Values]:
     """For every state and lane: is there a queue, and what is its median speed (km/h)?"""
     limits = view.thresholds
     lanes = len(view.road.lanes.straight) - 1
@@ -76,7 +76,7 @@ def _queues(view: View) -> tuple[Flags, Values]:
     return queue, middle
 
 
-def _beside(view: View, lanes: Flags) -> Flags:
+def _beside(view: DriveContext, lanes: Flags) -> Flags:
     """Is it so on the lane at ego's far side?"""
     lane = view.lane + (1 if view.side == "right" else -1)
     inside = (lane >= 0) & (lane < lanes.shape[1])
@@ -84,14 +84,14 @@ def _beside(view: View, lanes: Flags) -> Flags:
     return found
 
 
-def _sides(view: View) -> tuple[Flags, Flags]:
+def _sides(view: DriveContext) -> tuple[Flags, Flags]:
     """Whom is ego on the far side of, and whom on the near side of?"""
     lateral = relations.lateral(view.own, view.others, view.touched, view.road)
     left, right = lateral == relations.LEFT_OF, lateral == relations.RIGHT_OF
     return (left, right) if view.side == "right" else (right, left)
 
 
-def _overtaking(view: View) -> Flags:
+def _overtaking(view: DriveContext) -> Flags:
     """Is ego beside a slower one on its far side, about to be, or just past it?"""
     limits = view.thresholds
     far, _ = _sides(view)
@@ -106,7 +106,7 @@ def _overtaking(view: View) -> Flags:
     return found
 
 
-def _being_overtaken(view: View) -> Flags:
+def _being_overtaken(view: DriveContext) -> Flags:
     """Is a faster one beside ego, with ego on its near side, or about to be?"""
     limits = view.thresholds
     _, near = _sides(view)

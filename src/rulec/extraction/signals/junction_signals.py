@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import View
-from rulec.extraction.signals.signal_columns import Column, Words
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import Column, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Values
 
 _COLOURS = {
@@ -17,7 +17,7 @@ _COLOURS = {
 }
 
 
-def junction_words(view: View) -> Words:
+def junction_words(view: DriveContext) -> SignalColumns:
     """Words about junctions on ego's road, and about the lights and signs before them."""
     front, rear = view.own.s_max[0], view.own.s_min[0]
     zone = np.zeros(view.states, dtype=bool)
@@ -40,10 +40,10 @@ def junction_words(view: View) -> Words:
     if any(one.lights for one in view.recording.lanelets.values()):
         world["light"], world["crosses_light_line"] = _lights(view, front)
         unknown["light"] = world["light"] == ""
-    return Words(world, unknown=unknown)
+    return SignalColumns(world, unknown=unknown)
 
 
-def _soon(happens: Flags, view: View) -> Flags:
+def _soon(happens: Flags, view: DriveContext) -> Flags:
     """Is it so, or will it be soon? What ego is about to do is known from what it did."""
     states = round(view.thresholds.preparing_s / view.recording.step_s)
     ahead = np.append(np.cumsum(happens[::-1])[::-1], 0)
@@ -58,7 +58,7 @@ def _passes(front: Values, line: float) -> Flags:
     return np.append(False, beyond[1:] & ~beyond[:-1])
 
 
-def _crosses_stop_line(view: View, front: Values) -> Flags:
+def _crosses_stop_line(view: DriveContext, front: Values) -> Flags:
     """Where ego leaves a lanelet with a stop sign: its line is at the end."""
     found = np.zeros(view.states, dtype=bool)
     for piece, end in enumerate(view.road.borders[1:].tolist()):
@@ -67,7 +67,7 @@ def _crosses_stop_line(view: View, front: Values) -> Flags:
     return found
 
 
-def _turn(view: View, start: float, end: float) -> str:
+def _turn(view: DriveContext, start: float, end: float) -> str:
     """Where ego's road goes at a junction."""
     line = view.road.line
     turned = np.degrees(line.heading_at(end + 1.0) - line.heading_at(start - 1.0))
@@ -79,7 +79,7 @@ def _turn(view: View, start: float, end: float) -> str:
     return "turn_near" if (turned < 0) == (view.side == "right") else "turn_far"
 
 
-def _lights(view: View, front: Values) -> tuple[Column, Flags]:
+def _lights(view: DriveContext, front: Values) -> tuple[Column, Flags]:
     """The light that is for ego, empty if it shows several colours, and where its line is crossed.
 
     A light is for who is on its lanelet, at whose end the line is. In the state in which ego

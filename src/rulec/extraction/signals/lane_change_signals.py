@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import View
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import steady_lane
-from rulec.extraction.signals.signal_columns import Words, named
+from rulec.extraction.signals.signal_columns import SignalColumns, named
 from rulec.extraction.tracks.tracks import Flags
 
 
-def lane_change_words(view: View) -> Words:
+def lane_change_words(view: DriveContext) -> SignalColumns:
     """Words about changes of lanes."""
     lane = steady_lane(view, view.road.lanes_at(view.own.s[0]))
     changes = np.append(False, lane[1:] != lane[:-1])
-    words = Words({"lane_change": changes, "lane_is_clear": ~changes | ~_disturbs(view)})
+    words = SignalColumns({"lane_change": changes, "lane_is_clear": ~changes | ~_disturbs(view)})
     return words | _indicator(view)
 
 
-def _indicator(view: View) -> Words:
+def _indicator(view: DriveContext) -> SignalColumns:
     """Ego's indicator, if the recording has its lamps; both at once are no indication."""
     (ego,) = view.ego.participants
     if not ego.lamps:
-        return Words()
+        return SignalColumns()
     near, far = (
         ("left_indicator", "right_indicator")
         if view.side == "left"
@@ -32,13 +32,13 @@ def _indicator(view: View) -> Words:
     steps = [ego.lamps.get(view.first_step + state) for state in range(view.states)]
     lit = np.array([(near in (one or ()), far in (one or ())) for one in steps])
     codes = np.where(lit[:, 0] & ~lit[:, 1], 1, np.where(lit[:, 1] & ~lit[:, 0], 2, 0))
-    return Words(
+    return SignalColumns(
         {"indicator": named(codes, ("no_indicator", "near_indicator", "far_indicator"))},
         unknown={"indicator": np.array([one is None for one in steps])},
     )
 
 
-def _disturbs(view: View) -> Flags:
+def _disturbs(view: DriveContext) -> Flags:
     """Does somebody in ego's lane have to brake for it?
 
     Who is beside ego has to, and who is behind it if it has to brake harder than is comfortable

@@ -6,16 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from rulec.extraction.drive_context import View
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_signals import steady_lane
-from rulec.extraction.signals.signal_columns import Words
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.scenario.recorded.recording import Lanelet
 
 
-def mark_words(view: View) -> Words:
+def mark_words(view: DriveContext) -> SignalColumns:
     """Words about marks; none at all if the map has none."""
     if not any(x.left_mark or x.right_mark for x in view.recording.lanelets.values()):
-        return Words()
+        return SignalColumns()
     there = view.road.lanes_at(view.own.s[0])
     pieces = view.road.piece(view.own.s[0]).tolist()
     lanes = steady_lane(view, there).tolist()
@@ -30,7 +30,7 @@ def mark_words(view: View) -> Words:
         over = [_own_first(marks, line, lane) for line, marks in _over(view, state, row)]
         columns[1, state] = any("solid" in marks for marks in over)
         columns[2, state] = any(marks == ("broken", "solid") for marks in over)
-    return Words(dict(zip(names, columns, strict=True)), unknown={"marked_lanes": unknown})
+    return SignalColumns(dict(zip(names, columns, strict=True)), unknown={"marked_lanes": unknown})
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> tuple[str | None, str | None]:
@@ -39,7 +39,7 @@ def _between(right: Lanelet | None, left: Lanelet | None) -> tuple[str | None, s
 
 
 def _over(
-    view: View, state: int, row: list[Lanelet | None]
+    view: DriveContext, state: int, row: list[Lanelet | None]
 ) -> list[tuple[int, tuple[str | None, str | None]]]:
     """The lines that ego has a part of itself on either side of: their numbers and marks."""
     straight = view.road.lanes.straight

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, View
-from rulec.extraction.signals.signal_columns import Column, Words, rounded
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.signal_columns import Column, SignalColumns, rounded
 from rulec.extraction.tracks.tracks import Flags, Values
 from rulec.scenario.recorded.recording import Lanelet
 
@@ -22,7 +22,7 @@ _SIGNS = {
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
 
 
-def map_words(view: View) -> Words:
+def map_words(view: DriveContext) -> SignalColumns:
     """Words about the road where ego is. What the map has no word about at all is not there."""
     lanelets = _lanelets_at(view, view.own.s[0])
     # Where ego's front was one state before, so that who crosses a line still has its sign
@@ -47,24 +47,24 @@ def map_words(view: View) -> Words:
         if any(sign in one.signs for one in view.recording.lanelets.values()):
             under = left if at_line else lanelets
             world[word] = np.array([sign in one.signs for one in under])
-    return Words(world, unknown=unknown)
+    return SignalColumns(world, unknown=unknown)
 
 
-def _lanelets_at(view: View, s: Values) -> list[Lanelet]:
+def _lanelets_at(view: DriveContext, s: Values) -> list[Lanelet]:
     """The lanelet of ego's lane at places, one for each state."""
     pieces = view.road.piece(s).tolist()
     lanes = view.lane.tolist()
     return [view.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
 
 
-def way_to_crossing(view: View) -> Values:
+def way_to_crossing(view: DriveContext) -> Values:
     """From ego's front to the next pedestrian crossing, 0 on it (m)."""
     start, _ = ahead_of_ego(view)
     way: Values = np.clip(start - view.own.s_max[0], 0.0, NO_CROSSING_M)
     return way
 
 
-def ahead_of_ego(view: View) -> tuple[Values, Values]:
+def ahead_of_ego(view: DriveContext) -> tuple[Values, Values]:
     """Where the pedestrian crossing that ego is on, or the next one, begins and ends, by state.
 
     Infinite where there is none.
@@ -76,7 +76,7 @@ def ahead_of_ego(view: View) -> tuple[Values, Values]:
     return start, end
 
 
-def _surface(view: View, on_crossing: Flags) -> Column:
+def _surface(view: DriveContext, on_crossing: Flags) -> Column:
     """What ego is on; of crossings any part of it counts, of the rest its middle."""
     middle = view.own.s[0]
     found = np.full(view.states, "carriageway", dtype="<U11")

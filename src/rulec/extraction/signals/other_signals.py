@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, View
+from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import Words, named, rounded
+from rulec.extraction.signals.signal_columns import SignalColumns, named, rounded
 from rulec.extraction.tracks.tracks import Flags, Values
 from rulec.partition.cells.regions import LATERALS, STATIONS
 
@@ -16,7 +16,7 @@ LONGEST_S = 1000.0
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def other_words(view: View) -> Words:
+def other_words(view: DriveContext) -> SignalColumns:
     """Words about objects."""
     own, others, limits = view.own, view.others, view.thresholds
     station = relations.station(own, others)
@@ -24,7 +24,7 @@ def other_words(view: View) -> Words:
     gap = relations.gap(own, others)
     walking = view.people.of_kind("pedestrian")
     follows = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
-    return Words(
+    return SignalColumns(
         about={
             "position": relations.position(own, others, view.touched, walking, view.road),
             "station": named(station, STATIONS),
@@ -47,14 +47,14 @@ def other_words(view: View) -> Words:
     )
 
 
-def _headway(view: View, gap: Values) -> Values:
+def _headway(view: DriveContext, gap: Values) -> Values:
     """How long ego takes for the gap at its speed (s); as good as for ever if it stands."""
     moves = view.own.along * KMH >= view.thresholds.standing_kmh
     seconds = gap / np.where(moves, view.own.along, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
-def safe_distance(view: View) -> Values:
+def safe_distance(view: DriveContext) -> Values:
     """How far behind somebody ego has to be not to run into it if it brakes as hard as it can.
 
     Ego brakes as hard after its reaction time. Who comes towards ego counts as standing.
@@ -66,14 +66,14 @@ def safe_distance(view: View) -> Values:
     return distance
 
 
-def comes(view: View) -> Flags:
+def comes(view: DriveContext) -> Flags:
     """Who moves against ego's direction?"""
     moves = np.abs(view.others.along) * KMH >= view.thresholds.standing_kmh
     against: Flags = moves & (view.others.along < 0)
     return against & _faces_ego(view)
 
 
-def _waits_to_come(view: View) -> Flags:
+def _waits_to_come(view: DriveContext) -> Flags:
     """Which vehicles stand on lanes that lead against ego's way, as in a queue there?
 
     Ego does not overtake them, no more than those that move. Who stands in ego's own lanes the
@@ -85,12 +85,12 @@ def _waits_to_come(view: View) -> Flags:
     return waits & _faces_ego(view)
 
 
-def _faces_ego(view: View) -> Flags:
+def _faces_ego(view: DriveContext) -> Flags:
     faces: Flags = np.cos(view.others.turned) < -0.5
     return faces
 
 
-def _precedes(view: View, follows: Flags, gap: Values) -> Flags:
+def _precedes(view: DriveContext, follows: Flags, gap: Values) -> Flags:
     """Who is the next one ahead of ego in its lane?"""
     ahead = np.where(follows & view.near & ~comes(view), gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
@@ -98,6 +98,6 @@ def _precedes(view: View, follows: Flags, gap: Values) -> Flags:
     return next_one
 
 
-def _for_good(view: View, flags: list[bool]) -> Flags:
+def _for_good(view: DriveContext, flags: list[bool]) -> Flags:
     """The same in every state."""
     return np.repeat(np.array(flags, dtype=bool)[:, None], view.states, axis=1)

@@ -12,8 +12,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.selection.thresholds import Thresholds
-from rulec.extraction.tracks.driven_road import Road
-from rulec.extraction.tracks.road_extents import Placed
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Values
 from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
@@ -28,7 +28,7 @@ _STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
-def lanes_touched(placed: Placed, road: Road, thresholds: Thresholds) -> Flags:
+def lanes_touched(placed: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
     """Which lanes bodies reach into; the last axis is that of the lanes."""
     right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
     low, high = placed.w_min[..., None], placed.w_max[..., None]
@@ -39,20 +39,20 @@ def lanes_touched(placed: Placed, road: Road, thresholds: Thresholds) -> Flags:
     return touched
 
 
-def station(own: Placed, others: Placed) -> Codes:
+def station(own: RoadExtents, others: RoadExtents) -> Codes:
     """Behind, beside or in front of others."""
     behind = own.s_max <= others.s_min
     ahead = own.s_min >= others.s_max
     return np.where(behind, BEHIND, np.where(ahead, IN_FRONT_OF, BESIDE))
 
 
-def lateral(own: Placed, others: Placed, touched: Flags, road: Road) -> Codes:
+def lateral(own: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenRoad) -> Codes:
     """Right of others, in their lanes, or left of them."""
     low, high = _widened(others, touched, road)
     return _side(own.w, low, high)
 
 
-def _widened(others: Placed, touched: Flags, road: Road) -> tuple[Values, Values]:
+def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Values, Values]:
     """The bounds of the lanes that others are in; of who is in none, its own."""
     straight = road.lanes.straight
     first = touched.argmax(axis=-1)
@@ -68,18 +68,18 @@ def _side(w: Values, low: Values, high: Values) -> Codes:
     return np.where(w <= low, RIGHT_OF, np.where(w >= high, LEFT_OF, SAME_LANE))
 
 
-def gap(own: Placed, others: Placed) -> Values:
+def gap(own: RoadExtents, others: RoadExtents) -> Values:
     """The distance along the road between bodies, 0 beside each other."""
     return np.maximum(np.maximum(others.s_min - own.s_max, own.s_min - others.s_max), 0.0)
 
 
-def lateral_gap(own: Placed, others: Placed) -> Values:
+def lateral_gap(own: RoadExtents, others: RoadExtents) -> Values:
     """The distance across the road between bodies, 0 behind each other."""
     return np.maximum(np.maximum(others.d_min - own.d_max, own.d_min - others.d_max), 0.0)
 
 
 def position(
-    own: Placed, others: Placed, touched: Flags, walking: Flags, road: Road
+    own: RoadExtents, others: RoadExtents, touched: Flags, walking: Flags, road: DrivenRoad
 ) -> NDArray[np.str_]:
     """The paper's letters, b, f, l and r; who walks is seen in its own frame.
 
@@ -105,7 +105,7 @@ def position(
     return letters
 
 
-def _facing(others: Placed) -> Codes:
+def _facing(others: RoadExtents) -> Codes:
     """Where people go, or look if they stand, rounded to a right angle of the road.
 
     Half-way counts as across it.

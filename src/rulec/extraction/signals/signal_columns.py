@@ -15,7 +15,7 @@ Column = NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class SignalColumns:
     """``world``: a value for every state. ``about``: a row of them for everybody there.
 
     ``unknown``: where nothing can be said of a word of the world. ``only``: of whom a word about
@@ -27,8 +27,8 @@ class Words:
     unknown: Mapping[str, Flags] = field(default_factory=dict)
     only: Mapping[str, Flags] = field(default_factory=dict)
 
-    def __or__(self, other: Words) -> Words:
-        return Words(
+    def __or__(self, other: SignalColumns) -> SignalColumns:
+        return SignalColumns(
             {**self.world, **other.world},
             {**self.about, **other.about},
             {**self.unknown, **other.unknown},

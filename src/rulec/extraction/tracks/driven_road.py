@@ -17,11 +17,11 @@ from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import beside, extended
-from rulec.scenario.recorded.traffic_obstacles import View
+from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Road:
+class DrivenRoad:
     """Ego's own lanelets lie one behind the other, from ``borders[i]`` to ``borders[i + 1]``.
 
     ``rows[i]`` are those beside each other there, a lane each, from the right; None where the map
@@ -61,7 +61,7 @@ class Road:
         return np.clip(found, 0, len(straight) - 2)
 
 
-def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) -> Road:
+def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
     """The road of a chain of lanelets, and what lies straight on before and after it.
 
     ``junctions`` are the lanelets that lie in one.
@@ -77,10 +77,10 @@ def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) ->
     middle = float(borders[first] + borders[first + len(way)]) / 2
     lanes = lanes_along(recording, whole, line, middle)
     outline = Box(0.0, line.length, float(lanes.straight[0]), float(lanes.straight[-1]))
-    view = View(recording, line, lanes, 0.0, 0.0, outline)
+    view = TrafficView(recording, line, lanes, 0.0, 0.0, outline)
     ((_, own_d),) = lanes.straightened(np.array([[middle, 0.0]])).tolist()
     own = int(np.clip(np.searchsorted(lanes.straight, own_d) - 1, 0, len(lanes.straight) - 2))
-    return Road(
+    return DrivenRoad(
         tuple(_row(recording, number, own, len(lanes.straight) - 1) for number in whole),
         own,
         borders,

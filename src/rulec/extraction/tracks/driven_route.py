@@ -23,7 +23,7 @@ _LANE_COST = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class RouteStretch:
     """Ego drives along ``way`` from the first column to the last, both included."""
 
     first: int
@@ -40,7 +40,7 @@ class _Path:
     before: _Path | None
 
 
-def stretches(recording: Recording, moments: Moments) -> Iterator[Stretch]:
+def driven_stretches(recording: Recording, moments: Moments) -> Iterator[RouteStretch]:
     """The pieces of a drive, each along one road, in their order."""
     first = last = -1
     best: dict[str, _Path] = {}
@@ -49,12 +49,12 @@ def stretches(recording: Recording, moments: Moments) -> Iterator[Stretch]:
         onward = _onward(recording, best, wanted)
         if not onward:
             if best:
-                yield Stretch(first, last, _way(best))
+                yield RouteStretch(first, last, _way(best))
             first = column
             onward = {number: _Path(cost, (number,), None) for number, cost in wanted.items()}
         best, last = onward, column
     if best:
-        yield Stretch(first, last, _way(best))
+        yield RouteStretch(first, last, _way(best))
 
 
 def _rows(recording: Recording, places: Mapping[str, float]) -> dict[str, float]:

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Everyone, Values
+from rulec.extraction.tracks.tracks import Tracks, Values
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import is_lane
 
@@ -24,7 +24,7 @@ Moments = Mapping[int, Mapping[str, float]]
 """Column -> lanelet -> how badly it fits: 0 on it and along it, 1 nearly across it or beside it."""
 
 
-def whereabouts(recording: Recording, people: Everyone) -> dict[int, Moments]:
+def match_to_map(recording: Recording, people: Tracks) -> dict[int, Moments]:
     """For the rows of those who move: where they are, but for columns without a fitting lane."""
     lanes = [one for one in recording.lanelets.values() if is_lane(one)]
     moving = np.array([not one.standing for one in people.participants], dtype=bool)

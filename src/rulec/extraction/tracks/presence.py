@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rulec.extraction.drive_context import View
+from rulec.extraction.drive_context import DriveContext
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Presence:
     last: int
 
 
-def presences(view: View) -> Iterator[Presence]:
+def presences(view: DriveContext) -> Iterator[Presence]:
     """The stretches in which somebody is there, brief absences forgotten."""
     most = round(view.thresholds.away_s / view.recording.step_s)
     people = view.people.participants

@@ -10,14 +10,14 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from rulec.extraction.tracks.driven_road import Road
-from rulec.extraction.tracks.tracks import Everyone, Values
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.tracks import Tracks, Values
 
 _SPREAD, _MORE_M = 2.0, 3.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Placed:
+class RoadExtents:
     """The bounds of what everybody occupies, and the middle of these.
 
     ``turned`` is the heading as seen from the road's direction (radians), ``along`` and ``across``
@@ -44,12 +44,12 @@ class Placed:
         """The middle across the road."""
         return (self.w_min + self.w_max) / 2
 
-    def of(self, row: int) -> Placed:
+    def of(self, row: int) -> RoadExtents:
         """One participant's, with an axis of length 1 for it."""
-        return Placed(*(getattr(self, field.name)[row : row + 1] for field in fields(self)))
+        return RoadExtents(*(getattr(self, field.name)[row : row + 1] for field in fields(self)))
 
 
-def placed(people: Everyone, road: Road) -> Placed:
+def road_extents(people: Tracks, road: DrivenRoad) -> RoadExtents:
     """Everybody, in the coordinates of a road."""
     shape = people.there.shape
     bounds = [np.full(shape, np.nan) for _ in range(6)]
@@ -77,7 +77,7 @@ def placed(people: Everyone, road: Road) -> Placed:
     directions = _directions(road, (bounds[0] + bounds[1]) / 2)
     cos, sin = np.cos(directions), np.sin(directions)
     s_min, s_max, d_min, d_max, w_min, w_max = bounds
-    return Placed(
+    return RoadExtents(
         s_min,
         s_max,
         d_min,
@@ -90,7 +90,7 @@ def placed(people: Everyone, road: Road) -> Placed:
     )
 
 
-def _directions(road: Road, s: Values) -> Values:
+def _directions(road: DrivenRoad, s: Values) -> Values:
     line = road.line
     piece = np.searchsorted(line.arc, np.nan_to_num(s), "right") - 1
     ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]

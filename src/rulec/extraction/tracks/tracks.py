@@ -22,7 +22,7 @@ Flags: TypeAlias = NDArray[bool_]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Everyone:
+class Tracks:
     """NaN where somebody is not there. Velocities (m/s) and accelerations are from displacement."""
 
     participants: tuple[Participant, ...]
@@ -50,7 +50,7 @@ class Everyone:
             for column in np.flatnonzero(self.there[row]).tolist():
                 yield row, column, one.outlines[self.first + column]
 
-    def part(self, rows: NDArray[np.intp], columns: slice) -> Everyone:
+    def part(self, rows: NDArray[np.intp], columns: slice) -> Tracks:
         """Some of them, for some time."""
         names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
         return replace(
@@ -66,7 +66,7 @@ class Everyone:
         return np.array([word in words for words in kinds], dtype=bool)
 
 
-def everyone(recording: Recording, thresholds: Thresholds) -> Everyone:
+def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
     """The participants of a recording that occupy something, with what follows from positions."""
     people = tuple(one for one in recording.participants if one.outlines)
     steps = [step for one in people if not one.standing for step in one.outlines]
@@ -93,7 +93,7 @@ def everyone(recording: Recording, thresholds: Thresholds) -> Everyone:
     speed = np.hypot(vx, vy)
     gained = (speed[lines, after] - speed[lines, before]) / seconds
     acceleration = np.where(there, np.nan_to_num(gained), np.nan)
-    return Everyone(people, first, there, x, y, heading, vx, vy, speed, acceleration)
+    return Tracks(people, first, there, x, y, heading, vx, vy, speed, acceleration)
 
 
 def _places(one: Participant) -> dict[int, tuple[float, float, float, float]]:

@@ -7,22 +7,22 @@ from collections.abc import Callable
 import numpy as np
 import shapely
 
-from rulec.extraction.tracks.tracks import Everyone, Flags
+from rulec.extraction.tracks.tracks import Flags, Tracks
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import is_lane
 
 
-def on_lanes(recording: Recording, people: Everyone) -> Flags:
+def on_lanes(recording: Recording, people: Tracks) -> Flags:
     """Whose middle is on a lane of any direction when? Nobody's but vulnerable road users'."""
     return _on(recording, people, is_lane)
 
 
-def on_crosswalks(recording: Recording, people: Everyone) -> Flags:
+def on_crosswalks(recording: Recording, people: Tracks) -> Flags:
     """The same for pedestrian crossings."""
     return _on(recording, people, lambda one: "crosswalk" in one.types)
 
 
-def _on(recording: Recording, people: Everyone, wanted: Callable[[Lanelet], bool]) -> Flags:
+def _on(recording: Recording, people: Tracks, wanted: Callable[[Lanelet], bool]) -> Flags:
     found = np.zeros(people.there.shape, dtype=bool)
     rows, columns = np.nonzero(people.there & people.of_kind("vulnerable_user")[:, None])
     areas = [

@@ -15,18 +15,18 @@ from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
-from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.batch.column_reader import NotGivenError
 from rulec.monitoring.batch.columnize import gathered
-from rulec.monitoring.batch.engine import judge_cells, judge_columns
+from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.trace_groups import grouped, under_one_name
 from rulec.monitoring.batch.trace_shapes import Names, Shape, in_own_names, shape_of
 from rulec.monitoring.batch.value_encoding import OddError
-from rulec.monitoring.batch.verdict_columns import Judged
+from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.state_validation import check_objects, check_state
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import RulebookFor, check_step, judge, made_for
+from rulec.monitoring.verify import RulebookFor, check_step, made_for, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_frame, check_presence
 
@@ -58,12 +58,12 @@ def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterat
         chunk.append(item)
         n_states += len(item.states) + 1 if isinstance(item, Trace) else 1
         if n_states >= MOST_STATES:
-            yield from judge_chunk(chunk, rulebook)
+            yield from verify_chunk(chunk, rulebook)
             chunk, n_states = [], 0
-    yield from judge_chunk(chunk, rulebook)
+    yield from verify_chunk(chunk, rulebook)
 
 
-def judge_chunk(
+def verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: Rules, fewest: int = FEWEST
 ) -> list[Answer]:
     """The same for a few traces; ``fewest`` of one shape are judged together."""
@@ -79,7 +79,7 @@ def judge_chunk(
         if len(places) >= fewest or _are_long(items, places):
             _judge_group(items, places, rulebook, answers)
     return [
-        judge(item, rulebook) if answer is None else answer
+        verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
 
@@ -128,7 +128,7 @@ _Placed = tuple[int, Trace]
 class _JudgedGroup:
     """What the engine says of the objects of a group, of which traces, and in which order."""
 
-    judged: Sequence[Judged]
+    judged: Sequence[VerdictColumns]
     traces: Sequence[_Placed]
     order: Sequence[int]
     objects: Names
@@ -138,11 +138,11 @@ def _judged(traces: Sequence[_Placed], rules: CompiledRulebook) -> _JudgedGroup 
     group = grouped([trace for _, trace in traces])
     cells = group.cells
     if len(cells.states) * _SHARED > cells.layout.n_states:
-        if any(counts(fact.formula) for fact in rules.facts):
+        if any(counts(fact.formula) for fact in rules.axioms):
             return None
         try:
             columns = gathered(cells, rules.vocabulary, group.names)
-            judged = judge_columns(columns, rules)
+            judged = verify_columns(columns, rules)
         except (OddError, NotGivenError):
             return None
         return _JudgedGroup(judged, traces, group.order, tuple(cells.objects))
@@ -159,7 +159,7 @@ def _judged(traces: Sequence[_Placed], rules: CompiledRulebook) -> _JudgedGroup 
             return None
         group = grouped([trace for _, trace in traces])
         cells = under_one_name(group)
-    return _JudgedGroup(judge_cells(cells, rules), traces, group.order, tuple(cells.objects))
+    return _JudgedGroup(verify_cells(cells, rules), traces, group.order, tuple(cells.objects))
 
 
 def _is_framed(trace: Trace) -> bool:
@@ -189,14 +189,14 @@ def _fits(
     vocabulary = rulebook.vocabulary
     try:
         check_state(state, objects, vocabulary, "")
-        moment = Moment(state, there, vocabulary)
-        check_counting_facts(rulebook, 1, lambda _: moment, str, None)
+        moment = StateView(state, there, vocabulary)
+        check_counting_axioms(rulebook, 1, lambda _: moment, str, None)
     except RulecError:
         return False
     return True
 
 
-def violations_in(judged: Sequence[Judged]) -> dict[int, list[Violation]]:
+def violations_in(judged: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
     """The violations of each trace that has some, in the order of rules and objects."""
     found: dict[int, list[Violation]] = {}
     for one in judged:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.monitoring.batch.trace_shapes import Names
 from rulec.monitoring.batch.value_encoding import OddError, meant, type_of
-from rulec.trace.formats.block_presence import NOBODY, Outline
+from rulec.trace.formats.block_presence import NOBODY, BlockPresence
 from rulec.trace.formats.table_blocks import Block, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -28,7 +28,7 @@ class Group:
     """
 
     block: Block
-    outline: Outline
+    outline: BlockPresence
     traces: NDArray[np.int64]
     layout: Layout
     rows: NDArray[np.int64]
@@ -38,7 +38,7 @@ class Group:
     stretches: NDArray[np.int64]
 
 
-def groups_of(block: Block, outline: Outline) -> list[Group]:
+def groups_of(block: Block, outline: BlockPresence) -> list[Group]:
     """The traces of a block, by their shape."""
     shapes: dict[tuple[object, ...], list[int]] = {}
     for trace in range(len(block)):
@@ -46,7 +46,7 @@ def groups_of(block: Block, outline: Outline) -> list[Group]:
     return [_group(block, outline, np.array(traces)) for traces in shapes.values()]
 
 
-def _group(block: Block, outline: Outline, traces: NDArray[np.int64]) -> Group:
+def _group(block: Block, outline: BlockPresence, traces: NDArray[np.int64]) -> Group:
     traces = traces[np.argsort(-outline.length[traces], kind="stable")]
     layout = layout_of(outline.length[traces])
     rank = np.full(len(block), -1)

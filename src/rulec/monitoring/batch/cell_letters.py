@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.rule_bindings import Task
-from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.batch.rule_bindings import RuleBinding
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.trace.trace_columns import TraceCells
 from rulec.vocabulary import Vocabulary
 
@@ -23,7 +23,7 @@ class Spelling:
             (
                 cells,
                 frozenset(name for name, _ in there),
-                Columns(
+                LetterReader(
                     [traces.states[cell] for cell in cells],
                     vocabulary,
                     str,
@@ -33,7 +33,7 @@ class Spelling:
             for there, cells in parts.items()
         ]
 
-    def letters(self, task: Task) -> list[int]:
+    def letters(self, task: RuleBinding) -> list[int]:
         """For each cell the class of the letter; -1 where there is none to be read.
 
         Where an object of the task is not there its machine does not run; any letter will do.
@@ -46,14 +46,14 @@ class Spelling:
         return found
 
 
-def _word(task: Task, columns: Columns, n_states: int) -> list[int]:
+def _word(task: RuleBinding, columns: LetterReader, n_states: int) -> list[int]:
     try:
         return list(columns.word(task.rule, task.objects, 0, n_states - 1))
     except RulecError:
         return [_letter(task, columns, place) for place in range(n_states)]
 
 
-def _letter(task: Task, columns: Columns, place: int) -> int:
+def _letter(task: RuleBinding, columns: LetterReader, place: int) -> int:
     try:
         return columns.word(task.rule, task.objects, place, place)[0]
     except RulecError:

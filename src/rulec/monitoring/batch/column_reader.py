@@ -55,7 +55,7 @@ class NotGivenError(Exception):
         self.objects = objects
 
 
-class Reading:
+class ColumnReader:
     """Columns, read for the rules of a vocabulary. What has been worked out once is kept."""
 
     def __init__(self, columns: TraceColumns, vocabulary: Vocabulary) -> None:

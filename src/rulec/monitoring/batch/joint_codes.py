@@ -8,10 +8,10 @@ from math import prod
 
 import numpy as np
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.automata.thresholds import scale
-from rulec.monitoring.batch.column_reader import NotGivenError, Reading
-from rulec.monitoring.batch.rule_bindings import Task
+from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
+from rulec.monitoring.batch.rule_bindings import RuleBinding
 from rulec.monitoring.batch.verdict_columns import Walk
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -49,7 +49,7 @@ class _Alphabet:
     meanings: Sequence[Array]
 
 
-def _alphabet(machine: Machine, vocabulary: Vocabulary) -> _Alphabet:
+def _alphabet(machine: MealyMonitor, vocabulary: Vocabulary) -> _Alphabet:
     meanings = [
         np.arange(read.size)
         if isinstance(read, NumberRead)
@@ -64,12 +64,14 @@ def _values(name: str, vocabulary: Vocabulary) -> Sequence[bool | str]:
     return declaration.values if isinstance(declaration, Enumeration) else (False, True)
 
 
-def walks(reading: Reading, tasks: Sequence[Task], vocabulary: Vocabulary) -> Iterator[Walk]:
+def walks(
+    reading: ColumnReader, tasks: Sequence[RuleBinding], vocabulary: Vocabulary
+) -> Iterator[Walk]:
     """Walks on which all tasks can be judged. Raises NotGivenError.
 
     Tasks about the same objects on the same stretch share one, unless they read too much.
     """
-    together: dict[_Key, list[Task]] = {}
+    together: dict[_Key, list[RuleBinding]] = {}
     for task in tasks:
         together.setdefault((frozenset(task.objects.values()), *task.stretch), []).append(task)
     # Rules have many tasks: a machine's letters become an array once.
@@ -91,7 +93,7 @@ def walks(reading: Reading, tasks: Sequence[Task], vocabulary: Vocabulary) -> It
                 yield _walk_of_classes(reading, task, spelling, alphabet)
 
 
-def _spelling(task: Task, reading: Reading, alphabet: _Alphabet) -> _Spelling:
+def _spelling(task: RuleBinding, reading: ColumnReader, alphabet: _Alphabet) -> _Spelling:
     found = []
     for read, meanings in zip(task.rule.machine.reads, alphabet.meanings, strict=True):
         if isinstance(read, NumberRead):
@@ -123,8 +125,8 @@ def _size(columns: Mapping[_Key, _Digit]) -> int:
 
 
 def _walk(
-    reading: Reading,
-    tasks: Sequence[Task],
+    reading: ColumnReader,
+    tasks: Sequence[RuleBinding],
     spellings: Sequence[_Spelling],
     alphabets: Sequence[_Alphabet],
 ) -> Walk:
@@ -156,7 +158,7 @@ def _walk(
 
 
 def _numbers(
-    machine: Machine, spelling: _Spelling, said: Mapping[_Key, Array], n_codes: int
+    machine: MealyMonitor, spelling: _Spelling, said: Mapping[_Key, Array], n_codes: int
 ) -> Array:
     """For each code the letter that the machine reads; of its digits ``said`` has those that vary.
 
@@ -170,13 +172,13 @@ def _numbers(
 
 
 def _walk_of_classes(
-    reading: Reading, task: Task, spelling: _Spelling, alphabet: _Alphabet
+    reading: ColumnReader, task: RuleBinding, spelling: _Spelling, alphabet: _Alphabet
 ) -> Walk:
     """For a machine with very many letters: its classes themselves are the cells."""
     layout, machine = reading.columns.layout, task.rule.machine
     given = {digit.key: digit.values for digit in spelling if isinstance(digit.values, np.ndarray)}
     numbers = _numbers(machine, spelling, given, layout.n_states)
     # One more than the class, so that what is impossible is a cell, too.
-    n_cells = len(machine.following[0]) + 1
+    n_cells = len(machine.successors[0]) + 1
     cells = (alphabet.letters - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
     return Walk(layout, cells.take(numbers), [task], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)])

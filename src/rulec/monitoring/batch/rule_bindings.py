@@ -11,7 +11,7 @@ from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class RuleBinding:
     """A rule, bound to ``objects``, from step ``first`` to ``last`` (inclusive) of every trace.
 
     ``last`` is None for each trace's own end.
@@ -28,13 +28,13 @@ class Task:
         return self.first, self.last
 
 
-def tasks_of(
+def rule_bindings(
     rules: Sequence[CompiledRule],
     vocabulary: Vocabulary,
     objects: Mapping[str, str],
     present: Mapping[str, tuple[int, int]],
     n_steps: int,
-) -> Iterator[Task]:
+) -> Iterator[RuleBinding]:
     """All tasks on traces with these objects, of which the longest has ``n_steps`` states.
 
     In the order in which a verdict lists violations. All traces have the steps that ``present``
@@ -44,4 +44,4 @@ def tasks_of(
         for binding in bindings(rule, vocabulary, objects, present, n_steps):
             ends_early = any(item in present for item in binding.objects.values())
             last = binding.last if ends_early else None
-            yield Task(rule, binding.objects, binding.first, last)
+            yield RuleBinding(rule, binding.objects, binding.first, last)

@@ -8,14 +8,20 @@ from itertools import chain
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.batch_verify import Answer, Rules, judge_chunk, rules_for, violations_in
+from rulec.monitoring.batch.batch_verify import (
+    Answer,
+    Rules,
+    rules_for,
+    verify_chunk,
+    violations_in,
+)
 from rulec.monitoring.batch.block_columns import Group, groups_of, tabled
 from rulec.monitoring.batch.column_reader import NotGivenError
-from rulec.monitoring.batch.engine import judge_columns
+from rulec.monitoring.batch.engine import verify_columns
 from rulec.monitoring.batch.trace_shapes import in_own_names
 from rulec.monitoring.batch.value_encoding import OddError
 from rulec.monitoring.verdict import Verdict
-from rulec.monitoring.verify import judge, made_for, made_for_step
+from rulec.monitoring.verify import made_for, made_for_step, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.block_presence import outlined
 from rulec.trace.formats.table_blocks import Block, OddTableError
@@ -26,18 +32,18 @@ _FEWEST_ROWS = 200
 Items = Sequence[Trace | RulecError]
 
 
-def judge_items(items: Items, rulebook: Rules) -> tuple[Items, Sequence[Answer]]:
-    """As ``judge_chunk``, of traces that may be a block; with the traces as they were read."""
+def verify_items(items: Items, rulebook: Rules) -> tuple[Items, Sequence[Answer]]:
+    """As ``verify_chunk``, of traces that may be a block; with the traces as they were read."""
     if isinstance(items, Block):
         answers = _judge_block(items, rulebook)
         if answers is not None:
             return items, answers
         items = list(items)
-    return items, judge_chunk(items, rulebook)
+    return items, verify_chunk(items, rulebook)
 
 
 def rulebook_for(items: Items, place: int, rulebook: Rules) -> CompiledRulebook:
-    """The rulebook that one of ``judge_items`` was judged by."""
+    """The rulebook that one of ``verify_items`` was judged by."""
     if isinstance(items, Block):
         return made_for_step(items.step_s(place), rulebook)
     trace = items[place]
@@ -58,7 +64,7 @@ def _judge_block(block: Block, rulebook: Rules) -> list[Answer] | None:
     except (OddTableError, OddError, NotGivenError, RulecError):
         return None
     return [
-        judge(block[place], rulebook) if answer is None else answer
+        verify_or_reason(block[place], rulebook) if answer is None else answer
         for place, answer in enumerate(answers)
     ]
 
@@ -69,9 +75,9 @@ def _judge_group(group: Group, rulebook: Rules, answers: list[Answer | None]) ->
     objects = dict(zip(group.objects, group.types, strict=True))
     step_s = float(outline.step_s[group.traces[0]])
     rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-    if any(counts(fact.formula) for fact in rules.facts):
+    if any(counts(fact.formula) for fact in rules.axioms):
         raise OddError
-    judged = judge_columns(tabled(group, rules.vocabulary), rules)
+    judged = verify_columns(tabled(group, rules.vocabulary), rules)
     unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
     violations = violations_in(judged)
     for number, trace in enumerate(group.traces.tolist()):

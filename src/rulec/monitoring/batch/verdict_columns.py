@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_alone
 from rulec.monitoring.batch.machines.joint_machine import joined
 from rulec.monitoring.batch.machines.table_run import first_lost, run
-from rulec.monitoring.batch.rule_bindings import Task
+from rulec.monitoring.batch.rule_bindings import RuleBinding
 from rulec.trace.trace_columns import Array, Layout
 
 
@@ -25,19 +25,19 @@ class Walk:
 
     layout: Layout
     cells: Array
-    tasks: Sequence[Task]
+    tasks: Sequence[RuleBinding]
     letters: Sequence[Sequence[int]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Judged:
+class VerdictColumns:
     """A task's verdicts: ``accepted`` has one for each trace, in the layout's order.
 
     ``unread`` are traces with a state, on the task's stretch, that the machine reads no letter of;
     their verdicts mean nothing.
     """
 
-    task: Task
+    task: RuleBinding
     accepted: NDArray[np.bool_]
     unread: NDArray[np.intp]
     _layout: Layout
@@ -58,7 +58,7 @@ class Judged:
         first, last = self.task.stretch
         ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
         machine = self.task.rule.machine
-        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.following)):
+        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
             meant = np.array(self._letters)
             words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
             lost = np.array([first_lost_of_one(machine, meant.take(word)) for word in words])
@@ -74,7 +74,7 @@ def _longer(ends: NDArray[np.int64], step: int) -> int:
     return int(np.searchsorted(-ends, -step))
 
 
-def judged(walk: Walk) -> Iterator[Judged]:
+def verdict_columns(walk: Walk) -> Iterator[VerdictColumns]:
     """The verdicts on a walk's tasks, in their order. All have the same stretch."""
     if not walk.tasks:
         return
@@ -85,7 +85,7 @@ def judged(walk: Walk) -> Iterator[Judged]:
     for joint in joined(list(zip(machines, spelled, strict=True))):
         verdicts = run(joint, walk.cells, walk.layout, first, last)
         for bit, member in enumerate(joint.members):
-            yield Judged(
+            yield VerdictColumns(
                 walk.tasks[member],
                 (verdicts & np.uint8(1 << bit)) != 0,
                 unread[member],

@@ -11,24 +11,24 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Atom, Comparison, Proposition
-from rulec.monitoring.batch.column_reader import NotGivenError, Reading
+from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
 from rulec.monitoring.batch.kleene_columns import Mask
-from rulec.monitoring.batch.rule_bindings import Task, tasks_of
+from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
 from rulec.monitoring.bits.trace_planes import Across
 from rulec.trace.trace_columns import Array, TraceColumns, layout_of
 
 
-def judge_on_bits(
+def verify_on_bits(
     columns: TraceColumns, rulebook: CompiledRulebook
-) -> Iterator[tuple[Task, NDArray[np.bool_]]]:
+) -> Iterator[tuple[RuleBinding, NDArray[np.bool_]]]:
     """For every rule and binding, in this order: which traces, in the layout's order, keep it.
 
     Raises NotGivenError where a rule needs what is neither given nor has a default.
     """
-    reading = Reading(columns, rulebook.vocabulary)
+    reading = ColumnReader(columns, rulebook.vocabulary)
     together: dict[tuple[object, ...], Across] = {}
     n_steps = columns.layout.n_steps
-    for task in tasks_of(
+    for task in rule_bindings(
         rulebook.rules, rulebook.vocabulary, columns.objects, columns.present, n_steps
     ):
         # What is read of the same objects on the same stretch is packed into bits once.
@@ -38,7 +38,7 @@ def judge_on_bits(
         yield task, together[key].holds(in_steps(task.rule.formula, exact(columns.step_s)))
 
 
-def _across(reading: Reading, task: Task, rulebook: CompiledRulebook) -> Across:
+def _across(reading: ColumnReader, task: RuleBinding, rulebook: CompiledRulebook) -> Across:
     layout = reading.columns.layout
     part = slice(None)
     if task.last is not None:
@@ -48,7 +48,7 @@ def _across(reading: Reading, task: Task, rulebook: CompiledRulebook) -> Across:
     return Across(layout, lambda one: _column(one, reading, task)[part], rulebook.semantics)
 
 
-def _column(proposition: Proposition, reading: Reading, task: Task) -> Array:
+def _column(proposition: Proposition, reading: ColumnReader, task: RuleBinding) -> Array:
     n_states = reading.columns.layout.n_states
     true: Mask
     match proposition:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import Machine, NumberRead
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
 from rulec.automata.thresholds import exact
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import deciding_instants
@@ -26,7 +26,7 @@ from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
 from rulec.monitoring.binding import Binding, bindings
 from rulec.monitoring.explain.nearest_satisfying import Change, nearest_kept
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import columns_of
 from rulec.trace import Trace, Value
@@ -38,7 +38,7 @@ MOST_STATES = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Fact:
+class Observation:
     """Something that the rule reads, such as ``position(v1)``, and its value in each state.
 
     ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
@@ -85,7 +85,7 @@ class Explanation:
     violation: Violation
     states: tuple[int, ...]
     decisive: int
-    facts: tuple[Fact, ...]
+    facts: tuple[Observation, ...]
     parts: tuple[Part, ...]
     repair: tuple[Change, ...] | None
     vocabulary: Vocabulary
@@ -125,7 +125,7 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     )
 
 
-def _repair(machine: Machine, seen: _Seen, first: int) -> tuple[Change, ...] | None:
+def _repair(machine: MealyMonitor, seen: _Seen, first: int) -> tuple[Change, ...] | None:
     found = nearest_kept(machine, [seen.letter(machine, moment) for moment in seen.moments])
     return found and tuple([replace(one, place=first + one.place) for one in found])
 
@@ -152,7 +152,7 @@ class _Seen:
     ``shown`` are the indices of the moments to show, ``decisive`` is one of them.
     """
 
-    moments: Sequence[Moment]
+    moments: Sequence[StateView]
     bound: Mapping[str, str]
     shown: Sequence[int]
     decisive: int
@@ -167,7 +167,7 @@ class _Seen:
         found = [moment.value(name, items) for moment in self.moments]
         return [value for value in found if not isinstance(value, Unknown)]
 
-    def letter(self, machine: Machine, moment: Moment) -> tuple[int, ...]:
+    def letter(self, machine: MealyMonitor, moment: StateView) -> tuple[int, ...]:
         """What a machine reads of a moment, digit by digit."""
         digits = []
         for read in machine.reads:
@@ -194,7 +194,7 @@ class _Seen:
 
 def _facts(
     truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], seen: _Seen
-) -> Iterator[Fact]:
+) -> Iterator[Observation]:
     """What is read, in the order in which the formula first speaks of it."""
     readers: dict[Atom | Term, list[Proposition]] = {}
     for proposition in truths:
@@ -206,7 +206,7 @@ def _facts(
         decides = not deciding.isdisjoint(propositions)
         if isinstance(read, Count):
             objects = seen.counted(read)
-            yield Fact(
+            yield Observation(
                 term_in_words(read),
                 tuple(len(objects[n]) for n in seen.shown),
                 passes and seen.changes([len(one) for one in objects]),
@@ -217,7 +217,7 @@ def _facts(
             values = seen.values(read.name, read.arguments)
             items = tuple(seen.bound[variable] for variable in read.arguments)
             declaration = seen.moments[0].vocabulary.declarations[read.name]
-            yield Fact(
+            yield Observation(
                 str(Atom(read.name, items)),
                 tuple(values[n] for n in seen.shown),
                 passes and seen.changes(values),

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.guards import Cube
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Machine, NumberRead
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.logic.formula import Count
 from rulec.witnesses.fourier_motzkin import Bounded, solve
 from rulec.witnesses.letter_witness import bounds_of
@@ -45,7 +45,7 @@ class Change:
     cubes: tuple[Cube, ...]
 
 
-def nearest_kept(machine: Machine, word: Sequence[Letter]) -> tuple[Change, ...] | None:
+def nearest_kept(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[Change, ...] | None:
     """What to change so that a non-empty word is accepted, and the least of that.
 
     None if no word of this length is. Letters that cannot be, by the facts of the vocabulary or by
@@ -69,60 +69,60 @@ def nearest_kept(machine: Machine, word: Sequence[Letter]) -> tuple[Change, ...]
             rest = symbols[place + 1 :] if place == changed[-1] else None
             does = _as_good(machine, state, symbol, rest)
             found.append(Change(place, alphabet.ways(word[place], letters[place], does)))
-        state = machine.following[state][symbol]
+        state = machine.successors[state][symbol]
     return tuple(found)
 
 
-def _nearest(machine: Machine, near: Sequence[_Near]) -> list[int] | None:
+def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
     """The nearest accepted letters: from the last state back it is known how far they are."""
-    following = np.array(machine.following)
+    successors = np.array(machine.successors)
     # So far from being accepted is the rest of the word, by how much of it there is and the state.
-    last = np.where(np.array(machine.accepting), near[-1][0], _FAR)
-    costs = np.empty((len(near), len(following)), dtype=np.int64)
+    last = np.where(np.array(machine.outputs), near[-1][0], _FAR)
+    costs = np.empty((len(near), len(successors)), dtype=np.int64)
     costs[-1] = last.min(axis=1)
     for place in range(len(near) - 2, -1, -1):
-        (near[place][0] + costs[place + 1][following]).min(axis=1, out=costs[place])
+        (near[place][0] + costs[place + 1][successors]).min(axis=1, out=costs[place])
         np.minimum(costs[place], _FAR, out=costs[place])
     if costs[0][0] >= _FAR:
         return None
     letters, state = [], 0
     for place, (distances, nearest) in enumerate(near):
-        beyond = costs[place + 1][following[state]] if place + 1 < len(near) else None
+        beyond = costs[place + 1][successors[state]] if place + 1 < len(near) else None
         row = last[state] if beyond is None else distances + beyond
         best = np.flatnonzero(row == row.min())
         # Like the given word for as long as possible.
         symbol = best[np.argmin(distances[best])]
         letters.append(int(nearest[symbol]))
-        state = machine.following[state][symbol]
+        state = machine.successors[state][symbol]
     return letters
 
 
 def _as_good(
-    machine: Machine, state: int, symbol: int, rest: Sequence[int] | None
+    machine: MealyMonitor, state: int, symbol: int, rest: Sequence[int] | None
 ) -> NDArray[np.bool_]:
     """Which classes do as well as one, read in a state.
 
     Those that lead to the same state; where nothing else is changed in the ``rest`` of the word,
     those after which it is accepted.
     """
-    row = machine.following[state]
+    row = machine.successors[state]
     if rest is None:
         return np.array([target == row[symbol] for target in row])
     if not rest:
-        return np.array(machine.accepting[state])
+        return np.array(machine.outputs[state])
     return np.array([_accepts(machine, target, rest) for target in row])
 
 
-def _accepts(machine: Machine, state: int, rest: Sequence[int]) -> bool:
+def _accepts(machine: MealyMonitor, state: int, rest: Sequence[int]) -> bool:
     for symbol in rest[:-1]:
-        state = machine.following[state][symbol]
-    return machine.accepting[state][rest[-1]]
+        state = machine.successors[state][symbol]
+    return machine.outputs[state][rest[-1]]
 
 
 class _Alphabet:
     """All letters of a machine, as columns of digits."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
         sizes = [one.size for one in self._reads]
         self._strides = [prod(sizes[:n]) for n in range(len(sizes))]
@@ -132,7 +132,7 @@ class _Alphabet:
         ).reshape(len(sizes), len(numbers))
         self._is_number = np.array([isinstance(one, NumberRead) for one in self._reads], dtype=bool)
         self._classes = np.array(machine.letters)
-        self._n_classes = len(machine.following[0])
+        self._n_classes = len(machine.successors[0])
         self._near: dict[Letter, _Near] = {}
         self._can_be: dict[Letter, bool] = {}
         self._ways: dict[tuple[Letter, int, bytes], tuple[Cube, ...]] = {}

@@ -9,15 +9,15 @@ from typing import TypeAlias
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import Place
-from rulec.monitoring.axioms import check_counting_facts
-from rulec.monitoring.letter_reader import Columns
+from rulec.diagnostics import SourceLocation
+from rulec.monitoring.axioms import check_counting_axioms
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoded_values import Told
 from rulec.monitoring.online.four_valued import Edge
-from rulec.monitoring.online.group_letters import Reading
-from rulec.monitoring.online.rule_group import Node, Ready, Team, Teams
-from rulec.monitoring.online.state_shape import Items, Outline
-from rulec.monitoring.online.transition_cache import Memory
+from rulec.monitoring.online.group_letters import GroupLetters
+from rulec.monitoring.online.rule_group import Node, Ready, RuleGroup, RuleGroups
+from rulec.monitoring.online.state_shape import Items, StateShape
+from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_state
 from rulec.trace import State
 from rulec.vocabulary.object_choices import choices
@@ -30,7 +30,7 @@ MOST_OUTLINES = 64
 """So many outlines of states are remembered before they are forgotten again."""
 
 
-Known: TypeAlias = tuple[Outline, tuple[Told, ...]]
+Known: TypeAlias = tuple[StateShape, tuple[Told, ...]]
 """The outline of a state, and what is told of it."""
 
 
@@ -44,7 +44,7 @@ class Crowd:
 
     ready: Ready
     bindings: tuple[Items, ...]
-    team: Team
+    team: RuleGroup
     place: slice
     number: int
 
@@ -53,19 +53,19 @@ class Crowd:
         return [node.edges[self.number] for node in nodes[self.place]]
 
 
-class Scene:
+class BoundRules:
     """Rules, and the objects that are there, of types that the vocabulary knows."""
 
     def __init__(
-        self, rulebook: CompiledRulebook, teams: Teams, objects: Mapping[str, str]
+        self, rulebook: CompiledRulebook, teams: RuleGroups, objects: Mapping[str, str]
     ) -> None:
         self.objects = dict(objects)
         self.teams = teams
-        self.memory = Memory()
+        self.memory = TransitionCache()
         self._rulebook = rulebook
-        self._counting = any(counts(fact.formula) for fact in rulebook.facts)
-        self._readings: dict[tuple[str, ...], Reading | None] = {}
-        self._bound: list[tuple[Team, tuple[Items, ...]]] = []
+        self._counting = any(counts(fact.formula) for fact in rulebook.axioms)
+        self._readings: dict[tuple[str, ...], GroupLetters | None] = {}
+        self._bound: list[tuple[RuleGroup, tuple[Items, ...]]] = []
         crowds: dict[str, Crowd] = {}
         end = 0
         for team in teams.teams:
@@ -79,7 +79,9 @@ class Scene:
         self.crowds = tuple([crowds[ready.rule.name] for ready in teams.rules])
         self.hard = tuple([rule.name for rule in rulebook.rules if rule.strength == "hard"])
 
-    def read(self, state: State, number: int, place: Place | None) -> tuple[Letters, Known | None]:
+    def read(
+        self, state: State, number: int, place: SourceLocation | None
+    ) -> tuple[Letters, Known | None]:
         """What the teams read of a state, and by what it is known, if that can be said.
 
         Raises:
@@ -97,7 +99,7 @@ class Scene:
             pass
         return self._careful_letters(state, number, place), known
 
-    def _reading_of(self, names: tuple[str, ...]) -> Reading | None:
+    def _reading_of(self, names: tuple[str, ...]) -> GroupLetters | None:
         """What reads states that give values to these names; None if they need a closer look."""
         try:
             return self._readings[names]
@@ -108,22 +110,22 @@ class Scene:
         about = (self.objects, self._rulebook.vocabulary, self.teams.floors)
         self._readings[names] = None
         with suppress(LookupError, TypeError):
-            self._readings[names] = Reading(Outline(names, *about), self._bound, *about)
+            self._readings[names] = GroupLetters(StateShape(names, *about), self._bound, *about)
         return self._readings[names]
 
-    def _careful_letters(self, state: State, number: int, place: Place | None) -> Letters:
+    def _careful_letters(self, state: State, number: int, place: SourceLocation | None) -> Letters:
         """Their letters, the way ``verify`` goes, which knows every case and every complaint."""
         where = f"state {number}"
         check_state(state, self.objects, self._rulebook.vocabulary, where, place)
-        columns = Columns(
+        columns = LetterReader(
             (state,),
             self._rulebook.vocabulary,
             lambda _: where,
             place,
             self.objects,
-            facts=self._rulebook.facts,
+            axioms=self._rulebook.axioms,
         )
-        check_counting_facts(self._rulebook, 1, columns.moment, lambda _: where, place)
+        check_counting_axioms(self._rulebook, 1, columns.moment, lambda _: where, place)
         classes = {
             crowd.ready.rule.name: [
                 columns.word(crowd.ready.rule, crowd.ready.bound(items), 0, 0)[0]

@@ -19,7 +19,7 @@ The first is the least number that may be told apart by them, the last the first
 """
 
 
-def floors_of(rulebook: CompiledRulebook) -> Floors:
+def breakpoints_of(rulebook: CompiledRulebook) -> Floors:
     """What all rules together compare the quantities of their vocabulary with."""
     floors: dict[str, set[float]] = {
         name: set()
@@ -35,8 +35,8 @@ def floors_of(rulebook: CompiledRulebook) -> Floors:
                     all_matter.update(about.names)
                 else:
                     floors[about.quantity.name].update(about.floors)
-    if any(counts(fact.formula) for fact in rulebook.facts):
-        all_matter.update(name for fact in rulebook.facts for name in names_in(fact.formula))
+    if any(counts(fact.formula) for fact in rulebook.axioms):
+        all_matter.update(name for fact in rulebook.axioms for name in names_in(fact.formula))
     return {
         name: None if name in all_matter else _within_reach(those) for name, those in floors.items()
     }

@@ -14,7 +14,7 @@ RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Past:
+class CarriedState:
     """Where machines stand whose objects stay, and what is violated for good.
 
     ``settled`` are rules for objects that stay that are among the ``violations``.
@@ -25,4 +25,4 @@ class Past:
     violations: tuple[Violation, ...] = ()
 
 
-NO_PAST = Past()
+NO_PAST = CarriedState()

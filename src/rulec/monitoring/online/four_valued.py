@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 
 Prefix: TypeAlias = Literal["satisfied", "violated", "holds so far", "pending"]
 """``satisfied`` and ``violated`` are final, however the trace goes on, and if it ends here.
@@ -30,7 +30,7 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class Links:
+class VerdictLinks:
     """A machine as edges that lead to edges.
 
     Before its first letter a machine is at ``start``. ``edges`` are all others, by the state that
@@ -41,27 +41,27 @@ class Links:
     edges: dict[tuple[int, Prefix], Edge]
 
 
-def linked(machine: Machine) -> Links:
+def linked(machine: MealyMonitor) -> VerdictLinks:
     """The edges of a machine."""
-    rows: list[list[Edge]] = [[] for _ in machine.following]
+    rows: list[list[Edge]] = [[] for _ in machine.successors]
     edges: dict[tuple[int, Prefix], Edge] = {}
     for state, row in enumerate(rows):
-        for target, accepted in zip(
-            machine.following[state], machine.accepting[state], strict=True
-        ):
+        for target, accepted in zip(machine.successors[state], machine.outputs[state], strict=True):
             verdict = prefix(machine, target, accepted=accepted)
             if (target, verdict) not in edges:
                 edges[target, verdict] = Edge(rows[target], target, verdict)
             row.append(edges[target, verdict])
-    return Links(Edge(rows[0], 0, "satisfied" if machine.safe == 0 else "holds so far"), edges)
+    return VerdictLinks(
+        Edge(rows[0], 0, "satisfied" if machine.accepting_sink == 0 else "holds so far"), edges
+    )
 
 
-def prefix(machine: Machine, state: int, *, accepted: bool) -> Prefix:
+def prefix(machine: MealyMonitor, state: int, *, accepted: bool) -> Prefix:
     """What is known of a word that has led to a state, and is accepted or not if it ends here."""
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
     if accepted:
-        return "satisfied" if state == machine.safe else "holds so far"
-    return "violated" if state == machine.dead else "pending"
+        return "satisfied" if state == machine.accepting_sink else "holds so far"
+    return "violated" if state == machine.rejecting_sink else "pending"
 
 
 def together(verdicts: Iterable[Prefix]) -> Prefix:

@@ -13,9 +13,9 @@ from rulec.logic.kleene import Unknown, total
 from rulec.monitoring.online.breakpoints import Floors
 from rulec.monitoring.online.encoded_values import MISSING, Told, default_told, values_of
 from rulec.monitoring.online.letter_inputs import Input
-from rulec.monitoring.online.rule_group import Team
-from rulec.monitoring.online.state_shape import Items, Outline
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.online.rule_group import RuleGroup
+from rulec.monitoring.online.state_shape import Items, StateShape
+from rulec.monitoring.state_view import StateView
 from rulec.trace import State
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -29,7 +29,7 @@ _Read: TypeAlias = Callable[[State, Sequence[Told]], Iterable[int]]
 """Of a state and its parts the letter of each of several bindings. Raises as ``letters``."""
 
 
-class Reading:
+class GroupLetters:
     """Reads states of an outline, for teams with their bindings, of which each has some.
 
     Raises:
@@ -38,8 +38,8 @@ class Reading:
 
     def __init__(
         self,
-        outline: Outline,
-        teams: Sequence[tuple[Team, Sequence[Items]]],
+        outline: StateShape,
+        teams: Sequence[tuple[RuleGroup, Sequence[Items]]],
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
         floors: Floors,
@@ -86,7 +86,7 @@ class _Letters(dict[Any, int]):
     """
 
     def __init__(
-        self, team: Team, own: Sequence[Input], others: Mapping[Input, Any], floors: Floors
+        self, team: RuleGroup, own: Sequence[Input], others: Mapping[Input, Any], floors: Floors
     ) -> None:
         self._team = team
         self._own = own
@@ -110,9 +110,9 @@ class _OfTeam:
 
     def __init__(
         self,
-        team: Team,
+        team: RuleGroup,
         bindings: Sequence[Items],
-        outline: Outline,
+        outline: StateShape,
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
         floors: Floors,
@@ -169,7 +169,7 @@ class _OfTeam:
         )
 
 
-def _whole_part(places: Sequence[tuple[int, int]], outline: Outline) -> int | None:
+def _whole_part(places: Sequence[tuple[int, int]], outline: StateShape) -> int | None:
     """The part whose values stand at just these places, in this order."""
     part = places[0][0]
     return part if places == [(part, place) for place in range(outline.sizes[part])] else None
@@ -193,7 +193,7 @@ def _summed(
     bound = [dict(zip(one.variables, items, strict=True)) for items in about]
 
     def column(state: State, _: Sequence[Told]) -> Sequence[int]:
-        moment = Moment(state, objects, vocabulary)
+        moment = StateView(state, objects, vocabulary)
         found = [total(number.terms, each, moment) for each in bound]
         if any(isinstance(each, Unknown) for each in found):
             raise LookupError

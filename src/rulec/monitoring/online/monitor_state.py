@@ -9,9 +9,9 @@ from typing import NamedTuple, TypeAlias
 
 import msgspec
 
-from rulec.monitoring.online.bound_rules import Letters, Scene
+from rulec.monitoring.online.bound_rules import BoundRules, Letters
 from rulec.monitoring.online.four_valued import Edge, Prefix, together
-from rulec.monitoring.online.rule_group import Node, OtherVerdictError, Ready, Team
+from rulec.monitoring.online.rule_group import Node, OtherVerdictError, Ready, RuleGroup
 
 
 class Change(NamedTuple):
@@ -42,7 +42,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
     changes: tuple[Change, ...] = ()
 
 
-class Standing(msgspec.Struct, frozen=True, eq=False):
+class MonitorState(msgspec.Struct, frozen=True, eq=False):
     """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
 
     ``nodes`` say where the machines of each team stand for each binding, in the order of the
@@ -50,7 +50,7 @@ class Standing(msgspec.Struct, frozen=True, eq=False):
     ``after`` is what is remembered of the standings behind this one, by the keys of states.
     """
 
-    scene: Scene
+    scene: BoundRules
     nodes: tuple[Node, ...]
     verdict: Prefix
     rules: Mapping[str, Prefix]
@@ -58,11 +58,11 @@ class Standing(msgspec.Struct, frozen=True, eq=False):
     after: dict[Hashable, Onward] = msgspec.field(default_factory=dict)
 
 
-Onward: TypeAlias = tuple[Standing, tuple[Change, ...]]
+Onward: TypeAlias = tuple[MonitorState, tuple[Change, ...]]
 """Where a state leads, and what changes by it."""
 
 
-def beginning(scene: Scene) -> Standing:
+def beginning(scene: BoundRules) -> MonitorState:
     """Before the first state."""
     start = {
         crowd.ready.rule.name: [crowd.ready.links.start] * len(crowd.bindings)
@@ -72,13 +72,13 @@ def beginning(scene: Scene) -> Standing:
 
 
 def standing_at(
-    scene: Scene, edges: Mapping[str, Sequence[Edge]], lost: Set[str], n_violations: int
-) -> Standing:
+    scene: BoundRules, edges: Mapping[str, Sequence[Edge]], lost: Set[str], n_violations: int
+) -> MonitorState:
     """Behind a state; ``lost`` are the rules that have been violated for good by then."""
     return _standing(scene, nodes_at(scene, edges), lost, n_violations, {})
 
 
-def nodes_at(scene: Scene, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, ...]:
+def nodes_at(scene: BoundRules, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, ...]:
     """The nodes where the machines stand at these edges, given for each rule and binding."""
     found: list[Node] = []
     for team in scene.teams.teams:
@@ -87,7 +87,7 @@ def nodes_at(scene: Scene, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, .
     return tuple(found)
 
 
-def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
+def onward(here: MonitorState, scene: BoundRules, letters: Letters) -> Onward:
     """Behind one more state, with a scene that may be another, and what its teams read.
 
     Takes no longer for a long past than for a short one.
@@ -100,7 +100,7 @@ def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
         except OtherVerdictError:
             pass
         else:
-            return Standing(scene, nodes, here.verdict, here.rules, here.n_violations), ()
+            return MonitorState(scene, nodes, here.verdict, here.rules, here.n_violations), ()
     else:
         edges, changes = carried_over(here.scene, here.nodes, scene)
         before = nodes_at(scene, edges)
@@ -117,7 +117,7 @@ def onward(here: Standing, scene: Scene, letters: Letters) -> Onward:
 
 
 def carried_over(
-    scene: Scene, nodes: Sequence[Node], into: Scene
+    scene: BoundRules, nodes: Sequence[Node], into: BoundRules
 ) -> tuple[dict[str, list[Edge]], list[Change]]:
     """Where the bindings of a scene stand at first that follows upon another, by rule.
 
@@ -140,9 +140,9 @@ def carried_over(
     return entered, ended
 
 
-def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
+def _changes(scene: BoundRules, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
     """The bindings with another verdict than before."""
-    places: dict[Team, list[int]] = {}
+    places: dict[RuleGroup, list[int]] = {}
     for place, (here, there) in enumerate(zip(before, after, strict=True)):
         if here.verdicts != there.verdicts:
             places.setdefault(there.team, []).append(place)
@@ -157,12 +157,12 @@ def _changes(scene: Scene, before: Sequence[Node], after: Sequence[Node]) -> Ite
 
 
 def _standing(
-    scene: Scene,
+    scene: BoundRules,
     nodes: tuple[Node, ...],
     lost: Set[str],
     n_violations: int,
     known: Mapping[str, Prefix],
-) -> Standing:
+) -> MonitorState:
     """``lost`` are the rules that have been violated for good, by objects now there or not.
 
     Of some rules the verdict is ``known``.
@@ -173,7 +173,7 @@ def _standing(
         for crowd in scene.crowds
     }
     verdict = together(rules[rule] for rule in scene.hard)
-    return Standing(scene, nodes, verdict, MappingProxyType(rules), n_violations)
+    return MonitorState(scene, nodes, verdict, MappingProxyType(rules), n_violations)
 
 
 def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:
@@ -181,6 +181,6 @@ def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:
         return "violated"
     found = together({edge.verdict for edge in edges})
     # What all who are there have satisfied for good another may still come and violate.
-    if found == "satisfied" and ready.rule.variables and ready.rule.machine.safe != 0:
+    if found == "satisfied" and ready.rule.variables and ready.rule.machine.accepting_sink != 0:
         return "holds so far"
     return found

@@ -12,8 +12,8 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.monitoring.online.breakpoints import Floors, floors_of
-from rulec.monitoring.online.four_valued import Edge, Links, Prefix, linked
+from rulec.monitoring.online.breakpoints import Floors, breakpoints_of
+from rulec.monitoring.online.four_valued import Edge, Prefix, VerdictLinks, linked
 from rulec.monitoring.online.letter_inputs import Input, Weigh, inputs_of
 
 MOST_LEARNED = 1 << 18
@@ -25,7 +25,7 @@ class Ready:
     """A rule made ready for any objects."""
 
     rule: CompiledRule
-    links: Links
+    links: VerdictLinks
     inputs: tuple[tuple[Input, Weigh], ...]
 
     def bound(self, items: Sequence[str]) -> dict[str, str]:
@@ -47,7 +47,7 @@ class Node(dict[int, "Node"]):
     __eq__ = object.__eq__
     __hash__ = object.__hash__  # type: ignore[assignment]
 
-    def __init__(self, team: Team, edges: tuple[Edge, ...]) -> None:
+    def __init__(self, team: RuleGroup, edges: tuple[Edge, ...]) -> None:
         self.team = team
         self.edges = edges
         self.verdicts: tuple[Prefix, ...] = tuple([edge.verdict for edge in edges])
@@ -73,7 +73,7 @@ class Learned:
     n = 0
 
 
-class Team:
+class RuleGroup:
     """Rules whose variables are of the same types, in the same order.
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are those that
@@ -123,7 +123,7 @@ class Team:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Teams:
+class RuleGroups:
     """The rules of a rulebook, one by one and by the types of their variables.
 
     They learn: which nodes and letters there are, and what leads where. ``floors`` are what they
@@ -131,16 +131,16 @@ class Teams:
     """
 
     rules: tuple[Ready, ...]
-    teams: tuple[Team, ...]
+    teams: tuple[RuleGroup, ...]
     floors: Floors
     learned: Learned
 
-    def forgetful(self) -> Teams:
+    def forgetful(self) -> RuleGroups:
         """The same, but for what they have learnt."""
         return _by_types(self.rules, self.floors)
 
 
-def teams_of(rulebook: CompiledRulebook) -> Teams:
+def rule_groups(rulebook: CompiledRulebook) -> RuleGroups:
     """The rules of a rulebook, made ready."""
     vocabulary = rulebook.vocabulary
     return _by_types(
@@ -148,14 +148,14 @@ def teams_of(rulebook: CompiledRulebook) -> Teams:
             Ready(rule, linked(rule.machine), tuple(inputs_of(rule, vocabulary)))
             for rule in rulebook.rules
         ],
-        floors_of(rulebook),
+        breakpoints_of(rulebook),
     )
 
 
-def _by_types(rules: Sequence[Ready], floors: Floors) -> Teams:
+def _by_types(rules: Sequence[Ready], floors: Floors) -> RuleGroups:
     by_types: dict[tuple[str, ...], list[Ready]] = {}
     for one in rules:
         by_types.setdefault(tuple([each.type for each in one.rule.variables]), []).append(one)
     learned = Learned()
-    teams = tuple([Team(team, learned) for team in by_types.values()])
-    return Teams(tuple(rules), teams, floors, learned)
+    teams = tuple([RuleGroup(team, learned) for team in by_types.values()])
+    return RuleGroups(tuple(rules), teams, floors, learned)

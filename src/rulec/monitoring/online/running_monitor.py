@@ -8,26 +8,26 @@ from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.monitoring.letter_reader import NOBODY
-from rulec.monitoring.online.bound_rules import Scene
-from rulec.monitoring.online.carried_state import Past
+from rulec.monitoring.online.bound_rules import BoundRules
+from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.monitor_state import (
     Change,
+    MonitorState,
     SoFar,
-    Standing,
     beginning,
     carried_over,
     onward,
 )
-from rulec.monitoring.online.rule_group import MOST_LEARNED, teams_of
+from rulec.monitoring.online.rule_group import MOST_LEARNED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, step_in, to_data
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import check_step
 from rulec.trace import State
 
-_Now: TypeAlias = tuple[Standing, int, tuple[Change, ...]]
+_Now: TypeAlias = tuple[MonitorState, int, tuple[Change, ...]]
 """Where a monitor stands, behind which state, and what has changed by that."""
 
 
@@ -54,7 +54,7 @@ class Monitor:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        self._now: _Now = beginning(Scene(rulebook, teams_of(rulebook), NOBODY)), -1, ()
+        self._now: _Now = beginning(BoundRules(rulebook, rule_groups(rulebook), NOBODY)), -1, ()
         self._violations: list[Violation] = []
 
     @property
@@ -86,7 +86,7 @@ class Monitor:
         return tuple(self._violations[: self._now[0].n_violations])
 
     def step(
-        self, state: State, objects: Mapping[str, str] = NOBODY, place: Place | None = None
+        self, state: State, objects: Mapping[str, str] = NOBODY, place: SourceLocation | None = None
     ) -> SoFar:
         """Take the next state.
 
@@ -120,7 +120,11 @@ class Monitor:
         return self._step_slowly(state, objects, place, same_objects)
 
     def _step_slowly(
-        self, state: State, objects: Mapping[str, str], place: Place | None, same_objects: bool
+        self,
+        state: State,
+        objects: Mapping[str, str],
+        place: SourceLocation | None,
+        same_objects: bool,
     ) -> SoFar:
         """As ``step``, whether such a state has been there before or not."""
         here, number, _ = self._now
@@ -136,7 +140,7 @@ class Monitor:
         is_full = scene.teams.learned.n > MOST_LEARNED
         if is_full or not same_objects:
             teams = scene.teams.forgetful() if is_full else scene.teams
-            scene = Scene(self._rulebook, teams, objects)
+            scene = BoundRules(self._rulebook, teams, objects)
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
         letters, known = scene.read(state, number, place)
@@ -150,10 +154,10 @@ class Monitor:
         self._now = after, number, changes
         return _so_far(after, number, changes)
 
-    def past(self, objects: Mapping[str, str]) -> Past:
+    def past(self, objects: Mapping[str, str]) -> CarriedState:
         """What has been, as far as it bears on a next state in which these objects are there."""
         here, _, _ = self._now
-        scene = Scene(self._rulebook, here.scene.teams, objects)
+        scene = BoundRules(self._rulebook, here.scene.teams, objects)
         edges, ended = carried_over(here.scene, here.nodes, scene)
         states, settled = {}, set()
         for crowd in scene.crowds:
@@ -164,7 +168,7 @@ class Monitor:
         lost = [
             Violation(one.rule, self._strengths[one.rule], dict(one.binding), None) for one in ended
         ]
-        return Past(states, frozenset(settled), (*self.violations, *lost))
+        return CarriedState(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
         """Where the monitor stands, for ``restore``: data that JSON can take."""
@@ -173,7 +177,7 @@ class Monitor:
 
     @classmethod
     def restore(
-        cls, rulebook: CompiledRulebook, snapshot: Any, place: Place | None = None
+        cls, rulebook: CompiledRulebook, snapshot: Any, place: SourceLocation | None = None
     ) -> Monitor:
         """A monitor that goes on where another one stood.
 
@@ -206,9 +210,9 @@ class Monitor:
         ]
 
 
-def _so_far(standing: Standing, number: int, changes: tuple[Change, ...]) -> SoFar:
+def _so_far(standing: MonitorState, number: int, changes: tuple[Change, ...]) -> SoFar:
     return SoFar(number, standing.verdict, standing.rules, changes)
 
 
-def _no_object(what: str, of: str, place: Place | None) -> RulecError:
+def _no_object(what: str, of: str, place: SourceLocation | None) -> RulecError:
     return RulecError(Diagnostic("R0501", f"{what} is no object of {of}", place))

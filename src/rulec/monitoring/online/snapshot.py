@@ -12,12 +12,12 @@ import msgspec
 
 from rulec.automata.bundle.bundle_file import read_to_data
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
-from rulec.monitoring.online.bound_rules import Scene
+from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import Edge, Prefix
-from rulec.monitoring.online.monitor_state import Standing, beginning, standing_at
-from rulec.monitoring.online.rule_group import Ready, Teams
+from rulec.monitoring.online.monitor_state import MonitorState, beginning, standing_at
+from rulec.monitoring.online.rule_group import Ready, RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
@@ -60,7 +60,7 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def to_data(
-    here: Standing,
+    here: MonitorState,
     number: int,
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
@@ -101,15 +101,15 @@ def fingerprint(rulebook: CompiledRulebook) -> str:
             "step_s": None if rule.step_s is None else str(rule.step_s),
             "reads": [read_to_data(read) for read in rule.machine.reads],
             "letters": rule.machine.letters,
-            "following": rule.machine.following,
-            "accepting": rule.machine.accepting,
+            "following": rule.machine.successors,
+            "accepting": rule.machine.outputs,
         }
         for rule in rulebook.rules
     ]
     return hashlib.sha256(json.dumps(rules, sort_keys=True).encode()).hexdigest()
 
 
-def step_in(data: Any, rulebook: CompiledRulebook, place: Place | None) -> Fraction | None:
+def step_in(data: Any, rulebook: CompiledRulebook, place: SourceLocation | None) -> Fraction | None:
     """The step that a monitor was saved with, once it is clear that it fits the rulebook.
 
     Raises:
@@ -119,8 +119,8 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: Place | None) -> Fract
 
 
 def from_data(
-    data: Any, rulebook: CompiledRulebook, teams: Teams, place: Place | None
-) -> tuple[int, Standing, list[Violation]]:
+    data: Any, rulebook: CompiledRulebook, teams: RuleGroups, place: SourceLocation | None
+) -> tuple[int, MonitorState, list[Violation]]:
     """Behind which state a monitor with these rules stood, where, and what was violated by then.
 
     Raises:
@@ -129,7 +129,7 @@ def from_data(
     saved, _ = _checked(data, rulebook, place)
     try:
         check_objects(saved.objects, rulebook.vocabulary)
-        scene = Scene(rulebook, teams, saved.objects)
+        scene = BoundRules(rulebook, teams, saved.objects)
         if saved.states == 0 and not saved.objects and not saved.violations:
             return -1, beginning(scene), []
         edges = _edges(saved, scene)
@@ -142,7 +142,7 @@ def from_data(
 
 
 def _checked(
-    data: Any, rulebook: CompiledRulebook, place: Place | None
+    data: Any, rulebook: CompiledRulebook, place: SourceLocation | None
 ) -> tuple[_Saved, Fraction | None]:
     try:
         header = msgspec.convert(data, _Header)
@@ -171,7 +171,7 @@ def _checked(
     return saved, step_s
 
 
-def _edges(saved: _Saved, scene: Scene) -> dict[str, list[Edge]]:
+def _edges(saved: _Saved, scene: BoundRules) -> dict[str, list[Edge]]:
     """Raises LookupError or ValueError unless each binding stands somewhere, and no other does."""
     edges: dict[str, list[Edge]] = {}
     for crowd, rule in zip(scene.crowds, saved.rules, strict=True):
@@ -194,6 +194,6 @@ def _violation(one: _Violation, n_states: int, ready: Sequence[Ready]) -> Violat
     return Violation(rule.name, rule.strength, one.binding, one.step)
 
 
-def _refused(message: str, place: Place | None) -> RulecError:
+def _refused(message: str, place: SourceLocation | None) -> RulecError:
     way_out = "restore it with the rulebook that it was saved with, or begin anew"
     return RulecError(Diagnostic("R0510", message, place, help=way_out))

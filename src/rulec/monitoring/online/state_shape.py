@@ -23,7 +23,7 @@ Key: TypeAlias = Callable[[Any], Hashable]
 _Part: TypeAlias = Callable[[Any], Told]
 
 
-class Outline:
+class StateShape:
     """The outline of states that give values to the same names while the same objects are there.
 
     ``places`` says by name and objects in which part of a state a value stands, and where there;

@@ -6,10 +6,10 @@ from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
 from rulec.monitoring.online.encoded_values import Told
-from rulec.monitoring.online.state_shape import Key, Outline
+from rulec.monitoring.online.state_shape import Key, StateShape
 
 if TYPE_CHECKING:
-    from rulec.monitoring.online.monitor_state import Change, Standing
+    from rulec.monitoring.online.monitor_state import Change, MonitorState
     from rulec.monitoring.online.rule_group import Node
 
 MOST = 1 << 12
@@ -22,7 +22,7 @@ REST = 16
 """If it was of little help, nothing more is remembered for so many times as many states."""
 
 
-class Memory:
+class TransitionCache:
     """Remembers where states lead while the same objects are there.
 
     At any time there is one outline whose states are known again; ``key`` is theirs. Others may
@@ -30,10 +30,10 @@ class Memory:
     """
 
     def __init__(self) -> None:
-        self._outline: Outline | None = None
+        self._outline: StateShape | None = None
         self._rests_until = 0
         self._stranger = -1
-        self._standings: dict[tuple[Node, ...], Standing] = {}
+        self._standings: dict[tuple[Node, ...], MonitorState] = {}
         self._n_learned = 0
         self._n_tried = 0
         self._tried_since = 0
@@ -41,12 +41,12 @@ class Memory:
 
     def learn(
         self,
-        known: tuple[Outline, tuple[Told, ...]],
+        known: tuple[StateShape, tuple[Told, ...]],
         number: int,
-        here: Standing,
-        after: Standing,
+        here: MonitorState,
+        after: MonitorState,
         changes: tuple[Change, ...],
-    ) -> Standing:
+    ) -> MonitorState:
         """Remember where a state has led, which has this number and is known by this.
 
         It has led nowhere else than a standing with the same nodes that is known from before; to
@@ -79,7 +79,7 @@ class Memory:
         self._n_tried += 1
         return after
 
-    def _forget(self, here: Standing) -> None:
+    def _forget(self, here: MonitorState) -> None:
         self.key = _of_none
         here.after.clear()
         self._standings = {here.nodes: here}

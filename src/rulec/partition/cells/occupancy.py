@@ -20,7 +20,7 @@ from rulec.scenario.time_grid import Timing
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class Occupancy:
     """A scenario over time: names in the order of the file, and regions in that order.
 
     ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first come obstacles as it is
@@ -42,7 +42,7 @@ class Scene:
 
 def scene(
     scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
-) -> Scene:
+) -> Occupancy:
     """Where everything is, in every layer and at every instant between two."""
     everybody = predicted(scenario)
     obstacles = [one.obstacle for one in everybody]
@@ -88,7 +88,7 @@ def scene(
         regions(moment, upcoming) for moment, upcoming in zip(moments, layers[1:], strict=True)
     )
     names, index_of, present = _appearances(obstacles, layer_regions)
-    return Scene(
+    return Occupancy(
         road,
         layer_regions,
         tuple(tuple(one for one in here if index_of[one] < likeliest) for here in names),

@@ -9,12 +9,12 @@ from rulec.partition.prediction_worlds import named_in, world_graph
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
-from rulec.planning.product.node_transformers import effects
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.rule_instances import applied, in_words, past_for
 
 
 @dataclass(frozen=True, slots=True)
-class Otherwise:
+class AlternativeCounts:
     """What becomes of the maneuvers if one obstacle does as its prediction ``number`` has it.
 
     All others do what is likeliest. On so many ``traces`` nobody hits ego; those that are
@@ -28,10 +28,10 @@ class Otherwise:
     satisfying: int
 
 
-def otherwise(found: Maneuvers) -> list[Otherwise]:
+def alternative_counts(found: Maneuvers) -> list[AlternativeCounts]:
     """The counts for every prediction that is not an obstacle's likeliest: exact."""
     return [
-        Otherwise(obstacle.id, number, one.weight, *_counts(found, obstacle.id, number))
+        AlternativeCounts(obstacle.id, number, one.weight, *_counts(found, obstacle.id, number))
         for obstacle in found.graph.scenario.obstacles
         for number, one in enumerate(obstacle.alternatives, start=1)
     ]
@@ -45,5 +45,5 @@ def _counts(found: Maneuvers, obstacle: str, number: int) -> tuple[int, int]:
         return 0, 0
     paths = in_words(graph, traces, named_in(graph, world), rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, found.after)
-    hard = effects(paths, applied(graph, paths, rules, HARD, past))
+    hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))
     return count_paths(paths), explore(hard).accepted

@@ -11,13 +11,13 @@ from rulec.logic.formula import Comparison, Count, Formula, atoms_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.binding import Binding
-from rulec.monitoring.state_view import Moment
+from rulec.monitoring.state_view import StateView
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.trace import TraceGraph
 from rulec.vocabulary import Vocabulary
 
 
-class Alike:
+class PredictionClasses:
     """Tells predictions of obstacles apart by whether they are counted, on one path."""
 
     def __init__(
@@ -29,7 +29,7 @@ class Alike:
     ) -> None:
         self._terms = list(dict.fromkeys(_terms(rule.formula)))
         self._path = path
-        self._moments = [Moment(state, words.objects, vocabulary) for (state,) in words.states]
+        self._moments = [StateView(state, words.objects, vocabulary) for (state,) in words.states]
         self._words = words
         self._truth = cache(self._is_counted)
 

@@ -14,7 +14,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.partition.prediction_worlds import predicted_path
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event, Weights, none_of
-from rulec.planning.probability.violation_events import Lost, LostOn
+from rulec.planning.probability.violation_events import Lost, ViolationEvents
 from rulec.planning.ranking.cheapest import Maneuver
 
 
@@ -27,7 +27,7 @@ class ForObjects:
 
 
 @dataclass(frozen=True, slots=True)
-class RuleChance:
+class RuleProbability:
     """The probability that a rule is kept for all objects, and those below 1 for some of them.
 
     None if the rule counts objects, and these can do more together than can be looked at.
@@ -39,7 +39,7 @@ class RuleChance:
 
 
 @dataclass(frozen=True, slots=True)
-class Chances:
+class RuleProbabilities:
     """The probabilities that nobody hits ego, that besides every hard rule is kept, and each rule.
 
     ``hard`` is None if that of one of the hard rules is.
@@ -47,13 +47,13 @@ class Chances:
 
     clear: Fraction
     hard: Fraction | None
-    rules: tuple[RuleChance, ...]
+    rules: tuple[RuleProbability, ...]
 
 
-def chances(found: Maneuvers, maneuver: Maneuver) -> Chances:
+def rule_probabilities(found: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
     """The probabilities of one of the maneuvers: exact. Raises RulecError as ``best`` does."""
     path = predicted_path(found.graph, maneuver.nodes)
-    judge = LostOn(found, path)
+    judge = ViolationEvents(found, path)
     hard: set[Event] | None = set(judge.hits)
     rules = []
     for rule in found.rules.rules:
@@ -61,18 +61,18 @@ def chances(found: Maneuvers, maneuver: Maneuver) -> Chances:
         rules.append(_of_rule(rule, lost, path.weights))
         if rule.strength == "hard":
             hard = None if lost is None or hard is None else hard.union(*lost.values())
-    return Chances(
+    return RuleProbabilities(
         none_of(judge.hits, path.weights),
         None if hard is None else none_of(hard, path.weights),
         tuple(rules),
     )
 
 
-def _of_rule(rule: CompiledRule, lost: Lost | None, weights: Weights) -> RuleChance:
+def _of_rule(rule: CompiledRule, lost: Lost | None, weights: Weights) -> RuleProbability:
     if lost is None:
-        return RuleChance(rule, None, ())
+        return RuleProbability(rule, None, ())
     names = [variable.name for variable in rule.variables]
-    return RuleChance(
+    return RuleProbability(
         rule,
         none_of(set().union(*lost.values()), weights),
         tuple(

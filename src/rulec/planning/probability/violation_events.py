@@ -9,12 +9,12 @@ from math import prod
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.binding import Binding, bindings
-from rulec.monitoring.letter_reader import Columns
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
-from rulec.planning.probability.prediction_classes import Alike, counted_types
+from rulec.planning.probability.prediction_classes import PredictionClasses, counted_types
 from rulec.planning.product.graph_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_words, past_for
 
@@ -25,7 +25,7 @@ Lost = dict[tuple[str, ...], set[Event]]
 """The scenario's objects that a rule is about, and the events in which it is lost for them."""
 
 
-class LostOn:
+class ViolationEvents:
     """What is lost on one path."""
 
     def __init__(self, found: Maneuvers, path: PredictedPath) -> None:
@@ -58,7 +58,7 @@ class LostOn:
 
         Only what they do differently in the rule's eyes makes a world of its own.
         """
-        alike = Alike(rule, self._path, self._words, self._book.vocabulary)
+        alike = PredictionClasses(rule, self._path, self._words, self._book.vocabulary)
         matters = [name for name in self._words.objects if self._concerns(rule, name)]
         hitting = [name for name in matters if name in self._path.hit]
         left = MOST_WORLDS
@@ -116,14 +116,14 @@ class LostOn:
     def _of(self, names: Iterable[str]) -> tuple[str, ...]:
         return tuple([self._path.predicted[name].of for name in names])
 
-    def _columns(self, objects: Mapping[str, str]) -> Columns:
-        return Columns(
+    def _columns(self, objects: Mapping[str, str]) -> LetterReader:
+        return LetterReader(
             self._states,
             self._book.vocabulary,
             "the maneuver's cell of layer {}".format,
             objects=objects,
             present=self._words.present,
-            facts=self._book.facts,
+            axioms=self._book.axioms,
         )
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
@@ -134,7 +134,7 @@ class LostOn:
             if len({each.of for each in who}) == len({(each.of, each.number) for each in who}):
                 yield one
 
-    def _keeps(self, rule: CompiledRule, binding: Binding, columns: Columns) -> bool:
+    def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
         """Is it kept for these objects? Not if one of them hits ego."""
         names = binding.objects.values()
         about = (rule.name, self._of(names))

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.planning.product.graph_product import Product, ProductNode
-from rulec.planning.product.node_transformers import Effects
+from rulec.planning.product.node_transformers import NodeTransformers
 
 Edge = tuple[int, int]
 """A node of one layer, and one of the next."""
 
 
 @dataclass(frozen=True, slots=True)
-class Passages:
+class AcceptedEdges:
     """For each layer the nodes, and for each but the last the edges onward, that lie on paths.
 
     ``possible`` are on some path from the start to a goal, ``accepted`` on one that is accepted.
@@ -24,7 +24,7 @@ class Passages:
     accepted: tuple[frozenset[Edge], ...]
 
 
-def passages(effects: Effects, product: Product) -> Passages:
+def accepted_edges(effects: NodeTransformers, product: Product) -> AcceptedEdges:
     """The passages of a graph; ``product`` has been explored from ``effects``."""
     nodes = [frozenset(i for i, there in enumerate(row) if there) for row in effects.on_the_way]
     edges = [
@@ -32,7 +32,7 @@ def passages(effects: Effects, product: Product) -> Passages:
         for here, rows in zip(nodes, effects.steps, strict=False)
     ]
     accepted_nodes, accepted = _accepted(product)
-    return Passages(tuple(nodes), accepted_nodes, tuple(edges), accepted)
+    return AcceptedEdges(tuple(nodes), accepted_nodes, tuple(edges), accepted)
 
 
 def _accepted(

@@ -8,7 +8,7 @@ Places = tuple[tuple[int, ...], ...]
 """For every layer and node the number of its place."""
 
 
-def places(graph: TraceGraph) -> Places:
+def cell_tracks(graph: TraceGraph) -> Places:
     """The place of every node.
 
     Nodes of consecutive layers are one place if one continues as the other, so that going there is

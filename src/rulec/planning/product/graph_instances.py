@@ -8,11 +8,11 @@ from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact
-from rulec.monitoring.axioms import check_counting_facts
+from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import Binding, bindings
-from rulec.monitoring.fast_validation import Gate
-from rulec.monitoring.letter_reader import Columns, present_in
-from rulec.monitoring.online.carried_state import NO_PAST, Past
+from rulec.monitoring.fast_validation import FastValidator
+from rulec.monitoring.letter_reader import LetterReader, present_in
+from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import check_step, run
@@ -52,7 +52,7 @@ def instances(
     rulebook: CompiledRulebook,
     step_s: Fraction | None = None,
     strengths: Collection[Strength] = HARD,
-    past: Past = NO_PAST,
+    past: CarriedState = NO_PAST,
 ) -> list[Instance]:
     """Every rule of these strengths with every binding of its variables to the graph's objects.
 
@@ -69,24 +69,24 @@ def instances(
     for rule in rules:
         check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
-    gate = Gate(vocabulary, graph.objects)
+    gate = FastValidator(vocabulary, graph.objects)
     for layer, states in enumerate(graph.states):
         for state in states:
             if not gate.passes(state):
                 check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
     columns = [
-        Columns(
+        LetterReader(
             states,
             vocabulary,
             f"a cell of layer {layer}".format,
             objects=present_in(layer, graph.objects, graph.present),
-            facts=rulebook.facts,
+            axioms=rulebook.axioms,
         )
         for layer, states in enumerate(graph.states)
     ]
     for layer, read in enumerate(columns):
         where = f"a cell of layer {layer}".format
-        check_counting_facts(rulebook, len(graph.states[layer]), read.moment, where, None)
+        check_counting_axioms(rulebook, len(graph.states[layer]), read.moment, where, None)
     found: list[Instance] = []
     for rule in rules:
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}

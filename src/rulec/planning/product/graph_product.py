@@ -13,7 +13,7 @@ from operator import getitem
 from typing import Any
 
 from rulec.planning.product.limits import room_for, too_many
-from rulec.planning.product.node_transformers import LOST, Effect, Effects
+from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.product.reachability import Step
 from rulec.trace import TraceGraph
 
@@ -104,7 +104,7 @@ def kept(effects: Sequence[Effect], joint: Joint) -> Joint | None:
     return None if LOST in after else after
 
 
-def explore(effects: Effects, enter: Enter = kept, start: Memory | None = None) -> Product:
+def explore(effects: NodeTransformers, enter: Enter = kept, start: Memory | None = None) -> Product:
     """Build the product forward from the graph's start.
 
     Left to themselves, ``enter`` drops every path that loses a rule, and ``start``, the memory

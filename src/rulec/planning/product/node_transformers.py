@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.planning.product.graph_instances import Instance
 from rulec.planning.product.reachability import Step, on_the_way_in, steps_in
 from rulec.trace import TraceGraph
@@ -27,7 +27,7 @@ Effect = tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Effects:
+class NodeTransformers:
     """The ways through a graph from start to goals, and what its nodes do to machines.
 
     ``steps[p][node]`` are a node's followers from which a goal can be reached.
@@ -52,7 +52,7 @@ class Effects:
         """The states of the machines before the first node."""
         return tuple([one.start for one in self.instances])
 
-    def of(self, chosen: Sequence[int]) -> Effects:
+    def of(self, chosen: Sequence[int]) -> NodeTransformers:
         """The effects on some of the instances alone, by index."""
         known: dict[int, tuple[tuple[Effect, ...], ...]] = {}
         for layer in self.nodes:
@@ -60,7 +60,7 @@ class Effects:
                 known[id(layer)] = tuple(
                     [tuple([row[i] for i in chosen]) if row else () for row in layer]
                 )
-        return Effects(
+        return NodeTransformers(
             self.graph,
             tuple([self.instances[i] for i in chosen]),
             self.on_the_way,
@@ -69,7 +69,7 @@ class Effects:
         )
 
 
-def effects(graph: TraceGraph, instances: Sequence[Instance]) -> Effects:
+def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeTransformers:
     """What every node on a way from the graph's start to a goal does to every instance."""
     on_the_way = on_the_way_in(graph)
     steps = steps_in(graph, on_the_way)
@@ -89,7 +89,7 @@ def effects(graph: TraceGraph, instances: Sequence[Instance]) -> Effects:
             )
         nodes.append(known[key])
     bound = tuple([instance for instance, _ in found])
-    return Effects(graph, bound, tuple(on_the_way), steps, tuple(nodes))
+    return NodeTransformers(graph, bound, tuple(on_the_way), steps, tuple(nodes))
 
 
 def _can_be_lost(instance: Instance) -> bool:
@@ -98,12 +98,12 @@ def _can_be_lost(instance: Instance) -> bool:
     symbols = set().union(*instance.letters)
     reached, new = {instance.start}, [instance.start]
     while new:
-        following = machine.following[new.pop()]
-        for state in {following[symbol] for symbol in symbols} - reached:
+        successors = machine.successors[new.pop()]
+        for state in {successors[symbol] for symbol in symbols} - reached:
             reached.add(state)
             new.append(state)
-    return machine.dead in reached or not all(
-        machine.accepting[state][symbol] for state in reached for symbol in symbols
+    return machine.rejecting_sink in reached or not all(
+        machine.outputs[state][symbol] for state in reached for symbol in symbols
     )
 
 
@@ -149,7 +149,7 @@ class _Merging:
     def __init__(self, instance: Instance) -> None:
         machine = instance.rule.machine
         self._instance = instance
-        n_states = len(machine.following)
+        n_states = len(machine.successors)
         self._before = [((instance.start,) * n_states)]
         self._after = [((SAFE,) * n_states)]
         self._within = _columns(machine, final=False)
@@ -189,13 +189,13 @@ class _Merging:
         return tuple(found)
 
 
-def _columns(machine: Machine, *, final: bool) -> list[Effect]:
+def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:
     """For every letter class what it makes of each state: the next one, or the verdict."""
-    classes = range(len(machine.following[0]))
+    classes = range(len(machine.successors[0]))
     if final:
-        return [tuple([SAFE if row[s] else LOST for row in machine.accepting]) for s in classes]
+        return [tuple([SAFE if row[s] else LOST for row in machine.outputs]) for s in classes]
     return [
-        tuple([LOST if row[s] == machine.dead else row[s] for row in machine.following])
+        tuple([LOST if row[s] == machine.rejecting_sink else row[s] for row in machine.successors])
         for s in classes
     ]
 

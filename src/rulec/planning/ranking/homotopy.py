@@ -13,9 +13,9 @@ from operator import attrgetter
 
 from rulec.planning.product.cell_tracks import Places
 from rulec.planning.product.graph_product import Joint, Product, explore, kept
-from rulec.planning.product.node_transformers import Effect, Effects
+from rulec.planning.product.node_transformers import Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
-from rulec.planning.ranking.place_product import Dwelling, dwelling
+from rulec.planning.ranking.place_product import PlaceProduct, place_product
 
 REJECTED = "rejected"
 """In place of a joint state: a rule has been lost."""
@@ -36,7 +36,7 @@ _Ways = dict[int, _Way]
 
 
 @dataclass(frozen=True, slots=True)
-class Classes:
+class HomotopyClasses:
     """How many classes there are, by what their members have for a verdict."""
 
     accepted: int
@@ -63,7 +63,7 @@ class Variant:
     cheapest: Maneuver
 
 
-def count_classes(effects: Effects, places: Places) -> Classes:
+def count_classes(effects: NodeTransformers, places: Places) -> HomotopyClasses:
     """The classes of all paths from start to a goal, exactly."""
     dwell, accepted = _both_verdicts(effects, places)
     ways: list[dict[frozenset[int], int]] = [{} for _ in effects.nodes]
@@ -80,7 +80,7 @@ def count_classes(effects: Effects, places: Places) -> Classes:
                 there = dwell.stayed(entered)
                 ways[first][there] = ways[first].get(there, 0) + words
         ways[layer] = {}
-    return Classes(counts[True, False], counts[False, True], counts[True, True])
+    return HomotopyClasses(counts[True, False], counts[False, True], counts[True, True])
 
 
 def variants(product: Product, places: Places) -> Iterator[Variant]:
@@ -89,7 +89,7 @@ def variants(product: Product, places: Places) -> Iterator[Variant]:
     Best-first search over words. The least cost of a word's members still to come is known exactly,
     so a word is only ever made longer if a class needs it.
     """
-    dwell = dwelling(product, places)
+    dwell = place_product(product, places)
     to_come = _costs_to_come(dwell)
     queue: list[tuple[int, tuple[int, ...], bool, _Ways]] = []
 
@@ -118,7 +118,9 @@ def variants(product: Product, places: Places) -> Iterator[Variant]:
             offer((*word, place), those)
 
 
-def _both_verdicts(effects: Effects, places: Places) -> tuple[Dwelling, frozenset[int]]:
+def _both_verdicts(
+    effects: NodeTransformers, places: Places
+) -> tuple[PlaceProduct, frozenset[int]]:
     """All paths, those that lose a rule included, and which of their ends are accepted."""
 
     def enter(row: Sequence[Effect], memory: Joint | str) -> Joint | str:
@@ -126,14 +128,14 @@ def _both_verdicts(effects: Effects, places: Places) -> tuple[Dwelling, frozense
         return REJECTED if after is None else after
 
     product = explore(effects, enter)
-    dwell = dwelling(product, places)
+    dwell = place_product(product, places)
     last = list(product.counts[-1])
     first = len(dwell.nodes) - len(last)
     accepted = [first + i for i, (_, memory) in enumerate(last) if memory != REJECTED]
     return dwell, frozenset(accepted)
 
 
-def _costs_to_come(dwell: Dwelling) -> dict[int, int]:
+def _costs_to_come(dwell: PlaceProduct) -> dict[int, int]:
     """The least cost from every product node that leads to an end."""
     costs = dict.fromkeys(dwell.ends, 0)
     for one in reversed(range(len(dwell.nodes))):
@@ -157,7 +159,7 @@ def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
     ways[target] = best
 
 
-def _stayed(dwell: Dwelling, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
+def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
     """Where one can be without leaving the place, and how one got there."""
     ways = dict(entered)
     waiting = list(entered)
@@ -173,7 +175,7 @@ def _stayed(dwell: Dwelling, to_come: Mapping[int, int], entered: _Ways) -> _Way
     return ways
 
 
-def _variant(product: Product, dwell: Dwelling, word: tuple[int, ...], ends: _Ways) -> Variant:
+def _variant(product: Product, dwell: PlaceProduct, word: tuple[int, ...], ends: _Ways) -> Variant:
     best = min(ends.values(), key=attrgetter("cost"))
     nodes = []
     way: _Way | None = best

@@ -15,8 +15,8 @@ from operator import add, getitem, gt
 
 from rulec.planning.product.graph_product import Joint, Product, explore
 from rulec.planning.product.limits import room_for, too_many
-from rulec.planning.product.node_transformers import LOST, SAFE, Effect, Effects
-from rulec.planning.ranking.penalties import Penalty, Ranks
+from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
+from rulec.planning.ranking.penalties import Penalty, PenaltyOrder
 
 Paying = tuple[Joint, Penalty]
 """The machines' states, and what has been violated so far."""
@@ -26,7 +26,7 @@ Place = tuple[int, int, Joint]
 """A layer, a node in it, and the machines' states behind it."""
 
 
-def front(effects: Effects, ranks: Ranks) -> Iterator[Penalty]:
+def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
     """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
     found: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
@@ -44,7 +44,7 @@ def front(effects: Effects, ranks: Ranks) -> Iterator[Penalty]:
         yield penalty
 
 
-def ranked(effects: Effects, ranks: Ranks) -> Iterator[tuple[int, Penalty]]:
+def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
     """Every penalty that some path has, each one behind all that are lower.
 
     With each comes its place: 1 for those of the front, else 1 more than the last one of the
@@ -65,7 +65,7 @@ def ranked(effects: Effects, ranks: Ranks) -> Iterator[tuple[int, Penalty]]:
             yield places[penalty], penalty
 
 
-def with_penalty(effects: Effects, ranks: Ranks, wanted: Penalty) -> Product:
+def with_penalty(effects: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty) -> Product:
     """The product in which just the paths of one penalty are accepted."""
     fee = _fees(effects, ranks)
 
@@ -81,7 +81,7 @@ def with_penalty(effects: Effects, ranks: Ranks, wanted: Penalty) -> Product:
 
 
 def _ascending(
-    effects: Effects, ranks: Ranks, worth: Callable[[Place, Penalty], bool]
+    effects: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
 ) -> Iterator[Penalty]:
     """The penalties of paths in the order of ``ranks``; only what is ``worth`` it is extended.
 
@@ -122,7 +122,7 @@ def _ascending(
 
 
 def _fees(
-    effects: Effects, ranks: Ranks
+    effects: NodeTransformers, ranks: PenaltyOrder
 ) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
     """What the machines' states become at a node, and what is to be paid there, () for nothing."""
     prices = [

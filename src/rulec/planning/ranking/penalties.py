@@ -15,11 +15,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.rulebook.model import Strength
 
 Penalty = tuple[int, ...]
-"""For each rank the summed weights of what is violated there, in units of ``Ranks``."""
+"""For each rank the summed weights of what is violated there, in units of ``PenaltyOrder``."""
 
 
 @dataclass(frozen=True, slots=True)
-class Rank:
+class PenaltyRank:
     """Levels that are equal, for rules of one strength; the level "" is that of rules without."""
 
     strength: Strength
@@ -27,14 +27,14 @@ class Rank:
 
 
 @dataclass(frozen=True, slots=True)
-class Ranks:
+class PenaltyOrder:
     """The ranks that a rulebook's rules have, each one behind all that are above it.
 
     ``above[i]`` are the indices of the ranks above ``ranks[i]``. Weights are counted in ``unit``,
     of which each is a whole multiple.
     """
 
-    ranks: tuple[Rank, ...]
+    ranks: tuple[PenaltyRank, ...]
     above: tuple[frozenset[int], ...]
     unit: Fraction
 
@@ -67,7 +67,7 @@ class Ranks:
         return tuple([part * self.unit for part in penalty])
 
 
-def ranks_of(rulebook: CompiledRulebook) -> Ranks:
+def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:
     """The ranks of a rulebook's rules.
 
     In tuples of one number per rank, compared from left to right, what is lower by priority comes
@@ -85,17 +85,17 @@ def ranks_of(rulebook: CompiledRulebook) -> Ranks:
                 for one in waiting
                 if one == top or ((one, top) in order and (top, one) in order)
             ]
-            found.append(Rank(strength, tuple(equal)))
+            found.append(PenaltyRank(strength, tuple(equal)))
             waiting = [one for one in waiting if one not in equal]
     above = tuple(
         frozenset(index for index, other in enumerate(found) if _is_above(other, rank, order))
         for rank in found
     )
     weights = [rule.weight.denominator for rule in rulebook.rules]
-    return Ranks(tuple(found), above, Fraction(1, lcm(*weights)))
+    return PenaltyOrder(tuple(found), above, Fraction(1, lcm(*weights)))
 
 
-def _is_above(one: Rank, other: Rank, order: frozenset[tuple[str, str]]) -> bool:
+def _is_above(one: PenaltyRank, other: PenaltyRank, order: frozenset[tuple[str, str]]) -> bool:
     if one.strength != other.strength:
         return one.strength == "hard"
     (higher, *_), (lower, *_) = one.levels, other.levels

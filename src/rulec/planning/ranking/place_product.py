@@ -10,7 +10,7 @@ from rulec.planning.product.graph_product import Product
 
 
 @dataclass(frozen=True, slots=True)
-class Dwelling:
+class PlaceProduct:
     """The product nodes as numbers, in the order of layers.
 
     ``nodes[i]`` is the node's index in layer ``layers[i]``, ``place[i]`` its place. ``stays[i]``
@@ -44,7 +44,7 @@ class Dwelling:
         return entered
 
 
-def dwelling(product: Product, places: Places) -> Dwelling:
+def place_product(product: Product, places: Places) -> PlaceProduct:
     """A product's nodes by place."""
     every = [(layer, node) for layer, counts in enumerate(product.counts) for node in counts]
     number = {node: i for i, node in enumerate(every)}
@@ -57,7 +57,7 @@ def dwelling(product: Product, places: Places) -> Dwelling:
         ]
         for layer, node in every
     ]
-    return Dwelling(
+    return PlaceProduct(
         tuple([number[0, start] for start in product.counts[0]]),
         frozenset([number[last, end] for end in product.ends]),
         tuple([layer for layer, _ in every]),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from operator import getitem
 
 from rulec.planning.product.graph_product import Joint, Product, explore
-from rulec.planning.product.node_transformers import LOST, SAFE, Effect, Effects
+from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 
 NOBODY = -1
 """In place of a rule: none has been violated."""
@@ -16,7 +16,7 @@ Blaming = tuple[Joint, int]
 """The machines' states, and the one rule that has been violated so far, or NOBODY."""
 
 
-def violating(effects: Effects) -> dict[str, Product]:
+def violating(effects: NodeTransformers) -> dict[str, Product]:
     """For every rule that some path violates the product in which these are accepted."""
     rules = _rules(effects)
     found = {}
@@ -27,7 +27,7 @@ def violating(effects: Effects) -> dict[str, Product]:
     return {rule: product for rule, product in found.items() if product.ends}
 
 
-def violating_alone(effects: Effects) -> dict[str, Product]:
+def violating_alone(effects: NodeTransformers) -> dict[str, Product]:
     """For every rule that is the only one that some path violates the product of these paths."""
     rules = _rules(effects)
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
@@ -36,11 +36,11 @@ def violating_alone(effects: Effects) -> dict[str, Product]:
     return {rule: product for rule, product in found.items() if product.ends}
 
 
-def _rules(effects: Effects) -> list[str]:
+def _rules(effects: NodeTransformers) -> list[str]:
     return [one.rule.name for one in effects.instances]
 
 
-def _blaming(effects: Effects, of: Sequence[int]) -> Product:
+def _blaming(effects: NodeTransformers, of: Sequence[int]) -> Product:
     """The paths that violate at most one rule; ``of`` says whose the instances are."""
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:

@@ -48,9 +48,12 @@ def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
     """The automaton of a compiled rule."""
     wording = Wording(rule, vocabulary)
     machine = rule.machine
-    fates: dict[int | None, Fate] = {machine.dead: "violated", machine.safe: "satisfied"}
+    fates: dict[int | None, Fate] = {
+        machine.rejecting_sink: "violated",
+        machine.accepting_sink: "satisfied",
+    }
     return Automaton(
-        tuple(fates.get(state, "open") for state in range(len(machine.following))),
+        tuple(fates.get(state, "open") for state in range(len(machine.successors))),
         tuple(
             Transition(
                 edge.source,

@@ -128,19 +128,19 @@ class Wording:
 
     def state(self, state: ExampleState) -> str:
         """A state of an example; what it does not mention has its default."""
-        facts = []
+        axioms = []
         for (name, variables), value in state.items():
             declaration = self._vocabulary.declarations[name]
             if value == declaration.default:
                 continue
             if isinstance(value, str):
-                facts.append(str(Atom(name, variables, value)))
+                axioms.append(str(Atom(name, variables, value)))
             elif isinstance(declaration, DeclaredQuantity):
                 number = number_text(Fraction(repr(float(value))))
-                facts.append(f"{Atom(name, variables)} = {number} {declaration.unit}")
+                axioms.append(f"{Atom(name, variables)} = {number} {declaration.unit}")
             else:
-                facts.append(f"{'' if value else 'not '}{Atom(name, variables)}")
-        return visible(" and ".join(facts)) or "true"
+                axioms.append(f"{'' if value else 'not '}{Atom(name, variables)}")
+        return visible(" and ".join(axioms)) or "true"
 
 
 def _alike(one: Comparison) -> Iterator[tuple[Relation, Fraction]]:

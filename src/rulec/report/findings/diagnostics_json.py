@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place
+from rulec.diagnostics import Diagnostic, SourceLocation
 
 
 def as_json(found: Iterable[Diagnostic]) -> str:
@@ -30,7 +30,7 @@ def as_data(one: Diagnostic) -> dict[str, Any]:
     }
 
 
-def place_as_data(place: Place | None) -> dict[str, Any] | None:
+def place_as_data(place: SourceLocation | None) -> dict[str, Any] | None:
     """A place in numbers, counted from 1 in Unicode code points; ``end_column`` is behind it."""
     if place is None:
         return None

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.source_text import Place
+from rulec.diagnostics.source_text import SourceLocation
 from rulec.report.findings.source_excerpt import Mark, excerpt_lines, visible
 
 _BOLD, _RESET = "\x1b[1m", "\x1b[0m"
@@ -86,7 +86,7 @@ def _by_file(one: Diagnostic) -> list[tuple[str, list[Mark]]]:
 
 
 def _address(file: str, mark: Mark) -> str:
-    place: Place = mark.place
+    place: SourceLocation = mark.place
     parts = [file, place.line, place.column]
     return ":".join(str(part) for part in parts if part is not None)
 

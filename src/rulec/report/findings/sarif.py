@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from rulec.diagnostics import Diagnostic, Place
+from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.diagnostics.codes import EXPLANATIONS
 from rulec.report.findings.code_pages import as_markdown, as_plain_text
 from rulec.version import __version__
@@ -77,7 +77,7 @@ def _result(one: Diagnostic, index: int) -> dict[str, Any]:
     return result
 
 
-def _location(place: Place) -> dict[str, Any]:
+def _location(place: SourceLocation) -> dict[str, Any]:
     location: dict[str, Any] = {"artifactLocation": {"uri": _uri(place.file)}}
     if place.line is not None:
         region = {

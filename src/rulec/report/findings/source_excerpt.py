@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rulec.diagnostics.source_text import Place
+from rulec.diagnostics.source_text import SourceLocation
 
 MAX_WIDTH = 100
 """Terminal columns of a shown line; a longer one is cut around the place."""
@@ -20,7 +20,7 @@ _REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\
 class Mark:
     """A place to underline with ``sign``, and what to write beside it."""
 
-    place: Place
+    place: SourceLocation
     words: str
     sign: str
 
@@ -67,14 +67,14 @@ def excerpt_lines(marks: Sequence[Mark]) -> Iterator[tuple[str, str]]:
         yield " " * begin + mark.sign * length + words, mark.sign
 
 
-def _end_column(place: Place, length: int) -> int:
+def _end_column(place: SourceLocation, length: int) -> int:
     """A place that goes on over further lines is underlined to its first line's end."""
     if place.end_line is not None and place.line is not None and place.end_line > place.line:
         return length + 1
     return place.end_column or (place.column or 1) + 1
 
 
-def _window(excerpt: str, place: Place) -> tuple[list[str], int, bool, bool]:
+def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, bool]:
     """The characters to show, as shown, the index of the first, and whether either end is cut."""
     column = (place.column or 1) - 1
     # A hostile line may have millions of characters: look only at what can be shown.

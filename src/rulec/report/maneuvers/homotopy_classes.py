@@ -7,12 +7,14 @@ from typing import Any
 
 from rulec.diagnostics import named
 from rulec.planning import Maneuvers
-from rulec.planning.ranking.homotopy import Classes, Variant
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.text.count_text import shown_count
 
 
-def as_data(found: Maneuvers, classes: Classes, variants: Sequence[Variant]) -> dict[str, Any]:
+def as_data(
+    found: Maneuvers, classes: HomotopyClasses, variants: Sequence[Variant]
+) -> dict[str, Any]:
     """The counts of classes, and representatives."""
     return {
         "total": classes.total,
@@ -26,7 +28,7 @@ def as_data(found: Maneuvers, classes: Classes, variants: Sequence[Variant]) -> 
     }
 
 
-def count_lines(found: Maneuvers, classes: Classes) -> list[str]:
+def count_lines(found: Maneuvers, classes: HomotopyClasses) -> list[str]:
     """How many classes there are and how many satisfy; where verdicts differ within one, why."""
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
     lines = [f"classes     {satisfying} of {total} satisfying"]

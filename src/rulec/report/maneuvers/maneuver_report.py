@@ -11,11 +11,11 @@ import click
 
 from rulec.monitoring.verdict import Violation
 from rulec.partition import NavigationGraph
-from rulec.planning import Maneuvers, Pruning, Ranked
-from rulec.planning.probability.alternative_predictions import Otherwise
-from rulec.planning.probability.rule_probability import Chances
+from rulec.planning import Maneuvers, Pruning, RankedManeuver
+from rulec.planning.probability.alternative_predictions import AlternativeCounts
+from rulec.planning.probability.rule_probability import RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.planning.ranking.homotopy import Classes, Variant
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.maneuvers import (
     homotopy_classes,
@@ -43,12 +43,12 @@ class Answers:
     """
 
     listed: Sequence[Maneuver] | None = None
-    best: Sequence[Ranked] | None = None
-    ranked: Sequence[Ranked] | None = None
+    best: Sequence[RankedManeuver] | None = None
+    ranked: Sequence[RankedManeuver] | None = None
     prunings: Sequence[Pruning] | None = None
-    classes: tuple[Classes, Sequence[Variant]] | None = None
-    chances: Mapping[tuple[int, ...], Chances] = field(default_factory=dict)
-    worlds: Sequence[Otherwise] | None = None
+    classes: tuple[HomotopyClasses, Sequence[Variant]] | None = None
+    chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
+    worlds: Sequence[AlternativeCounts] | None = None
 
 
 def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:

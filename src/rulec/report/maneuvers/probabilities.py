@@ -7,8 +7,8 @@ from fractions import Fraction
 from math import prod
 from typing import Any
 
-from rulec.planning.probability.alternative_predictions import Otherwise
-from rulec.planning.probability.rule_probability import Chances, RuleChance
+from rulec.planning.probability.alternative_predictions import AlternativeCounts
+from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.count_text import shown_count
@@ -18,7 +18,7 @@ MOST_BINDINGS = 3
 """For so many objects a rule's probability is said in text; JSON has them all."""
 
 
-def as_data(chances: Chances) -> dict[str, Any]:
+def as_data(chances: RuleProbabilities) -> dict[str, Any]:
     """The probabilities as JSON has them."""
     return {
         "clear": float(chances.clear),
@@ -38,7 +38,7 @@ def as_data(chances: Chances) -> dict[str, Any]:
     }
 
 
-def lines(chances: Chances) -> list[str]:
+def lines(chances: RuleProbabilities) -> list[str]:
     """The probabilities that are below 1, a line each."""
     rows = [("nobody hits ego", _shown(chances.clear)), ("every hard rule", _shown(chances.hard))]
     rows += [(one.rule.name, _of_rule(one)) for one in chances.rules if one.kept != 1]
@@ -60,7 +60,7 @@ def likeliest(scenario: Scenario) -> float:
     return float(prod((one.weight for one in scenario.obstacles), start=Fraction(1)))
 
 
-def world_lines(worlds: Sequence[Otherwise]) -> Iterator[str]:
+def world_lines(worlds: Sequence[AlternativeCounts]) -> Iterator[str]:
     """A line for each prediction that is not an obstacle's likeliest."""
     for one in worlds:
         yield visible(
@@ -70,7 +70,7 @@ def world_lines(worlds: Sequence[Otherwise]) -> Iterator[str]:
         )
 
 
-def worlds_as_data(worlds: Sequence[Otherwise]) -> list[dict[str, Any]]:
+def worlds_as_data(worlds: Sequence[AlternativeCounts]) -> list[dict[str, Any]]:
     """The same as JSON has it."""
     return [
         {
@@ -84,7 +84,7 @@ def worlds_as_data(worlds: Sequence[Otherwise]) -> list[dict[str, Any]]:
     ]
 
 
-def _of_rule(one: RuleChance) -> str:
+def _of_rule(one: RuleProbability) -> str:
     if one.kept is None:
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     each = [

@@ -9,8 +9,8 @@ from typing import Any
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import Violation
-from rulec.planning import Maneuvers, Ranked
-from rulec.planning.ranking.penalties import Rank
+from rulec.planning import Maneuvers, RankedManeuver
+from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.text.count_text import shown_count
@@ -19,7 +19,7 @@ MOST_VIOLATIONS = 20
 """So many are shown for a maneuver; JSON has them all."""
 
 
-def as_data(found: Maneuvers, ranked: Ranked) -> dict[str, Any]:
+def as_data(found: Maneuvers, ranked: RankedManeuver) -> dict[str, Any]:
     """The maneuver with its place, penalty and violations."""
     rules = {rule.name: rule for rule in found.rules.rules}
     return {
@@ -51,7 +51,7 @@ def violation_as_data(found: Maneuvers, one: Violation, rule: CompiledRule) -> d
     }
 
 
-def blocks(found: Maneuvers, ranked: Sequence[Ranked]) -> list[str]:
+def blocks(found: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
     """A block for each: its place, what it violates, its cells."""
     lines = []
     for one in ranked:
@@ -81,7 +81,7 @@ def when_lost(found: Maneuvers, violation: Violation) -> str:
     return f"beyond saving from {found.graph.layers[violation.step].start_s:g} s on"
 
 
-def _penalty(penalty: Mapping[Rank, Fraction]) -> str:
+def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:
     if not penalty:
         return "no rule"
     return ", ".join(
@@ -90,7 +90,7 @@ def _penalty(penalty: Mapping[Rank, Fraction]) -> str:
     )
 
 
-def _levels(rank: Rank) -> str:
+def _levels(rank: PenaltyRank) -> str:
     return " = ".join(level or "(no level)" for level in rank.levels)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from rulec.partition import NavigationGraph
-from rulec.planning.product.accepted_edges import Passages
+from rulec.planning.product.accepted_edges import AcceptedEdges
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.automata.automaton_layout import text_width
 from rulec.report.pictures.cell_signatures import MOST_SPELLED, in_full, in_letters, meaning
@@ -78,7 +78,7 @@ class _Columns:
 
 
 def graph_picture(
-    graph: NavigationGraph, found: Passages, maneuver: Maneuver | None, *, judged: bool
+    graph: NavigationGraph, found: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
 ) -> Picture:
     """The picture; ``judged``: do rules tell satisfying maneuvers from others?"""
     columns = _columns(graph)
@@ -116,7 +116,7 @@ def _columns(graph: NavigationGraph) -> _Columns:
 
 
 def _edges(
-    graph: NavigationGraph, columns: _Columns, found: Passages, maneuver: Maneuver | None
+    graph: NavigationGraph, columns: _Columns, found: AcceptedEdges, maneuver: Maneuver | None
 ) -> list[Line]:
     """Every step once, those that matter more above the others."""
     half = columns.extent()[0]
@@ -132,14 +132,14 @@ def _edges(
     return sorted(lines, key=lambda line: _ORDER.index(line.style))
 
 
-def _fate(found: Passages, layer: int, node: int, target: int) -> str:
+def _fate(found: AcceptedEdges, layer: int, node: int, target: int) -> str:
     if (node, target) in found.accepted[layer]:
         return "satisfying"
     return "rejected" if (node, target) in found.possible[layer] else "unused"
 
 
 def _nodes(
-    graph: NavigationGraph, columns: _Columns, found: Passages, maneuver: Maneuver | None
+    graph: NavigationGraph, columns: _Columns, found: AcceptedEdges, maneuver: Maneuver | None
 ) -> Iterator[Mark]:
     wide, high = columns.extent()
     for p, layer in enumerate(graph.layers):
@@ -172,7 +172,7 @@ def _times(graph: NavigationGraph, columns: _Columns) -> Iterator[Words]:
 
 
 def _entries(
-    graph: NavigationGraph, found: Passages, maneuver: Maneuver | None, *, judged: bool
+    graph: NavigationGraph, found: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
 ) -> Iterator[Entry]:
     accepted, possible = (sum(map(len, edges)) for edges in (found.accepted, found.possible))
     if maneuver:

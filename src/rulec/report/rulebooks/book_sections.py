@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rulec.analysis.lineage.rule_lineage import Inheritance, ProvisionHistory
+from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance
 from rulec.analysis.vocabulary_use import words_used
 from rulec.logic.english.atom_phrases import listed, spoken
 from rulec.logic.printing import in_words
@@ -31,7 +31,7 @@ def values_section(inherited: Inheritance, at: str) -> Iterator[Block]:
     yield table(head, (row for one in found for row in _values(one)))
 
 
-def _values(one: ProvisionHistory) -> Iterator[list[str]]:
+def _values(one: ConstantHistory) -> Iterator[list[str]]:
     for setting in one.settings:
         dates = print_in_force(tree.InForce(setting.since, setting.until))
         yield [
@@ -107,10 +107,10 @@ def words_section(loaded: Loaded) -> Iterator[Block]:
 
 
 def _facts(rulebook: Rulebook) -> Iterator[Block]:
-    if rulebook.facts:
+    if rulebook.axioms:
         yield Heading(2, "What always holds")
         yield "Whatever the rules say, this is so in every state:"
-        yield fenced("\n".join(f"fact {in_words(one.formula)}" for one in rulebook.facts), "rulec")
+        yield fenced("\n".join(f"fact {in_words(one.formula)}" for one in rulebook.axioms), "rulec")
 
 
 def _descriptions(loaded: Loaded) -> Mapping[str, str]:

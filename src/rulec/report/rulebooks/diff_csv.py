@@ -6,13 +6,13 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 
-from rulec.analysis.diff.rulebook_comparison import Difference
+from rulec.analysis.diff.rulebook_comparison import RulebookDiff
 from rulec.rulebook.model import Rule
 
 COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
 
-def as_csv(found: Difference) -> str:
+def as_csv(found: RulebookDiff) -> str:
     """The lines, below one that names the columns."""
     rows = [_row(pair.relation, pair.first, pair.second) for pair in found.pairs]
     rows += [_row(f"only in {found.first.name}", one.rule, None) for one in found.only_first]

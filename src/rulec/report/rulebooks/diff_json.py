@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from rulec.analysis.diff.rulebook_comparison import Difference, OneSided, RulePair
+from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.logic.printing import number_in_words
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.trace.formats.json_lines import as_record
 
 
-def as_json(found: Difference) -> str:
+def as_json(found: RulebookDiff) -> str:
     """One object."""
     document = {
         "first": _book(found.first),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rulec.analysis.diff.rulebook_comparison import Difference, OneSided, RulePair
+from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.report.rulebooks.diff_text import (
     about_types,
     is_worth_a_block,
@@ -17,7 +17,7 @@ from rulec.report.text.markdown import code, escaped, table
 from rulec.report.verdicts import trace_table_text
 
 
-def as_markdown(found: Difference) -> str:
+def as_markdown(found: RulebookDiff) -> str:
     """A document of its own."""
     one, other = found.first.name, found.second.name
     parts = [f"# {code(one)} compared to {code(other)}", f"{escaped(summary(found))}."]
@@ -38,7 +38,7 @@ def as_markdown(found: Difference) -> str:
     return "\n\n".join(parts)
 
 
-def _pair(pair: RulePair, found: Difference) -> Iterator[str]:
+def _pair(pair: RulePair, found: RulebookDiff) -> Iterator[str]:
     yield f"## {code(pair.name)}"
     yield f"{escaped(verdict(pair, found))}."
     types = about_types(pair, found)

@@ -9,7 +9,7 @@ from textwrap import wrap
 import click
 
 from rulec.analysis.diff.rule_comparison import Relation
-from rulec.analysis.diff.rulebook_comparison import Difference, OneSided, RulePair
+from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_table import TraceTable
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.trace_table_text import as_lines
@@ -27,7 +27,7 @@ COLOURS: dict[Relation, str] = {
 }
 
 
-def render(found: Difference, output_format: str) -> str:
+def render(found: RulebookDiff, output_format: str) -> str:
     """The difference in one of ``FORMATS``."""
     match output_format:
         case "json":
@@ -52,7 +52,7 @@ def render(found: Difference, output_format: str) -> str:
             return as_text(found)
 
 
-def as_text(found: Difference) -> str:
+def as_text(found: RulebookDiff) -> str:
     """What differs first, what is the same last."""
     one, other = found.first.name, found.second.name
     blocks = [_head(found)]
@@ -71,7 +71,7 @@ def is_worth_a_block(pair: RulePair) -> bool:
     return pair.relation != "equal" or bool(pair.notes)
 
 
-def _head(found: Difference) -> str:
+def _head(found: RulebookDiff) -> str:
     first, second = found.first, found.second
     title = click.style(f"{first.name} compared to {second.name}", bold=True)
     days = f"the law of {first.at}"
@@ -80,7 +80,7 @@ def _head(found: Difference) -> str:
     return "\n".join([f"{title}; {days}", *sides(found)])
 
 
-def sides(found: Difference) -> list[str]:
+def sides(found: RulebookDiff) -> list[str]:
     """A line on traffic if it keeps to different sides, which many rules differ by."""
     first, second = found.first, found.second
     if {first.traffic, second.traffic} != {"left", "right"}:
@@ -89,7 +89,7 @@ def sides(found: Difference) -> list[str]:
     return [f"{ours}, {second.name} on the {second.traffic}: near and far change sides"]
 
 
-def verdict(pair: RulePair, found: Difference) -> str:
+def verdict(pair: RulePair, found: RulebookDiff) -> str:
     """The relation in words."""
     one, other = found.first.name, found.second.name
     match pair.relation:
@@ -105,7 +105,7 @@ def verdict(pair: RulePair, found: Difference) -> str:
             return f"not decided: {pair.comparison.undecided}"
 
 
-def about_types(pair: RulePair, found: Difference) -> str:
+def about_types(pair: RulePair, found: RulebookDiff) -> str:
     """Which objects the comparison is about, where one of the rules speaks of more."""
     if not pair.comparison.common:
         return ""
@@ -117,7 +117,7 @@ def about_types(pair: RulePair, found: Difference) -> str:
     return f"{', '.join(heads)}; of ({kinds}), which both speak of: {pair.comparison.on_common}"
 
 
-def _pair(pair: RulePair, found: Difference) -> Iterator[str]:
+def _pair(pair: RulePair, found: RulebookDiff) -> Iterator[str]:
     name = click.style(pair.name, bold=True)
     words = click.style(visible(verdict(pair, found)), fg=COLOURS[pair.relation])
     yield f"{name}: {words}"
@@ -150,7 +150,7 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
     return "\n".join([title, *lines])
 
 
-def _settings(found: Difference) -> str:
+def _settings(found: RulebookDiff) -> str:
     lines = [
         f"  {one.kind} {one.name}: {one.first} in {found.first.name}, "
         f"{one.second} in {found.second.name}"
@@ -172,7 +172,7 @@ def _listed(title: str, names: Sequence[str]) -> list[str]:
     return wrap(f"{title}{', '.join(names)}", WIDTH, subsequent_indent="  ")
 
 
-def summary(found: Difference) -> str:
+def summary(found: RulebookDiff) -> str:
     """The line that ends it."""
     counted = Counter(pair.relation for pair in found.pairs)
     parts = [f"{counted[one]:,} {one}" for one in COLOURS if counted[one]]

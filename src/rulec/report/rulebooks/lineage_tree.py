@@ -13,11 +13,11 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from rulec.analysis.lineage.extension_forest import Branch
+from rulec.analysis.lineage.extension_forest import ExtensionTree
 from rulec.analysis.lineage.rule_lineage import (
+    ConstantHistory,
     Inheritance,
     Member,
-    ProvisionHistory,
     RuleHistory,
     Setting,
     Step,
@@ -70,12 +70,12 @@ def as_text(inherited: Inheritance, width: int, *, color: bool) -> str:
     return "\n\n".join(_drawn(one, width, color=color) for one in trees)
 
 
-def forest_as_text(branches: Sequence[Branch], width: int, *, color: bool) -> str:
+def forest_as_text(branches: Sequence[ExtensionTree], width: int, *, color: bool) -> str:
     """A tree for each rulebook that extends none."""
     return "\n".join(_drawn(_grown(one), width, color=color) for one in branches)
 
 
-def _grown(branch: Branch, above: Tree | None = None) -> Tree:
+def _grown(branch: ExtensionTree, above: Tree | None = None) -> Tree:
     label = _book(branch.book, missing=above is None)
     here = Tree(label) if above is None else above.add(label)
     for one in branch.children:
@@ -122,7 +122,7 @@ def _detail(step: Step) -> str:
     return visible(f"{changed}{f', because {step.because}' if step.because else ''}")
 
 
-def _provision(one: ProvisionHistory, book: str, provisions: Tree) -> None:
+def _provision(one: ConstantHistory, book: str, provisions: Tree) -> None:
     current = next((each for each in one.settings if each.current), None)
     label = Text(visible(one.head))
     if current is None:
@@ -173,14 +173,14 @@ def _rule_as_data(one: RuleHistory) -> dict[str, Any]:
     return {"name": one.name, "gone": one.rule is None, "steps": steps}
 
 
-def forest_as_json(branches: Sequence[Branch]) -> str:
+def forest_as_json(branches: Sequence[ExtensionTree]) -> str:
     """Every rulebook, each behind the one that it extends."""
     return json.dumps(
         {"books": [asdict(one) for one in _members(branches)]}, ensure_ascii=False, indent=2
     )
 
 
-def _members(branches: Sequence[Branch]) -> Iterator[Member]:
+def _members(branches: Sequence[ExtensionTree]) -> Iterator[Member]:
     for one in branches:
         yield one.book
         yield from _members(one.children)

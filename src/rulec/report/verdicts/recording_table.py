@@ -8,8 +8,8 @@ from textwrap import shorten
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import Judged, JudgedRecording
-from rulec.extraction.violation_tally import Tally
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.extraction.violation_tally import ViolationTally
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.source_excerpt import visible
@@ -23,7 +23,7 @@ LONGEST_RULE = 48
 
 
 def as_json(
-    one: Judged | NoDrive, judged: JudgedRecording, explained: Sequence[Explanation]
+    one: DriveVerdict | NoDrive, judged: RecordingVerdicts, explained: Sequence[Explanation]
 ) -> str:
     """One line of JSON for a drive: as for any trace, and what became of the recording."""
     recording = judged.recording
@@ -50,7 +50,7 @@ def as_json(
     return json.dumps({**data, **about}, ensure_ascii=False)
 
 
-def as_text(judged: JudgedRecording, tally: Tally) -> str:
+def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = judged.recording
     lines = [
@@ -89,13 +89,13 @@ def _vehicles(egos: Sequence[str]) -> str:
     return f"{', '.join(egos[:MOST_VEHICLES])} and {len(egos) - MOST_VEHICLES} more"
 
 
-def _everything(judged: JudgedRecording, words: frozenset[str]) -> list[str]:
+def _everything(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
     """What rules read and these words leave out, in the order of the vocabulary."""
     missing = {name for names in judged.by_default(words).values() for name in names}
     return [name for name in judged.rules.vocabulary.declarations if name in missing]
 
 
-def _table(judged: JudgedRecording, tally: Tally) -> Iterator[str]:
+def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     if not tally.first_s:
         return
     defaults = judged.by_default(tally.words or frozenset())
@@ -126,7 +126,11 @@ def _some(names: Sequence[str]) -> str:
 
 
 def in_detail(
-    one: Judged, judged: JudgedRecording, explained: Sequence[Explanation], *, every_part: bool
+    one: DriveVerdict,
+    judged: RecordingVerdicts,
+    explained: Sequence[Explanation],
+    *,
+    every_part: bool,
 ) -> str:
     """The verdict on one drive, with explanations of its first violations; nothing without one."""
     if not isinstance(one.answer, Verdict):
@@ -135,7 +139,7 @@ def in_detail(
     return f"\n{text}"
 
 
-def summary(tally: Tally) -> str:
+def summary(tally: ViolationTally) -> str:
     """The line that ends a run."""
     line = verdict_report.summary(len(tally.satisfied), len(tally.violated), len(tally.not_judged))
     return line.replace("traces", "drives").replace("trace", "drive")

@@ -14,7 +14,7 @@ import click
 
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.explain.explanation import Explanation, Fact
+from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.report.automata.guard_text import Wording, runs
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
@@ -68,7 +68,7 @@ def as_data(explanation: Explanation) -> dict[str, Any]:
     }
 
 
-def _as_data(fact: Fact) -> dict[str, Any]:
+def _as_data(fact: Observation) -> dict[str, Any]:
     data = {"reads": fact.text, "values": fact.values, "changed": fact.changed}
     data["decides"] = fact.decides
     if fact.unit:
@@ -196,12 +196,12 @@ def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
         yield f"{INDENT}… without {' and '.join(words)}: --every-part shows them"
 
 
-def _title(fact: Fact, widest: int) -> str:
+def _title(fact: Observation, widest: int) -> str:
     text = cut(fact.text, widest)
     return f"{text} in {visible(fact.unit)}" if fact.unit else text
 
 
-def _cells(fact: Fact) -> list[str]:
+def _cells(fact: Observation) -> list[str]:
     cells = [shown(value) for value in fact.values]
     if fact.objects is None:
         return cells

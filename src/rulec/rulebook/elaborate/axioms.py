@@ -6,17 +6,17 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.rulebook.elaborate.elaboration import truth
-from rulec.rulebook.model import Fact, Variable
+from rulec.rulebook.model import Axiom, Variable
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.scope import SIDES, BoundVariable, Scope
-from rulec.rulebook.names.symbol_table import Declared
-from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.syntax import tree
 
 
-def fact_of(
-    item: tree.FactItem, declared: Declared, provisions: Provisions
-) -> tuple[Fact | None, list[Diagnostic]]:
+def axiom_of(
+    item: tree.FactItem, declared: SymbolTable, provisions: ConstantsAndMacros
+) -> tuple[Axiom | None, list[Diagnostic]]:
     """The fact as meant (None if it has a mistake), and what is wrong with it.
 
     Its variables are not declared: they are of the types that what it says of them is about.
@@ -35,11 +35,11 @@ def fact_of(
     if found is None or mistakes:
         return None, mistakes
     typed = tuple(Variable(name, one.type) for name, one in variables.items() if one.type)
-    return Fact(typed, found, item.span), mistakes
+    return Axiom(typed, found, item.span), mistakes
 
 
 def _variables(
-    asked_for: Iterable[tuple[tree.Name, str]], declared: Declared, mistakes: list[Diagnostic]
+    asked_for: Iterable[tuple[tree.Name, str]], declared: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     found: dict[str, BoundVariable] = {}
     for name, wanted in asked_for:
@@ -53,8 +53,8 @@ def _variables(
 
 def _asked_for(
     formula: tree.Formula,
-    declared: Declared,
-    provisions: Provisions,
+    declared: SymbolTable,
+    provisions: ConstantsAndMacros,
     counted: frozenset[str] = frozenset(),
 ) -> Iterator[tuple[tree.Name, str]]:
     """Every object that the formula speaks of, with the type that is needed there.
@@ -74,7 +74,7 @@ def _asked_for(
 
 
 def _parameters(
-    use: tree.AtomUse, declared: Declared, provisions: Provisions
+    use: tree.AtomUse, declared: SymbolTable, provisions: ConstantsAndMacros
 ) -> Sequence[str | None]:
     """The types of what is asked for by this name; None for one that may be anything."""
     name = use.name.text

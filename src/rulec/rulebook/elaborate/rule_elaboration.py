@@ -26,15 +26,18 @@ from rulec.rulebook.examples.example_elaboration import example_of
 from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.names.rule_variables import variables_of
 from rulec.rulebook.names.scope import Scope
-from rulec.rulebook.names.symbol_table import Declared
-from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 
 
 def translate_rule(
-    entry: RuleEntry, declared: Declared, provisions: Provisions, levels: Sequence[str] | None
+    entry: RuleEntry,
+    declared: SymbolTable,
+    provisions: ConstantsAndMacros,
+    levels: Sequence[str] | None,
 ) -> tuple[Rule | None, list[Diagnostic]]:
     """The rule as meant (None if it has a mistake), its mistakes and warnings.
 

@@ -12,7 +12,7 @@ from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import in_words
 from rulec.logic.renaming import renamed
 from rulec.logic.required_inputs import asked
-from rulec.rulebook.model import Example, ExampleState, Fact, Rule
+from rulec.rulebook.model import Axiom, Example, ExampleState, Rule
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
 
@@ -43,22 +43,24 @@ class Told:
         return found if isinstance(found, Unknown) else Fraction(repr(found))
 
 
-def contradicted(rule: Rule, facts: Sequence[Fact], vocabulary: Vocabulary) -> Iterator[Diagnostic]:
+def contradicted(
+    rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary
+) -> Iterator[Diagnostic]:
     """One mistake (R0306) for each state of the rule's examples that contradicts a fact."""
-    for example in rule.examples if facts else ():
+    for example in rule.examples if axioms else ():
         objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
         read = frozenset(
             (one.name, one.arguments) for one in asked(rule.formula, objects, vocabulary.is_subtype)
         )
         for number, state in enumerate(example.states):
-            broken = _broken(Told(state, read, objects, vocabulary), facts)
+            broken = _broken(Told(state, read, objects, vocabulary), axioms)
             if broken is not None:
                 yield _no_state(example, number, *broken)
 
 
-def _broken(state: Told, facts: Sequence[Fact]) -> tuple[Fact, str] | None:
+def _broken(state: Told, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
     """The first fact that does not hold, and how it is said of the objects."""
-    for fact in facts:
+    for fact in axioms:
         names = [variable.name for variable in fact.variables]
         types = [variable.type for variable in fact.variables]
         for chosen in choices(types, state.objects, state.vocabulary):
@@ -68,7 +70,7 @@ def _broken(state: Told, facts: Sequence[Fact]) -> tuple[Fact, str] | None:
     return None
 
 
-def _no_state(example: Example, number: int, fact: Fact, said: str) -> Diagnostic:
+def _no_state(example: Example, number: int, fact: Axiom, said: str) -> Diagnostic:
     spans = example.state_spans
     return Diagnostic(
         "R0306",

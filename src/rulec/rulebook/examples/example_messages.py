@@ -6,14 +6,14 @@ from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.logic.formula import Atom, Quantity
 from rulec.logic.printing import term_in_words
 from rulec.rulebook.elaborate.linear_arithmetic import Number
-from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.units import Unit
 
 
-def denied(fact: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagnostic:
+def denied(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
     """``not`` before an enumeration's value."""
     item = declared.items[atom.name]
     assert isinstance(item, Enumeration), "only enumerations have values"
@@ -48,7 +48,7 @@ def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -
     )
 
 
-def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: Declared) -> Diagnostic:
+def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: SymbolTable) -> Diagnostic:
     """Something that the formula needs, that has no default, and that the state does not say."""
     item = declared.items[what.name]
     if isinstance(what, Quantity):
@@ -80,7 +80,7 @@ def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
     )
 
 
-def without_number(fact: tree.StateLiteral, what: Quantity, declared: Declared) -> Diagnostic:
+def without_number(fact: tree.StateLiteral, what: Quantity, declared: SymbolTable) -> Diagnostic:
     """A quantity without a value."""
     unit = declared.unit_text(what.name)
     return Diagnostic(
@@ -93,7 +93,7 @@ def without_number(fact: tree.StateLiteral, what: Quantity, declared: Declared) 
     )
 
 
-def not_a_number(fact: tree.StateLiteral, atom: Atom, declared: Declared) -> Diagnostic:
+def not_a_number(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
     """A number for what is true or false."""
     return Diagnostic(
         "R0313",

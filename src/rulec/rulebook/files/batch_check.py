@@ -9,8 +9,8 @@ from datetime import date
 from pathlib import Path
 from typing import NoReturn
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
-from rulec.rulebook.files.check_cache import Question, recall, remember
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.rulebook.files.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files.search_path import (
     BY_PATH,
     available_rulebooks,
@@ -75,7 +75,7 @@ def _findings(
     place = "" if path is _STANDARD_INPUT else str(path)
     folders = tuple(str(folder) for folder in search_path)
     today = date.today().isoformat()  # noqa: DTZ011 - the reader's own day
-    question = Question(str(path), place, data, folders, at, today)
+    question = CheckQuestion(str(path), place, data, folders, at, today)
     known = recall(question) if recalls else None
     if known is not None:
         return known
@@ -139,13 +139,13 @@ def _in_folder(folder: str) -> list[Path]:
     if not found:
         message = "there is no rulebook and no vocabulary in this folder"
         way_out = "give a folder with files whose names end in `.rules`"
-        raise RulecError(Diagnostic("R0701", message, Place(folder), help=way_out))
+        raise RulecError(Diagnostic("R0701", message, SourceLocation(folder), help=way_out))
     return found
 
 
 def _locked(problem: OSError) -> NoReturn:
     message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
-    place = Place(os.fsdecode(problem.filename))
+    place = SourceLocation(os.fsdecode(problem.filename))
     raise RulecError(Diagnostic("R0701", message, place, help="check its permissions"))
 
 

@@ -16,7 +16,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Label, Place, RulecError
+from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.files import written_whole
 from rulec.resources import package_files
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
@@ -33,7 +33,7 @@ _WORDS = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class CheckQuestion:
     """What was checked: all that the findings depend on but other files.
 
     ``name`` is what messages call the file, ``path`` where it is (empty for standard input),
@@ -74,7 +74,7 @@ def cache_folder() -> Path | None:
         return None
 
 
-def recall(question: Question) -> tuple[Diagnostic, ...] | None:
+def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
     """What was found when the same was last asked; None if that is not known any more."""
     folder = cache_folder()
     if folder is None:
@@ -96,7 +96,7 @@ def recall(question: Question) -> tuple[Diagnostic, ...] | None:
 
 
 def remember(
-    question: Question, findings: Sequence[Diagnostic], dependencies: Sequence[Dependency]
+    question: CheckQuestion, findings: Sequence[Diagnostic], dependencies: Sequence[Dependency]
 ) -> None:
     """Keep what was found. Where that cannot be, the next check takes longer, and that is all."""
     folder = cache_folder()
@@ -134,11 +134,11 @@ def _as_it_was(one: Dependency, search_path: Sequence[Path]) -> bool:
 
 def _diagnostic(data: dict[str, Any]) -> Diagnostic:
     place = data["place"]
-    labels = tuple(Label(Place(**one["place"]), one["message"]) for one in data["labels"])
+    labels = tuple(Label(SourceLocation(**one["place"]), one["message"]) for one in data["labels"])
     return Diagnostic(
         data["code"],
         data["message"],
-        None if place is None else Place(**place),
+        None if place is None else SourceLocation(**place),
         data["expected"],
         data["help"],
         labels,

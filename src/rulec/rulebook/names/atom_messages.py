@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
-from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
@@ -39,7 +39,7 @@ def explain(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     return _unknown(use, scope)
 
 
-def _not_an_atom(use: tree.AtomUse, declared: Declared, why: str, help_: str) -> Diagnostic:
+def _not_an_atom(use: tree.AtomUse, declared: SymbolTable, why: str, help_: str) -> Diagnostic:
     name = use.name.text
     return Diagnostic(
         "R0303",
@@ -113,7 +113,7 @@ def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
     )
 
 
-def _short_form(name: str, declared: Declared, variables: Sequence[str]) -> str:
+def _short_form(name: str, declared: SymbolTable, variables: Sequence[str]) -> str:
     """What may be wrong with ``b_v`` where it stands for ``b(v)``."""
     head, _, tail = name.rpartition("_")
     item = declared.behind_atom(head)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
 from rulec.rulebook.names.scope import BoundVariable
-from rulec.rulebook.names.symbol_table import Declared
+from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
 
 
 def variables_of(
-    parameters: tuple[tree.Parameter, ...], declared: Declared, mistakes: list[Diagnostic]
+    parameters: tuple[tree.Parameter, ...], declared: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     """Variables with their types; what is wrong with them is added to ``mistakes``."""
     found: dict[str, BoundVariable] = {}

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.logic.formula import Atom, Quantity
 from rulec.rulebook.names import atom_messages
-from rulec.rulebook.names.symbol_table import Declared
-from rulec.rulebook.overlay.constants_and_macros import Provisions
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.syntax import tree
 from rulec.vocabulary import Enumeration, Signal
 from rulec.vocabulary import Quantity as QuantityDeclaration
@@ -60,8 +60,8 @@ class Scope:
     names) of the counts around, ``taken`` all actual names in use.
     """
 
-    declared: Declared
-    provisions: Provisions
+    declared: SymbolTable
+    provisions: ConstantsAndMacros
     variables: dict[str, BoundVariable]
     mistakes: list[Diagnostic]
     used: set[str] = field(default_factory=set)

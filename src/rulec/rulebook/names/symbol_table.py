@@ -21,7 +21,7 @@ from rulec.vocabulary.units import Unit, parse_unit
 
 
 @dataclass(slots=True)
-class Declared:
+class SymbolTable:
     """What the files declare, and where; filled by ``declare``.
 
     ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
@@ -115,10 +115,10 @@ class Declared:
         return unsure or wanted in above
 
 
-def declare(files: Sequence[tree.File], *, opaque: bool = False) -> Declared:
+def declare(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
     """The declarations of used vocabularies and of the file that uses them, in this order."""
     vocabularies = {one.span.source for one in files if one.name and one.kind == "vocabulary"}
-    declared = Declared(
+    declared = SymbolTable(
         of_vocabularies=vocabularies,
         opaque=opaque or not all(file.complete for file in files),
     )
@@ -142,7 +142,7 @@ def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
     return [use for one in files for use in one.uses if use.name.text == name][-1]
 
 
-def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
+def _note_clashes(declared: SymbolTable, files: Sequence[tree.File]) -> None:
     """Types with the name of a signal, a quantity, an enumeration or a value."""
     order = [file.span.source for file in files]
     for name in declared.type_spans.keys() & declared.spans.keys():
@@ -151,7 +151,7 @@ def _note_clashes(declared: Declared, files: Sequence[tree.File]) -> None:
         declared.twice("name", tree.Name(name, again), first)
 
 
-def _note_suspects(declared: Declared, file: tree.File) -> None:
+def _note_suspects(declared: SymbolTable, file: tree.File) -> None:
     for item in file.items:
         if isinstance(item, tree.BrokenItem):
             declared.suspects |= item.names
@@ -159,7 +159,7 @@ def _note_suspects(declared: Declared, file: tree.File) -> None:
             declared.opaque_types |= item.nameless and item.word == "type"
 
 
-def _declare_types(declared: Declared, file: tree.File) -> None:
+def _declare_types(declared: SymbolTable, file: tree.File) -> None:
     own = [item for item in file.items if isinstance(item, tree.TypeItem)]
     fresh: list[tree.TypeItem] = []
     for item in own:
@@ -180,7 +180,7 @@ def _declare_types(declared: Declared, file: tree.File) -> None:
         _break_circle(declared, item)
 
 
-def _break_circle(declared: Declared, item: tree.TypeItem) -> None:
+def _break_circle(declared: SymbolTable, item: tree.TypeItem) -> None:
     above = declared.ancestors(item.name.text)
     top = declared.types[above[-1]].parent
     if top != item.name.text or item.parent is None:
@@ -206,7 +206,7 @@ def _break_circle(declared: Declared, item: tree.TypeItem) -> None:
         declared.uncertain.add(name)
 
 
-def _roots(declared: Declared, file: tree.File) -> list[str]:
+def _roots(declared: SymbolTable, file: tree.File) -> list[str]:
     """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
@@ -217,7 +217,7 @@ def _roots(declared: Declared, file: tree.File) -> list[str]:
 
 
 def _declare_item(
-    declared: Declared,
+    declared: SymbolTable,
     item: tree.EnumerationItem | tree.SignalItem | tree.QuantityItem,
     roots: list[str],
 ) -> None:
@@ -250,7 +250,7 @@ def _declare_item(
                     declared.value_of[value.text] = enumeration
 
 
-def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
+def _add(declared: SymbolTable, name: tree.Name, item: Declaration) -> None:
     first = declared.spans.get(name.text)
     if first is not None:
         declared.twice("name", name, first)
@@ -260,7 +260,7 @@ def _add(declared: Declared, name: tree.Name, item: Declaration) -> None:
 
 
 def _parameter_types(
-    declared: Declared,
+    declared: SymbolTable,
     name: tree.Name,
     parameters: tuple[tree.Parameter, ...],
     roots: list[str],
@@ -286,6 +286,6 @@ def _parameter_types(
     return tuple(types)
 
 
-def _unknown_type(declared: Declared, name: tree.Name) -> None:
+def _unknown_type(declared: SymbolTable, name: tree.Name) -> None:
     if not declared.may_know_type(name.text):
         declared.mistakes.append(unknown_type(name, list(declared.types)))

@@ -12,14 +12,14 @@ from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.rule_variables import variables_of
 from rulec.rulebook.names.scope import Anything, Call, Scope
-from rulec.rulebook.names.symbol_table import Declared
-from rulec.rulebook.overlay.constants_and_macros import Provisions, in_force
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
 from rulec.rulebook.overlay.parameter_values import parameter
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 
 
-def check_provisions(declared: Declared, provisions: Provisions) -> list[Diagnostic]:
+def check_provisions(declared: SymbolTable, provisions: ConstantsAndMacros) -> list[Diagnostic]:
     """What is wrong with parameters and definitions; the broken ones are noted in ``provisions``.
 
     Each comes after those that it uses, so that a mistake is met first where it was made.
@@ -34,7 +34,7 @@ def check_provisions(declared: Declared, provisions: Provisions) -> list[Diagnos
     return mistakes
 
 
-def _in_order_of_use(provisions: Provisions) -> list[str]:
+def _in_order_of_use(provisions: ConstantsAndMacros) -> list[str]:
     """Parameters and definitions, as far as there is no circle after those that they use."""
     uses: dict[str, list[str]] = {}
     for name, values in provisions.overlay.parameters.items():
@@ -58,7 +58,9 @@ def _in_order_of_use(provisions: Provisions) -> list[str]:
     return ordered
 
 
-def _check_parameter(name: str, declared: Declared, provisions: Provisions) -> Iterator[Diagnostic]:
+def _check_parameter(
+    name: str, declared: SymbolTable, provisions: ConstantsAndMacros
+) -> Iterator[Diagnostic]:
     values = provisions.overlay.parameters[name]
     for value in values:
         kind = value.item.dimension if isinstance(value.item, tree.ParamItem) else None
@@ -79,7 +81,7 @@ def _check_parameter(name: str, declared: Declared, provisions: Provisions) -> I
 
 
 def _check_definition(
-    item: tree.DefineItem, declared: Declared, provisions: Provisions
+    item: tree.DefineItem, declared: SymbolTable, provisions: ConstantsAndMacros
 ) -> list[Diagnostic]:
     mistakes: list[Diagnostic] = []
     typed = tuple(one for one in item.parameters if one.type is not None)

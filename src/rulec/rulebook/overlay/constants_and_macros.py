@@ -14,7 +14,7 @@ from rulec.syntax import tree
 
 
 @dataclass(slots=True)
-class Provisions:
+class ConstantsAndMacros:
     """What formulas may speak of besides the vocabulary, on the day ``at`` (ISO).
 
     ``numbers`` are the parameters' values, None for one that has none or a wrong one, filled as

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.scenario.commonroad.country_side import side_in
 from rulec.scenario.commonroad.participants import participants_of, problem_of
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
@@ -73,7 +73,7 @@ def _library(path: Path) -> Callable[[Path], Any]:
             Diagnostic(
                 "R0611",
                 "CommonRoad scenarios take the package `commonroad-io`, which is not installed",
-                Place(str(path)),
+                SourceLocation(str(path)),
                 help="`pip install 'rulec[commonroad]'`, some 370 MB with what it needs",
             )
         ) from None

@@ -6,13 +6,13 @@ import numpy as np
 
 from rulec.scenario.model import Stretch
 from rulec.scenario.recorded.reference_line import dense
-from rulec.scenario.recorded.traffic_obstacles import View
+from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 _NARROWEST_M = 0.1
 _EVERY_M = 0.5
 
 
-def crossings(view: View) -> tuple[Stretch, ...]:
+def crossings(view: TrafficView) -> tuple[Stretch, ...]:
     """The stretches of the road that crosswalks take up; each reaches across the whole road."""
     found = []
     road = view.road

@@ -8,7 +8,7 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, named
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
 from rulec.scenario.recorded.recording import Participant, Points, Problem, Recording, State
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.recorded.scene_choice import Choice
@@ -121,4 +121,4 @@ def listed(ids: Iterable[str]) -> str:
 
 def unfit(message: str, way_out: str, file: str) -> RulecError:
     """What is chosen is not in the file."""
-    return RulecError(Diagnostic("R0612", message, Place(file), help=way_out))
+    return RulecError(Diagnostic("R0612", message, SourceLocation(file), help=way_out))

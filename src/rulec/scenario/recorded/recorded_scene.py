@@ -17,7 +17,7 @@ from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
 from rulec.scenario.recorded.scene_choice import Choice
-from rulec.scenario.recorded.traffic_obstacles import View, obstacles
+from rulec.scenario.recorded.traffic_obstacles import TrafficView, obstacles
 
 STEP_S = 0.5
 
@@ -46,7 +46,7 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
     bounds = tuple(lanes.straight.tolist())
     road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
-    view = View(recording, line, lanes, ego_s, at_s, road.outline)
+    view = TrafficView(recording, line, lanes, ego_s, at_s, road.outline)
     found = tuple(obstacles(view, start.participant, choice.prediction))
     told = {
         **_traffic_signals(view, found, choice),
@@ -73,7 +73,7 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
 
 
 def _traffic_signals(
-    view: View, found: Sequence[Obstacle], choice: Choice
+    view: TrafficView, found: Sequence[Obstacle], choice: Choice
 ) -> dict[str, tuple[SignalValue, str]]:
     # The paper's word and that of the vocabulary `road`
     told = congested(found, view.road, choice.congested_below_kmh)
@@ -81,7 +81,7 @@ def _traffic_signals(
 
 
 def _map_signals(
-    view: View, way: Sequence[str], own: str, step: int
+    view: TrafficView, way: Sequence[str], own: str, step: int
 ) -> dict[str, tuple[SignalValue, str]]:
     ahead = [view.recording.lanelets[number] for number in way[way.index(own) :]]
     return signals_of(ahead, view.lanes.count_at(view.ego_s), view.recording.step_s, step)

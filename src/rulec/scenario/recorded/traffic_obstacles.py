@@ -35,7 +35,7 @@ _AT_ONCE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class TrafficView:
     """From where a recording is looked at: along which line, where ego is on it, since when."""
 
     recording: Recording
@@ -84,7 +84,7 @@ class View:
 
 
 def obstacles(
-    view: View, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
+    view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
 ) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
@@ -115,7 +115,7 @@ def obstacles(
 
 
 def _laid_out(
-    view: View, others: Sequence[Participant]
+    view: TrafficView, others: Sequence[Participant]
 ) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
     """Everybody's steps from time 0 on, and the bounds in them: many at once, but not all."""
     waiting: list[tuple[Participant, list[int]]] = []
@@ -132,7 +132,7 @@ def _laid_out(
 
 
 def _motion(
-    view: View,
+    view: TrafficView,
     one: Participant,
     steps: Sequence[int],
     boxes: Sequence[Box | None],
@@ -155,7 +155,7 @@ def _motion(
     return Footprints(tuple(times), tuple(known))
 
 
-def _constant(view: View, one: Participant, step: int, box: Box) -> ConstantAcceleration:
+def _constant(view: TrafficView, one: Participant, step: int, box: Box) -> ConstantAcceleration:
     s, d = (box.s_min + box.s_max) / 2, (box.d_min + box.d_max) / 2
     state = one.states.get(step)
     if one.standing or state is None:
@@ -181,7 +181,7 @@ def _moved(box: Box, along: float) -> Box:
     return Box(box.s_min + along, box.s_max + along, box.d_min, box.d_max)
 
 
-def _walking_direction(view: View, one: Participant) -> float | None:
+def _walking_direction(view: TrafficView, one: Participant) -> float | None:
     """Where a pedestrian looks who never moves; nothing if motion tells."""
     state = next(iter(one.states.values()), None)
     if state is None or len({(x.x, x.y) for x in one.states.values()}) > 1:

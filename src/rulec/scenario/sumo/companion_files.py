@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import unescape
 from pathlib import Path, PurePosixPath
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, named
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
 
 _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 
@@ -58,7 +58,7 @@ def net_of(path: Path, head: Head) -> Path:
         Diagnostic(
             "R0614",
             f"SUMO's floating-car data do not say where the roads are, and {why}",
-            Place(str(path)),
+            SourceLocation(str(path)),
             help="name SUMO's net with --net FILE",
         )
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy import int64
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
 from rulec.scenario.safe_xml import short
 from rulec.scenario.sumo.companion_files import demand_of, net_of
@@ -94,7 +94,7 @@ def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: Net) -
                 Diagnostic(
                     "R0615",
                     f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
-                    Place(str(path), line),
+                    SourceLocation(str(path), line),
                     help="name with --net the net that the data were made with",
                 )
             )
@@ -115,7 +115,7 @@ def _check_near(
                     "R0615",
                     f"`{short(one.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all roads "
                     "of the net",
-                    Place(str(path)),
+                    SourceLocation(str(path)),
                     help="have SUMO write places in the net's own metres, without "
                     "--fcd-output.geo and --fcd-output.utm",
                 )

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 
-from rulec.diagnostics import Place, Source
+from rulec.diagnostics import Source, SourceLocation
 
 _HEADING = re.compile(r"\s*(\[{1,2})\s*([A-Za-z_][\w.-]*)\s*\]{1,2}\s*(?:#.*)?$")
 _KEY = re.compile(r"""\s*(["']?)([^"'=\s]+)\1\s*=""")
@@ -37,18 +37,18 @@ class TomlText:
 
     source: Source
 
-    def place(self, table: Table, key: str | None = None) -> Place:
+    def place(self, table: Table, key: str | None = None) -> SourceLocation:
         """The line of a key, else that of its table's heading, else the file."""
         number = table.number or 0
         line = self._lines.get((table.heading, number, key))
         if line is None:
             line = self._lines.get((table.heading, number, None))
         if line is None:
-            return Place(self.source.name)
+            return SourceLocation(self.source.name)
         excerpt = self.source.line(line)
         start = len(excerpt) - len(excerpt.lstrip())
         end = len(excerpt.rstrip())
-        return Place(self.source.name, line, start + 1, line, end + 1, excerpt)
+        return SourceLocation(self.source.name, line, start + 1, line, end + 1, excerpt)
 
     @cached_property
     def _lines(self) -> dict[tuple[str, int, str | None], int]:

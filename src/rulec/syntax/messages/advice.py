@@ -12,17 +12,17 @@ from rulec.syntax.messages.in_bounds import advise_on_bound
 from rulec.syntax.messages.in_formulas import advise_on_aggregate, advise_on_formula
 from rulec.syntax.messages.in_items import FORMS, advise_on_item
 from rulec.syntax.messages.in_rules import advise_on_clause, advise_on_rule_head, advise_on_state
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 
 
-def advise(scene: Scene) -> str:
+def advise(scene: ParseContext) -> str:
     """The way out, empty when there is none to suggest."""
     return next(filter(None, (advice(scene) for advice in _IN_ORDER)), "")
 
 
-def _quotes(scene: Scene) -> str:
+def _quotes(scene: ParseContext) -> str:
     found, before = scene.found, scene.before
     if found is None:
         return ""
@@ -44,11 +44,11 @@ def _names(text: str) -> bool:
     return text.isidentifier() and text not in RESERVED
 
 
-def _comment(scene: Scene) -> str:
+def _comment(scene: ParseContext) -> str:
     return "a comment begins with `#`" if scene.text in ("//", "/*") else ""
 
 
-def _misspelt(scene: Scene) -> str:
+def _misspelt(scene: ParseContext) -> str:
     """A word that looks much like one that could stand there, or in place of the one before."""
     found, before = scene.found, scene.before
     if found is None or found.kind != "word" or found.text.casefold() in RESERVED:
@@ -62,7 +62,7 @@ def _misspelt(scene: Scene) -> str:
     return did_you_mean(before.text, UNARY_OPERATORS)
 
 
-def _name(scene: Scene) -> str:
+def _name(scene: ParseContext) -> str:
     found, before = scene.found, scene.before
     if found is None or before is None:
         return ""
@@ -77,7 +77,7 @@ def _name(scene: Scene) -> str:
     return ""
 
 
-def _punctuation(scene: Scene) -> str:
+def _punctuation(scene: ParseContext) -> str:
     text = scene.text
     begins = scene.at == 1 and scene.kind == "clause" and text in (":", "=", "-")
     ends = "$END" in scene.accepted or scene.accepted == {"STRING"}
@@ -86,26 +86,26 @@ def _punctuation(scene: Scene) -> str:
     return ""
 
 
-def _ending(scene: Scene) -> str:
+def _ending(scene: ParseContext) -> str:
     """The sign with which other languages end a line."""
     last = scene.at == len(scene.tokens) - 1 and scene.text in (";", ".", ",")
     return f"delete the `{scene.text}`" if last and "$END" in scene.accepted else ""
 
 
-def _parentheses(scene: Scene) -> str:
+def _parentheses(scene: ParseContext) -> str:
     if scene.text != ")" or scene.operand or scene.quantity or scene.accepted == {"NAME"}:
         return ""
     return "delete the `)`, or open it before" if scene.opened("(", ")") is None else ""
 
 
-def _form(scene: Scene) -> str:
+def _form(scene: ParseContext) -> str:
     """How the whole line is written, where there is nothing better to say."""
     unfinished = scene.found is None and scene.text_before == "="
     formula = not unfinished and (scene.operand or scene.operator or scene.quantity)
     return "" if formula or scene.kind != "item" else FORMS.get(scene.first, "")
 
 
-_IN_ORDER: tuple[Callable[[Scene], str], ...] = (
+_IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     _quotes,
     _comment,
     _ending,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 _BOOLEAN: Final = frozenset(
     (
@@ -20,7 +20,7 @@ _FORMS: Final = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[
 _WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "after": "next"}
 
 
-def advise_on_bound(scene: Scene) -> str:
+def advise_on_bound(scene: ParseContext) -> str:
     """Inside brackets, and where a bound was meant to stand."""
     if scene.opened("[", "]") is not None and not scene.operand:
         return _inside(scene)
@@ -39,7 +39,7 @@ def advise_on_bound(scene: Scene) -> str:
     return ""
 
 
-def _inside(scene: Scene) -> str:
+def _inside(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
     if scene.accepted == {"UNIT"}:
         if text == "..":
@@ -63,6 +63,6 @@ def _inside(scene: Scene) -> str:
     return _FORMS
 
 
-def _end_of_amount(scene: Scene, at: int) -> int:
+def _end_of_amount(scene: ParseContext, at: int) -> int:
     unit = scene.token(at + 1)
     return unit.end if unit and unit.kind == "word" and at + 2 > scene.at else scene.tokens[at].end

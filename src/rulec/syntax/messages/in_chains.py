@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 from rulec.syntax.keywords import RESERVED
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 """The signs of comparisons."""
 
 
-def advise_on_chain(scene: Scene) -> str:
+def advise_on_chain(scene: ParseContext) -> str:
     """``a < b < c``: the middle one has to be said twice."""
     last = next((at for at in range(scene.at - 1, -1, -1) if scene.text_at(at) in RELATIONS), None)
     if last is None:
@@ -31,7 +31,7 @@ def advise_on_chain(scene: Scene) -> str:
     )
 
 
-def _belongs(scene: Scene, at: int) -> bool:
+def _belongs(scene: ParseContext, at: int) -> bool:
     token = scene.token(at)
     if token is None:
         return False
@@ -40,7 +40,7 @@ def _belongs(scene: Scene, at: int) -> bool:
     return token.kind == "number" or token.text in ("+", "-", "*", "/", ".", ",", "(", ")", "^")
 
 
-def _back(scene: Scene, at: int) -> int:
+def _back(scene: ParseContext, at: int) -> int:
     depth = 0
     while _belongs(scene, at - 1):
         depth += (scene.text_at(at - 1) == ")") - (scene.text_at(at - 1) == "(")
@@ -50,7 +50,7 @@ def _back(scene: Scene, at: int) -> int:
     return at
 
 
-def _forward(scene: Scene, at: int) -> int:
+def _forward(scene: ParseContext, at: int) -> int:
     depth = 0
     while _belongs(scene, at):
         depth += (scene.text_at(at) == "(") - (scene.text_at(at) == ")")

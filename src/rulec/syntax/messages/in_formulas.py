@@ -14,7 +14,7 @@ from rulec.syntax.keywords import (
 )
 from rulec.syntax.messages.expectations import COMPARISONS
 from rulec.syntax.messages.in_chains import RELATIONS, advise_on_chain
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 _OTHER_SPELLINGS: Final = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
@@ -56,7 +56,7 @@ _QUANTIFIERS: Final = {
 _AGGREGATES: Final = ("some", "every", "count")
 
 
-def advise_on_formula(scene: Scene) -> str:
+def advise_on_formula(scene: ParseContext) -> str:
     """The way out of a mistake in a formula; empty where there is none to suggest."""
     if not (scene.operand or scene.operator or scene.quantity or "AND" in scene.accepted):
         return _arguments(scene)
@@ -67,7 +67,7 @@ def advise_on_formula(scene: Scene) -> str:
     return ""
 
 
-def advise_on_aggregate(scene: Scene) -> str:
+def advise_on_aggregate(scene: ParseContext) -> str:
     """At ``some``, ``every``, ``count``, and what others call them."""
     text, before = scene.text, scene.text_before
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
@@ -88,7 +88,7 @@ def advise_on_aggregate(scene: Scene) -> str:
     return ""
 
 
-def _arguments(scene: Scene) -> str:
+def _arguments(scene: ParseContext) -> str:
     """Between the parentheses of an atom."""
     if scene.opened("(", ")") is None or scene.kind not in ("clause", "formula", "item"):
         return ""
@@ -103,7 +103,7 @@ def _arguments(scene: Scene) -> str:
     return ""
 
 
-def _conditionals(scene: Scene) -> str:
+def _conditionals(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
     behind = [token.text for token in scene.tokens[scene.at :]]
     otherwise = "else" in behind
@@ -124,7 +124,7 @@ def _conditionals(scene: Scene) -> str:
     return ""
 
 
-def _numbers(scene: Scene) -> str:
+def _numbers(scene: ParseContext) -> str:
     found, text = scene.found, scene.text
     if found is None or not (scene.operator or scene.quantity):
         return ""
@@ -148,7 +148,7 @@ def _numbers(scene: Scene) -> str:
     return ""
 
 
-def _comparisons(scene: Scene) -> str:
+def _comparisons(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
     numbers = scene.is_number(scene.at + 1) or scene.is_number(scene.at - 1)
     if scene.operator and text == "=>" and numbers:
@@ -172,7 +172,7 @@ def _comparisons(scene: Scene) -> str:
     return ""
 
 
-def _operators(scene: Scene) -> str:
+def _operators(scene: ParseContext) -> str:
     if scene.found is None:
         return ""
     text, before = scene.text, scene.text_before
@@ -198,7 +198,7 @@ def _operators(scene: Scene) -> str:
     return ""
 
 
-def _joined(scene: Scene) -> str:
+def _joined(scene: ParseContext) -> str:
     behind = scene.token(scene.at + 1)
     more = behind is not None and behind.text not in {")", *CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 FORMS: Final = {
     "law": 'the line is written `law "…"` or `law "…" as of 2006-03-28`',
@@ -47,7 +47,7 @@ def other_word(word: str) -> str:
     return f"write `{form}`" if form else ""
 
 
-def advise_on_item(scene: Scene) -> str:
+def advise_on_item(scene: ParseContext) -> str:
     """The form of the item, or what is wrong with it."""
     if scene.kind != "item":
         return ""
@@ -86,7 +86,7 @@ def advise_on_item(scene: Scene) -> str:
     return FORMS.get(first, "")
 
 
-def advise_on_dates(scene: Scene) -> str:
+def advise_on_dates(scene: ParseContext) -> str:
     """At ``in force from DATE until DATE``."""
     if scene.accepted == {"DATE"} and scene.found is not None:
         return "a date is written year-month-day, such as `2006-03-28`"

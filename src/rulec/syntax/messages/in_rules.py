@@ -8,7 +8,7 @@ from typing import Final
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
 from rulec.syntax.messages.expectations import SCOPES
 from rulec.syntax.messages.in_items import IN_FORCE, advise_on_dates
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 
 _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
 _SCOPE: Final = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
@@ -47,7 +47,7 @@ def other_clause(word: str, others: Container[str] = ()) -> str:
     return _OTHER_CLAUSES.get(word, "")
 
 
-def advise_on_rule_head(scene: Scene) -> str:
+def advise_on_rule_head(scene: ParseContext) -> str:
     """At a rule's head."""
     if scene.kind != "rule_head":
         return ""
@@ -70,7 +70,7 @@ def advise_on_rule_head(scene: Scene) -> str:
     return _HEAD if "RPAR" not in scene.accepted else ""
 
 
-def advise_on_clause(scene: Scene) -> str:
+def advise_on_clause(scene: ParseContext) -> str:
     """At the word of a clause, or what is special to one."""
     if scene.kind == "example_head":
         return _example_head(scene)
@@ -88,7 +88,7 @@ def advise_on_clause(scene: Scene) -> str:
     return advise_on_dates(scene) if scene.first == "in" else ""
 
 
-def _example_head(scene: Scene) -> str:
+def _example_head(scene: ParseContext) -> str:
     if scene.accepted == {"COLON"}:
         return "an object is written with its type, such as `v: vehicle`"
     if scene.found is not None and scene.found.kind == "string" and scene.text_before == ")":
@@ -98,7 +98,7 @@ def _example_head(scene: Scene) -> str:
     return ""
 
 
-def advise_on_state(scene: Scene) -> str:
+def advise_on_state(scene: ParseContext) -> str:
     """In a state of an example."""
     if scene.kind != "state":
         return ""

@@ -18,7 +18,7 @@ from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.expectations import in_words
 from rulec.syntax.messages.in_items import other_word
 from rulec.syntax.messages.in_rules import other_clause
-from rulec.syntax.messages.parse_context import Scene
+from rulec.syntax.messages.parse_context import ParseContext
 from rulec.syntax.scanner import Token
 
 _WHAT = {
@@ -68,7 +68,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
     found = inside[at] if at < len(inside) else None
-    scene = Scene(source, piece.kind, inside, at, accepted)
+    scene = ParseContext(source, piece.kind, inside, at, accepted)
     first = scene.first
     end = span_of(source, tokens, piece).end
     span = Span(source, end, end) if found is None else _span(source, found)
@@ -159,7 +159,7 @@ def _short(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
-def _is_word_for_name(scene: Scene) -> bool:
+def _is_word_for_name(scene: ParseContext) -> bool:
     """A reserved word where only a name could stand: it was meant as one."""
     found = scene.found
     if found is None or found.kind != "word" or found.text not in RESERVED:
@@ -198,7 +198,7 @@ def _unterminated(span: Span) -> Diagnostic:
     )
 
 
-def _open_parenthesis(source: Source, scene: Scene) -> tuple[Label, ...]:
+def _open_parenthesis(source: Source, scene: ParseContext) -> tuple[Label, ...]:
     signs = {"RPAR": ("(", ")"), "RSQB": ("[", "]")}
     for kind, (opening, closing) in signs.items():
         opened = scene.opened(opening, closing) if kind in scene.accepted else None

@@ -11,7 +11,7 @@ from rulec.syntax.scanner import Token
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class ParseContext:
     """A piece of some kind whose tokens can be read up to the one at ``at``, or all of them."""
 
     source: Source

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.diagnostics.source_text import Place
+from rulec.diagnostics.source_text import SourceLocation
 from rulec.syntax.scanner import Token
 
 
@@ -16,14 +16,14 @@ class StructureMessages:
     source: Source
     tokens: list[Token]
 
-    def place(self, index: int) -> Place:
+    def place(self, index: int) -> SourceLocation:
         """The token, or the empty place behind the last one."""
         if index < len(self.tokens):
             token = self.tokens[index]
             return Span(self.source, token.start, token.end).place
         return self._behind(len(self.tokens) - 1)
 
-    def _behind(self, index: int) -> Place:
+    def _behind(self, index: int) -> SourceLocation:
         end = self.tokens[index].end
         return Span(self.source, end, end).place
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 
 
 def arrow(file: str) -> tuple[Any, Any]:
@@ -20,4 +20,4 @@ def arrow(file: str) -> tuple[Any, Any]:
 
 def unavailable(message: str, file: str, help_text: str) -> RulecError:
     """Parquet cannot be read or written here (R0706)."""
-    return RulecError(Diagnostic("R0706", message, Place(file), help=help_text))
+    return RulecError(Diagnostic("R0706", message, SourceLocation(file), help=help_text))

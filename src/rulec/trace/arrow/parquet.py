@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import IO, TYPE_CHECKING, Any
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.arrow.arrow_library import arrow, unavailable
 from rulec.trace.formats.foreign_files import packed
 from rulec.trace.formats.table_reader import Table, check_columns, problem
@@ -41,7 +41,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     try:
         source = parquet.ParquetFile(stream)
         schema = source.schema_arrow
-        check_columns(schema.names, Place(file))
+        check_columns(schema.names, SourceLocation(file))
         _check_types(schema, pyarrow, file)
     except RulecError as error:
         yield [error]
@@ -51,9 +51,9 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         return
     from rulec.trace.arrow.trace_cuts import cut
 
-    table = Table(tuple(schema.names), lambda value: value, lambda row: Place(file, row))
+    table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError)
-    yield from cut(_pieces(source, problems, file), table, 1, Place(file))
+    yield from cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
 
 
 def _pieces(
@@ -79,23 +79,25 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
     stream.seek(start)
     what = "the file cannot be read as Parquet"
     if not size:
-        return problem(f"{what}: it is empty", Place(file), _AGAIN)
+        return problem(f"{what}: it is empty", SourceLocation(file), _AGAIN)
     if beginning != _MARK:
         found = packed(beginning)
         if found is not None:
-            return problem(f"this is no Parquet, but {found.noun}", Place(file), found.help)
+            return problem(
+                f"this is no Parquet, but {found.noun}", SourceLocation(file), found.help
+            )
         way_out = "if it is in another format, name that with `--format`"
-        return problem(f"{what}: it does not begin with `PAR1`", Place(file), way_out)
+        return problem(f"{what}: it does not begin with `PAR1`", SourceLocation(file), way_out)
     if end != _MARK or size == len(_MARK):
         why = "its table of contents, which comes last, is missing; it has been cut short"
-        return problem(f"{what}: {why}", Place(file), _AGAIN)
+        return problem(f"{what}: {why}", SourceLocation(file), _AGAIN)
     return None
 
 
 def _unreadable(what: str, reason: Exception, file: str) -> RulecError:
     words = str(reason).split(".")[0]
     return problem(
-        f"{what} cannot be read as Parquet: it is damaged ({words})", Place(file), _AGAIN
+        f"{what} cannot be read as Parquet: it is damaged ({words})", SourceLocation(file), _AGAIN
     )
 
 
@@ -114,7 +116,7 @@ def _check_types(schema: Any, pyarrow: Any, file: str) -> None:
         if not any(test(value) for test in tests):
             message = f"the column `{name}` is of type {kind}"
             help_text = "types are bool, integers, double (float64), and string"
-            raise problem(message, Place(file), help_text)
+            raise problem(message, SourceLocation(file), help_text)
 
 
 def write_parquet(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.arrow.arrow_columns import coded, columns_of
 from rulec.trace.formats.chunks import in_chunks
 from rulec.trace.formats.table_blocks import Block, OddTableError, trace_starts
@@ -21,7 +21,10 @@ Piece = Any
 
 
 def cut(
-    pieces: Iterable[Piece | Iterator[Row] | RulecError], table: Table, first: int, file: Place
+    pieces: Iterable[Piece | Iterator[Row] | RulecError],
+    table: Table,
+    first: int,
+    file: SourceLocation,
 ) -> Iterator[Sequence[Trace | RulecError]]:
     """The traces of a table: blocks, or lists where rows have to be looked at.
 
@@ -63,7 +66,7 @@ def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | N
 
 
 def _block(
-    pieces: Sequence[Piece], table: Table, first: int, file: Place
+    pieces: Sequence[Piece], table: Table, first: int, file: SourceLocation
 ) -> Sequence[Trace | RulecError]:
     if not pieces:
         return list(traces_in((), table, file))

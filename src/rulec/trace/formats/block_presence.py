@@ -17,7 +17,7 @@ NOBODY = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outline:
+class BlockPresence:
     """What rows are about, and the objects of each trace.
 
     Each row has its ``trace``, its ``step``, and the objects that it is about: ``item`` and
@@ -51,7 +51,7 @@ class Outline:
         return float(self.step_s[trace]), types, self.stretches[there].tobytes()
 
 
-def outlined(block: Block) -> Outline:
+def outlined(block: Block) -> BlockPresence:
     """The outline of a block. Raises OddTableError where rows have to be looked at."""
     starts, n_rows = block.starts, int(block.starts[-1])
     names = _names(block.columns[TRACE])
@@ -95,7 +95,7 @@ def outlined(block: Block) -> Outline:
     stretches = np.stack([step[rows[first_row[order]]], step[last_row]], axis=1)
     is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
     stretches[is_always] = NOBODY
-    return Outline(
+    return BlockPresence(
         trace,
         step,
         item,

@@ -10,7 +10,7 @@ from contextlib import suppress
 from importlib.util import find_spec
 from typing import IO, cast
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats.chunks import in_chunks
 from rulec.trace.formats.foreign_files import foreign
 from rulec.trace.formats.stream_lines import not_utf8, placed
@@ -43,7 +43,7 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
     from rulec.trace.arrow.trace_cuts import cut
 
     plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
-    yield from cut(plain, _table(columns, file), 2, Place(file))
+    yield from cut(plain, _table(columns, file), 2, SourceLocation(file))
 
 
 def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
@@ -55,9 +55,9 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
         beginning = cast("io.BufferedReader", stream).peek()
     found = foreign(beginning)
     if found is not None:
-        return problem(f"this is no CSV, but {found.noun}", Place(file), found.help)
+        return problem(f"this is no CSV, but {found.noun}", SourceLocation(file), found.help)
     if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
-        return problem("this is no CSV, but JSON", Place(file), "add `--format jsonl`")
+        return problem("this is no CSV, but JSON", SourceLocation(file), "add `--format jsonl`")
     return None
 
 
@@ -75,7 +75,7 @@ def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
         line = stream.readline(_LONGEST_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf")
         with suppress(UnicodeDecodeError, RulecError):
             columns = line.decode().rstrip("\r\n").split(",")
-            check_columns(columns, Place(""))
+            check_columns(columns, SourceLocation(""))
             if line.endswith(b"\n") and not re.search(rb'["\0]|\r(?!\n)', line):
                 return columns
         stream.seek(start)
@@ -87,15 +87,15 @@ def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
     try:
         number, columns = next(rows, (0, []))
         if columns:
-            _check_separator(columns, Place(file, number))
-            check_columns(columns, Place(file, number))
+            _check_separator(columns, SourceLocation(file, number))
+            check_columns(columns, SourceLocation(file, number))
     except RulecError as error:
         yield error
         return
-    yield from traces_in(rows, _table(columns, file), Place(file))
+    yield from traces_in(rows, _table(columns, file), SourceLocation(file))
 
 
-def _check_separator(columns: Sequence[str], place: Place) -> None:
+def _check_separator(columns: Sequence[str], place: SourceLocation) -> None:
     """Raises RulecError R0509."""
     if len(columns) == 1:
         for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
@@ -107,7 +107,7 @@ def _check_separator(columns: Sequence[str], place: Place) -> None:
 
 
 def _table(columns: Sequence[str], file: str) -> Table:
-    return Table(tuple(columns), _value, lambda line: Place(file, line), has_texts=True)
+    return Table(tuple(columns), _value, lambda line: SourceLocation(file, line), has_texts=True)
 
 
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
@@ -121,11 +121,11 @@ def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
                 yield number, cells
             number = before + lines.line_num + 1
     except UnicodeDecodeError as reason:
-        raise _not_utf8(stream, Place(file, number), reason) from None
+        raise _not_utf8(stream, SourceLocation(file, number), reason) from None
     except csv.Error as reason:
         words = next((ours for theirs, ours in _WORDS.items() if theirs in str(reason)), reason)
         message = f"from here on the file cannot be read as CSV: {words}"
-        raise problem(message, Place(file, number), _QUOTES) from None
+        raise problem(message, SourceLocation(file, number), _QUOTES) from None
     finally:
         with suppress(ValueError):  # who has read enough may have closed the stream
             text.detach()  # the stream is its owner's
@@ -147,7 +147,7 @@ def _without_null(text: Iterable[str]) -> Iterator[str]:
         yield line
 
 
-def _not_utf8(stream: IO[bytes], place: Place, reason: UnicodeDecodeError) -> RulecError:
+def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:
     """Which byte of which line; of a pipe, which cannot be read again, behind which place."""
     byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
@@ -156,7 +156,7 @@ def _not_utf8(stream: IO[bytes], place: Place, reason: UnicodeDecodeError) -> Ru
             at = not_utf8(line)
             if at is not None:
                 byte, where = line[at], ""
-                place = placed(Place(place.file, number), line.rstrip(b"\n"), at)
+                place = placed(SourceLocation(place.file, number), line.rstrip(b"\n"), at)
                 break
     message = f"{where}the byte 0x{byte:02x} is not UTF-8"
     return problem(message, place, "save the file in UTF-8")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
 from rulec.diagnostics.json_problems import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
 
@@ -35,11 +35,11 @@ class Kind:
         """What helps who has a list of them."""
         return f"{self.example}; `jq -c '.[]' FILE` takes a list apart"
 
-    def bad(self, message: str, place: Place, help_text: str = "") -> RulecError:
+    def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
         """The line at this place is none (R0501)."""
         return RulecError(Diagnostic("R0501", message, place, help=help_text or self.example))
 
-    def refused(self, problem: Exception, line: bytes, place: Place) -> RulecError:
+    def refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
         """Why msgspec refuses a line."""
         what = f"this is not a {self.name}"
         if isinstance(problem, RecursionError):

@@ -8,7 +8,7 @@ from typing import IO, Any
 
 import msgspec
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats.foreign_files import foreign
 from rulec.trace.formats.json_line_problems import ONE_LINE, Kind, is_beginning, middle_of
 from rulec.trace.formats.stream_lines import lines_as_they_come, placed
@@ -73,7 +73,7 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
         chunk: list[Trace | RulecError] = []
         for line in lines:
             number += 1
-            place = Place(file, number)
+            place = SourceLocation(file, number)
             if number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
                 error = _no_traces(line, place)
@@ -99,7 +99,7 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
     if torn is not None:
         yield [torn.error(at_the_end=True)]
     elif not found:
-        yield [_TRACE.bad("there is no trace in this file: it is empty", Place(file))]
+        yield [_TRACE.bad("there is no trace in this file: it is empty", SourceLocation(file))]
 
 
 @dataclass(slots=True)
@@ -107,7 +107,7 @@ class _Torn:
     """A line that is the beginning of a trace. Does what follows look as if it went on there?"""
 
     line: bytes
-    place: Place
+    place: SourceLocation
     goes_on: bool = False
 
     def error(self, *, at_the_end: bool) -> RulecError:
@@ -122,11 +122,13 @@ class _Torn:
         return _TRACE.bad(f"{what}: it has been cut short", place, "write it again, or delete it")
 
 
-def _no_traces(first: bytes, place: Place) -> RulecError | None:
+def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
     """Why a file with this first line has no traces in it at all, if that is so."""
     found = foreign(first)
     if found is not None:
-        return _TRACE.bad(f"these are no traces, but {found.noun}", Place(place.file), found.help)
+        return _TRACE.bad(
+            f"these are no traces, but {found.noun}", SourceLocation(place.file), found.help
+        )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
         return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")
     if first.startswith(b"[") and is_beginning(first):
@@ -135,7 +137,7 @@ def _no_traces(first: bytes, place: Place) -> RulecError | None:
     return None
 
 
-def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | RulecError:
+def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:
     record: _Outline | _Record
     if len(line) > LONGEST_LINE_BYTES:
         return _TRACE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
@@ -153,7 +155,7 @@ def _trace(line: bytes, place: Place, read_state: _StateReader) -> Trace | Rulec
     return _made(record, tuple(record.states), place)
 
 
-def _made(record: _Outline | _Record, states: tuple[State, ...], place: Place) -> Trace:
+def _made(record: _Outline | _Record, states: tuple[State, ...], place: SourceLocation) -> Trace:
     name = str(record.id) or f"line {place.line}"
     return Trace(name, record.step_s, record.objects, states, record.present, place)
 

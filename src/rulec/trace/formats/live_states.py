@@ -8,7 +8,7 @@ from typing import IO, Any
 
 import msgspec
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats.foreign_files import foreign
 from rulec.trace.formats.json_line_problems import Kind
 from rulec.trace.formats.stream_lines import lines_as_they_come
@@ -24,7 +24,7 @@ class LiveState:
 
     state: State
     objects: dict[str, str]
-    place: Place
+    place: SourceLocation
 
 
 class _Record(msgspec.Struct, forbid_unknown_fields=True):
@@ -59,13 +59,13 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
                 found = foreign(line)
                 if found is not None:
                     message = f"these are no states, but {found.noun}"
-                    yield _STATE.bad(message, Place(file), found.help)
+                    yield _STATE.bad(message, SourceLocation(file), found.help)
                     return
             if line.strip():
-                yield _read(line, Place(file, number))
+                yield _read(line, SourceLocation(file, number))
 
 
-def _read(line: bytes, place: Place) -> LiveState | RulecError:
+def _read(line: bytes, place: SourceLocation) -> LiveState | RulecError:
     if len(line) > LONGEST_LINE_BYTES:
         return _STATE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
     try:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import IO, Protocol, cast
 
-from rulec.diagnostics import Place
+from rulec.diagnostics import SourceLocation
 
 _BLOCK_BYTES = 1 << 22
 
@@ -48,7 +48,7 @@ def not_utf8(line: bytes) -> int | None:
     return None
 
 
-def placed(place: Place, line: bytes, byte: int) -> Place:
+def placed(place: SourceLocation, line: bytes, byte: int) -> SourceLocation:
     """The place of a line's byte, with the line."""
     column = len(line[:byte].decode("utf-8", "replace")) + 1
     text = line.decode("utf-8", "replace").rstrip("\r\0") if len(line) < _MOST_SHOWN else ""

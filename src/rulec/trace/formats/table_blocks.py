@@ -9,7 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.diagnostics import Place, RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats.table_reader import STEP_S, Row, Table, traces_in
 from rulec.trace.trace_model import Trace
 
@@ -59,7 +59,7 @@ class Block(Sequence["Trace | RulecError"]):
     columns: Mapping[str, Column]
     starts: NDArray[np.int64]
     rows: Callable[[int, int], Iterable[Row]]
-    file: Place
+    file: SourceLocation
 
     def __len__(self) -> int:
         return len(self.starts) - 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Place, RulecError, did_you_mean
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
 from rulec.trace.trace_model import State, Trace, Value
 
 TRACE, STEP, STEP_S = "trace", "step", "step_s"
@@ -34,7 +34,7 @@ class Table:
 
     columns: tuple[str, ...]
     value: Callable[[Any], Value]
-    place: Callable[[int], Place]
+    place: Callable[[int], SourceLocation]
     has_texts: bool = False
 
     @cached_property
@@ -53,7 +53,7 @@ class Table:
         return None if place is None else cells[place]
 
 
-def check_columns(columns: Sequence[str], place: Place) -> None:
+def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     """The columns have names, each its own, and say which trace and which step a row is of.
 
     Raises RulecError R0509.
@@ -72,12 +72,14 @@ def check_columns(columns: Sequence[str], place: Place) -> None:
 _FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones are named for values"
 
 
-def problem(message: str, place: Place, help_text: str = "") -> RulecError:
+def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
     """Rows that are no traces (R0509)."""
     return RulecError(Diagnostic("R0509", message, place, help=help_text))
 
 
-def traces_in(rows: Iterable[Row], table: Table, file: Place) -> Iterator[Trace | RulecError]:
+def traces_in(
+    rows: Iterable[Row], table: Table, file: SourceLocation
+) -> Iterator[Trace | RulecError]:
     """The traces of a table; in place of one whose rows are wrong, the first RulecError (R0509).
 
     If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
@@ -111,7 +113,7 @@ class _Building:
 
     name: Any
     table: Table
-    place: Place
+    place: SourceLocation
     known: dict[object, State]
     states: list[State] = field(default_factory=list)
     objects: dict[str, str] = field(default_factory=dict)

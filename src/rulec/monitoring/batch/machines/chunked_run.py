@@ -12,7 +12,7 @@ from math import isqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.trace.trace_columns import Array
 
 _FEW = 16
@@ -38,19 +38,19 @@ def run_alone(n_traces: int, n_steps: int, n_states: int) -> bool:
     return n_steps >= FEWEST_STEPS and n_traces * min(n_states, _MOST_STATES) <= _MOST_RUNS
 
 
-def visited(following: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
+def visited(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
     """The states, from 0, in which a machine reads each letter of a word of one or more."""
-    n_states, n_letters = len(following), len(letters)
+    n_states, n_letters = len(successors), len(letters)
     if n_states > _MOST_STATES or n_letters < FEWEST_STEPS:
-        return _one_by_one(following, letters)
+        return _one_by_one(successors, letters)
     length = isqrt(n_letters // _STEP_IN_PIECES) + 1
     n_pieces = -(-n_letters // length)
     word = np.zeros(n_pieces * length, dtype=np.intp)
     word[:n_letters] = letters
     # A row holds the letters that all pieces read at the same time.
     rows = np.ascontiguousarray(word.reshape(n_pieces, length).T)
-    width = len(following[0])
-    onward = np.array(following, dtype=np.intp).ravel() * width
+    width = len(successors[0])
+    onward = np.array(successors, dtype=np.intp).ravel() * width
     # One line for each state that pieces may begin in.
     state = np.repeat(np.arange(n_states) * width, n_pieces).reshape(n_states, n_pieces)
     for row in rows:
@@ -68,20 +68,20 @@ def visited(following: Sequence[Sequence[int]], letters: Array) -> NDArray[np.in
     return states
 
 
-def _one_by_one(following: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
+def _one_by_one(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
     found, state = [], 0
     for letter in letters.tolist():
         found.append(state)
-        state = following[state][letter]
+        state = successors[state][letter]
     return np.array(found, dtype=np.intp)
 
 
-def first_lost_of_one(machine: Machine, letters: Array) -> int:
+def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
     """The first letter of a word with which a machine is lost; -1 if there is none."""
-    if machine.dead is None:
+    if machine.rejecting_sink is None:
         return -1
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
-    accepting = np.array(machine.accepting, dtype=bool)
-    lost = (np.array(machine.following) == machine.dead) & ~accepting
-    places = np.flatnonzero(lost[visited(machine.following, letters), letters])
+    outputs = np.array(machine.outputs, dtype=bool)
+    lost = (np.array(machine.successors) == machine.rejecting_sink) & ~outputs
+    places = np.flatnonzero(lost[visited(machine.successors, letters), letters])
     return int(places[0]) if len(places) else -1

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.tables import minimise
 
 MOST_ENTRIES = 256
@@ -28,16 +28,16 @@ class Joint:
 
     members: tuple[int, ...]
     letters: tuple[int, ...]
-    following: tuple[tuple[int, ...], ...]
+    successors: tuple[tuple[int, ...], ...]
     verdicts: tuple[tuple[int, ...], ...]
 
     @property
     def n_letters(self) -> int:
         """How many letters there are."""
-        return len(self.following[0])
+        return len(self.successors[0])
 
 
-Spelled = tuple[Machine, tuple[int, ...]]
+Spelled = tuple[MealyMonitor, tuple[int, ...]]
 """A machine, and for each cell the class of the letter that the machine reads there."""
 
 
@@ -86,29 +86,29 @@ def _joint(
     columns = list(zip(*(letters for _, letters in machines), strict=True))
     spelled = list(dict.fromkeys(columns))
     states = {(0,) * len(machines): 0}
-    following: list[list[int]] = []
+    successors: list[list[int]] = []
     verdicts: list[list[int]] = []
     waiting = list(states)
     while waiting:
         state = waiting.pop(0)
         if len(states) * len(spelled) > 4 * most_entries:
             return None
-        following.append([])
+        successors.append([])
         verdicts.append([])
         for column in spelled:
             target, verdict = [], 0
             for bit, ((machine, _), one, letter) in enumerate(
                 zip(machines, state, column, strict=True)
             ):
-                target.append(machine.following[one][letter])
-                verdict |= machine.accepting[one][letter] << bit
+                target.append(machine.successors[one][letter])
+                verdict |= machine.outputs[one][letter] << bit
             reached = tuple(target)
             if reached not in states:
                 states[reached] = len(states)
                 waiting.append(reached)
-            following[-1].append(states[reached])
+            successors[-1].append(states[reached])
             verdicts[-1].append(verdict)
-    smaller, outputs = minimise(following, verdicts, 0)
+    smaller, outputs = minimise(successors, verdicts, 0)
     effects = list(zip(*smaller, *outputs, strict=True))
     numbers = {effect: number for number, effect in enumerate(dict.fromkeys(effects))}
     if len(smaller) * len(numbers) > most_entries:
@@ -123,6 +123,6 @@ def _joint(
     )
 
 
-def _alone(place: int, machine: Machine, letters: tuple[int, ...]) -> Joint:
-    verdicts = tuple(tuple(map(int, row)) for row in machine.accepting)
-    return Joint((place,), letters, machine.following, verdicts)
+def _alone(place: int, machine: MealyMonitor, letters: tuple[int, ...]) -> Joint:
+    verdicts = tuple(tuple(map(int, row)) for row in machine.outputs)
+    return Joint((place,), letters, machine.successors, verdicts)

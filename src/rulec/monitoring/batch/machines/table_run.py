@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.mealy_monitor import Machine
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.monitoring.batch.machines.chunked_run import run_alone, visited
 from rulec.monitoring.batch.machines.joint_machine import Joint
 from rulec.monitoring.batch.machines.multi_step_tables import Rows, pays, run_leaping
@@ -34,7 +34,7 @@ def run(
     Returns:
         For each trace a joint verdict, as in ``Joint``.
     """
-    n_states, n_cells = len(joint.following), len(joint.letters)
+    n_states, n_cells = len(joint.successors), len(joint.letters)
     if run_alone(layout.n_traces, layout.n_steps - first, n_states):
         return _run_long(joint, cells, layout, first, last)
     steps = steps_of(layout, first, last)
@@ -45,7 +45,7 @@ def run(
         return _run_bytes(joint, joint.letters, cells, steps)
     letters = spelled(cells, joint.letters)
     if pays(n_states, joint.n_letters, layout.n_traces):
-        return run_leaping(joint.following, joint.verdicts, letters, steps)
+        return run_leaping(joint.successors, joint.verdicts, letters, steps)
     if n_states * joint.n_letters <= _BYTE:
         return _run_bytes(joint, range(joint.n_letters), letters, steps)
     return _run_wide(joint, letters, steps)
@@ -54,9 +54,9 @@ def run(
 @lru_cache(maxsize=64)
 def _by_cells(joint: Joint) -> tuple[Rows, Rows]:
     """What follows and what is the verdict, by state and cell."""
-    following = [tuple([row[letter] for letter in joint.letters]) for row in joint.following]
+    successors = [tuple([row[letter] for letter in joint.letters]) for row in joint.successors]
     verdicts = [tuple([row[letter] for letter in joint.letters]) for row in joint.verdicts]
-    return tuple(following), tuple(verdicts)
+    return tuple(successors), tuple(verdicts)
 
 
 def spelled(cells: Array, letters: Sequence[int]) -> Array:
@@ -75,7 +75,7 @@ def _run_bytes(
 ) -> NDArray[np.uint8]:
     """A byte names the state and the cell; the C library's own loop looks up what follows."""
     width = len(letters)
-    following = _padded([row[one] * width for row in joint.following for one in letters])
+    successors = _padded([row[one] * width for row in joint.successors for one in letters])
     verdicts = _padded([row[one] for row in joint.verdicts for one in letters])
     ends = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
     state = np.zeros(len(ends), dtype=np.uint8)
@@ -84,22 +84,22 @@ def _run_bytes(
         entry = entry + column[step.part]
         ends[step.onward : step.now] = entry[step.onward :]
         if step.onward:
-            state = np.frombuffer(entry[: step.onward].tobytes().translate(following), np.uint8)
+            state = np.frombuffer(entry[: step.onward].tobytes().translate(successors), np.uint8)
     return np.frombuffer(ends.tobytes().translate(verdicts), np.uint8)
 
 
 def _run_wide(joint: Joint, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
     """The same for machines that a byte is too small for."""
     width = joint.n_letters
-    dtype = np.uint16 if len(joint.following) * width <= 1 << 16 else np.intp
-    following = np.array(joint.following, dtype=dtype).ravel() * dtype(width)
+    dtype = np.uint16 if len(joint.successors) * width <= 1 << 16 else np.intp
+    successors = np.array(joint.successors, dtype=dtype).ravel() * dtype(width)
     verdicts = np.array(joint.verdicts, dtype=np.uint8).ravel()
     found = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
     state = np.zeros(len(found), dtype=dtype)
     for step in steps:
         entry = state[: step.now] + column[step.part]
         found[step.onward : step.now] = verdicts.take(entry[step.onward :])
-        state = following.take(entry[: step.onward])
+        state = successors.take(entry[: step.onward])
     return found
 
 
@@ -111,13 +111,13 @@ def _run_long(
     found = np.empty(layout.n_traces, dtype=np.uint8)
     for trace in range(layout.n_traces):
         letters = meant.take(cells[layout.places(trace, first, last)])
-        state = visited(joint.following, letters)[-1]
+        state = visited(joint.successors, letters)[-1]
         found[trace] = joint.verdicts[state][letters[-1]]
     return found
 
 
 def first_lost(
-    machine: Machine, letters: Sequence[int], walks: Iterable[Array], lengths: NDArray[Any]
+    machine: MealyMonitor, letters: Sequence[int], walks: Iterable[Array], lengths: NDArray[Any]
 ) -> NDArray[np.int64]:
     """Where traces are lost, counted from their first step here; -1 where they are not.
 
@@ -127,12 +127,14 @@ def first_lost(
         walks: for each step the cells of the traces that have it, which are the first ones.
         lengths: how many steps the traces have, in descending order.
     """
-    if machine.dead is None:
+    if machine.rejecting_sink is None:
         return np.full(len(lengths), -1, dtype=np.int64)
-    width = len(machine.following[0])
-    following = np.array(machine.following, dtype=np.intp).ravel() * width
+    width = len(machine.successors[0])
+    successors = np.array(machine.successors, dtype=np.intp).ravel() * width
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
-    lost = (following == machine.dead * width) & ~np.array(machine.accepting, dtype=bool).ravel()
+    lost = (successors == machine.rejecting_sink * width) & ~np.array(
+        machine.outputs, dtype=bool
+    ).ravel()
     classes = np.array(letters, dtype=np.intp)
     state = np.zeros(len(lengths), dtype=np.intp)
     kept = np.zeros(len(lengths), dtype=np.int64)
@@ -140,7 +142,7 @@ def first_lost(
         entry = state[: len(cells)] + classes.take(cells)
         # Once lost, always lost: so many steps are kept as come before.
         kept[: len(cells)] += ~lost.take(entry)
-        state = following.take(entry)
+        state = successors.take(entry)
     return np.where(kept < lengths, kept, -1)
 
 
