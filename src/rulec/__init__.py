@@ -52,7 +52,7 @@ _HOME = {
     "Verdict": "rulec.monitoring.verdict",
     "compile_rulebook": "rulec.api.workflow",
     "find_maneuvers": "rulec.api.workflow",
-    "judge_recording": "rulec.api.workflow",
+    "verify_recording": "rulec.api.workflow",
     "load_rulebook": "rulec.rulebook.loader",
     "load_scenario": "rulec.scenario",
     "navigation_graph": "rulec.api.workflow",

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import island
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,6 +22,7 @@ from rulec.analysis.lineage.rule_lineage import Inheritance, Member, RuleHistory
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.model import Rule
+from support.builders import rulebook_family as island
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,24 @@ from itertools import product
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from pairs import ALONE, COUNTED, PAIRED, X, Y, allows, compared, formulas, sides, states
 
 from rulec.analysis.diff.diverse_witnesses import unusual
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.model import Axiom, Variable
 from rulec.trace import Trace
+from support.generators.random_rule_pairs import (
+    ALONE,
+    COUNTED,
+    PAIRED,
+    X,
+    Y,
+    allows,
+    compared,
+    formulas,
+    sides,
+    states,
+)
 
 SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
 

@@ -6,7 +6,6 @@ from itertools import product
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pairs import ALONE, COUNTED, X, allows, formulas, sides, states
 
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.conflict_search import conflict, share_words
@@ -14,6 +13,7 @@ from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied
 from rulec.api.rulebook_questions import analyze_rulebook
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.trace import Trace
+from support.generators.random_rule_pairs import ALONE, COUNTED, X, allows, formulas, sides, states
 
 OBJECTS = {"x": "thing"}
 STATES = list(states(OBJECTS, ["p", "place"]))

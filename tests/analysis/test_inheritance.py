@@ -1,6 +1,5 @@
 """What became of every rule and provision in a chain of rulebooks."""
 
-import island
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +8,7 @@ from rulec.analysis.lineage.book_lineage import inheritance
 from rulec.analysis.lineage.rule_lineage import Setting
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
+from support.builders import rulebook_family as island
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from books import P, Q, always, book, eventually, far, implies, near, rule
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import TIMED_VOCABULARY, comparison
 
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.compiler import compile_rulebook
@@ -24,6 +22,8 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.rulebook.model import Rulebook
+from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
+from support.generators.timed_formulas import TIMED_VOCABULARY, comparison
 
 COMPILED = compile_rulebook(
     book(

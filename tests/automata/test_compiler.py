@@ -5,10 +5,8 @@ from fractions import Fraction
 from functools import reduce
 
 import pytest
-from books import P, Q, always, book, eventually, far, implies, near, rule
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from words import formulas
 
 from rulec.automata import compiler
 from rulec.automata.alphabet import names_of
@@ -28,6 +26,8 @@ from rulec.logic.printing import in_words
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
+from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
+from support.generators.random_formulas import formulas
 
 
 def signals(n):

@@ -5,16 +5,6 @@ from itertools import product
 
 import pytest
 from hypothesis import assume, given
-from timed import (
-    CARS,
-    SUMS,
-    TIMED_VOCABULARY,
-    comparison,
-    is_true,
-    letter_number,
-    timed_formulas,
-    timed_states,
-)
 
 from rulec.automata.alphabet import (
     count_letters,
@@ -28,6 +18,16 @@ from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds
+from support.generators.timed_formulas import (
+    CARS,
+    SUMS,
+    TIMED_VOCABULARY,
+    comparison,
+    is_true,
+    letter_number,
+    timed_formulas,
+    timed_states,
+)
 
 
 def all_of(*formulas):

@@ -3,8 +3,6 @@
 import pytest
 import spot
 from hypothesis import given
-from past_in_spot import spot_automaton
-from words import VOCABULARY, formulas
 
 from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
@@ -19,6 +17,8 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
+from support.generators.random_formulas import VOCABULARY, formulas
+from support.oracles.past_in_spot import spot_automaton
 
 
 def machine_of(formula):

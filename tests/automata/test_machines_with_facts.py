@@ -10,8 +10,6 @@ import pytest
 import spot
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
-from past_in_spot import in_spot, spot_automaton
-from words import ATOMS, VOCABULARY, formulas, letters, words
 
 from rulec.automata import compiler, spot_bridge
 from rulec.automata.alphabet import propositions_of
@@ -37,6 +35,8 @@ from rulec.rulebook.model import Axiom, Rule, Rulebook, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
+from support.generators.random_formulas import ATOMS, VOCABULARY, formulas, letters, words
+from support.oracles.past_in_spot import in_spot, spot_automaton
 
 X = Variable("x", "thing")
 BOOLEAN = [

@@ -6,8 +6,6 @@ import pytest
 import spot
 from hypothesis import given
 from hypothesis import strategies as st
-from past_in_spot import in_spot, spot_automaton
-from words import ATOMS, VOCABULARY, formulas
 
 from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.compiler import compile_rulebook
@@ -17,6 +15,8 @@ from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.automata.tables import build_machine
 from rulec.monitoring.verify import run
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from support.generators.random_formulas import ATOMS, VOCABULARY, formulas
+from support.oracles.past_in_spot import in_spot, spot_automaton
 
 
 def machine_of(formula):

@@ -4,20 +4,20 @@ import pytest
 import spot
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from past_in_spot import in_spot, is_easy, spot_automaton
-from timed import (
-    SPEED,
-    TIMED_VOCABULARY,
-    comparison,
-    letter_number,
-    timed_formulas,
-)
 
 from rulec.automata.alphabet import count_letters, knowledge, propositions_of, reads_of
 from rulec.automata.random_words import agrees, verdict
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from support.generators.timed_formulas import (
+    SPEED,
+    TIMED_VOCABULARY,
+    comparison,
+    letter_number,
+    timed_formulas,
+)
+from support.oracles.past_in_spot import in_spot, is_easy, spot_automaton
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 

@@ -2,12 +2,12 @@
 
 import json
 
-import island
 import pytest
 
 from rulec.api.rulebook_questions import audit_rulebook
 from rulec.cli.main import main
 from rulec.report.rulebooks.audit_report import render
+from support.builders import rulebook_family as island
 
 CLEAN = """\
 rulebook clean

@@ -3,10 +3,10 @@
 import re
 from pathlib import Path
 
-import island
 import pytest
 
 from rulec.cli.main import main
+from support.builders import rulebook_family as island
 
 
 @pytest.fixture

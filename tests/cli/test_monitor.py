@@ -6,9 +6,9 @@ import subprocess
 import sys
 
 import pytest
-from terminal_signals import as_from_a_terminal
 
 from rulec.cli.main import main
+from support.builders.terminal_signals import as_from_a_terminal
 
 RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
 BOOK = """

@@ -3,9 +3,9 @@
 import json
 
 import pytest
-from roads import ROAD_XML
 
 from rulec.cli.main import main
+from support.builders.recordings import ROAD_XML
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 

@@ -4,12 +4,12 @@ import json
 from fractions import Fraction
 
 import pytest
-from books import P, Q, always, book, implies, rule
 
 from rulec.automata.bundle.bundle_file import read_compiled, to_json
 from rulec.automata.compiler import compile_rulebook
 from rulec.cli.main import main
 from rulec.logic.formula import Bound, Unary, UnaryOperator
+from support.builders.rulebooks import P, Q, always, book, implies, rule
 
 SOON = Unary(UnaryOperator.EVENTUALLY, Q, Bound(Fraction(0), Fraction(1), "s"))
 

@@ -7,7 +7,8 @@ import sys
 import time
 
 import pytest
-from terminal_signals import as_from_a_terminal
+
+from support.builders.terminal_signals import as_from_a_terminal
 
 RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
 MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]

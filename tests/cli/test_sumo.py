@@ -3,9 +3,9 @@
 import json
 
 import pytest
-from sumo_files import ROAD_NET, body, data, moment, written
 
 from rulec.cli.main import main
+from support.builders.sumo_files import ROAD_NET, body, data, moment, written
 
 DRIVE = data(*(moment(k / 2, body(x=20 + 5 * k, lane="in_1")) for k in range(12)))
 

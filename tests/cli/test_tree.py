@@ -3,10 +3,10 @@
 import json
 import re
 
-import island
 import pytest
 
 from rulec.cli.main import main
+from support.builders import rulebook_family as island
 
 
 @pytest.fixture

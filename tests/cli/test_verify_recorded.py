@@ -3,9 +3,9 @@
 import json
 
 import pytest
-from recorded_cars import three_cars
 
 from rulec.cli.main import main
+from support.builders.recorded_cars import three_cars
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 

@@ -1,9 +1,10 @@
 """What has been thought out by hand, every engine says."""
 
 import pytest
-from cases import CASES
-from engine import is_right
-from engine_table import ENGINES
+
+from support.cases.all_cases import CASES
+from support.engines.engine import is_right
+from support.engines.engine_table import ENGINES
 
 
 @pytest.mark.parametrize("engine", ENGINES)

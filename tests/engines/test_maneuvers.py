@@ -3,16 +3,16 @@
 from collections import Counter
 
 import pytest
-from books import compile_here
-from brute_force import BruteForce
-from engine import said
 from hypothesis import Phase, given, settings
-from random_maneuvers import Given, scene
-from seeds import seeds
 
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning import evaluate
 from rulec.planning.product.accepted_edges import accepted_edges
+from support.builders.rulebooks import compile_here
+from support.engines.engine import said
+from support.generators.random_maneuvers import Given, scene
+from support.generators.seeds import seeds
+from support.oracles.maneuver_oracle import BruteForce
 
 MANY = 10**9
 

@@ -2,14 +2,15 @@
 
 from fractions import Fraction
 
-from books import compile_here
-from engine import is_right
-from engine_table import ENGINES
 from hypothesis import Phase, given, settings
-from oracle import Oracle
-from random_rulebooks import rulebook
-from random_traces import traces
-from seeds import seeds
+
+from support.builders.rulebooks import compile_here
+from support.engines.engine import is_right
+from support.engines.engine_table import ENGINES
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+from support.oracles.rulebook_oracle import Oracle
 
 
 @given(seeds)

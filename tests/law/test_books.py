@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import pytest
-from national_books import FOLDER, NATIONAL, compiled, read
 
 from rulec.book_tests.example_runs import run_all
 from rulec.rulebook.files.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
+from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 
 of_every_book = pytest.mark.parametrize("name", NATIONAL)
 

@@ -3,10 +3,10 @@
 from typing import Any
 
 import pytest
-from national_books import CASES, NATIONAL, compiled, read, rules_on
 
 from rulec.monitoring.verify import verify
 from rulec.trace import Trace
+from support.builders.national_books import CASES, NATIONAL, compiled, read, rules_on
 
 JUDGED = [
     pytest.param(case, name, id=f"{case['id']}-{name}")

@@ -4,11 +4,11 @@ import re
 from pathlib import Path
 
 import pytest
-from national_books import FOLDER, NATIONAL, read, rules_on
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_all
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from support.builders.national_books import FOLDER, NATIONAL, read, rules_on
 
 PAGE = (Path(__file__).parents[2] / "docs" / "rulebooks.md").read_text(encoding="utf-8")
 

@@ -3,12 +3,12 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from national_books import compiled
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
+from support.builders.national_books import compiled
 
 MIRRORED = {"left_of": "right_of", "right_of": "left_of", "same_lane": "same_lane"}
 

@@ -2,13 +2,13 @@
 
 import pytest
 from hypothesis import given
-from words import formulas, letters, words
 
 from rulec.logic.constant_folding import folded
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import truth_values
 from rulec.rulebook.loader import parse_rulebook
+from support.generators.random_formulas import formulas, letters, words
 
 JOINING = {BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES}
 

@@ -6,10 +6,10 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import CARS, SUMS, comparison, formulas_in, timed_formulas
 
 from rulec.logic.codec import DEEPEST, from_data, to_data
 from rulec.logic.formula import Atom, Bound, Comparison, Count, Same, Unary, UnaryOperator
+from support.generators.timed_formulas import CARS, SUMS, comparison, formulas_in, timed_formulas
 
 P = Atom("p")
 PER_HOUR = Fraction(5, 18)

@@ -3,12 +3,12 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import letters_of, timed_formulas, timed_words
-from words import formulas, letters, words
 
 from rulec.logic.causes import deciding_instants
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import holds, values_of_parts
+from support.generators.random_formulas import formulas, letters, words
+from support.generators.timed_formulas import letters_of, timed_formulas, timed_words
 
 P, Q = Atom("p"), Atom("q")
 

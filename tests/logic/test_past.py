@@ -5,13 +5,13 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import formulas_in, letters_of, timed_words
 
 from rulec.logic.bounds import PAST, Range, operations_of
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.past_registers import Register, definition, remembered
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds, truth_values
+from support.generators.timed_formulas import formulas_in, letters_of, timed_words
 
 P, Q = Atom("p"), Atom("q")
 ONCE_P = Unary(UnaryOperator.ONCE, P)

@@ -5,8 +5,6 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import comparison
-from words import VOCABULARY, formulas
 
 from rulec.logic.formula import (
     Atom,
@@ -22,6 +20,8 @@ from rulec.logic.formula import (
 )
 from rulec.logic.printing import in_words, number_in_words, term_in_words, time_in_words
 from rulec.rulebook.loader import parse_rulebook
+from support.generators.random_formulas import VOCABULARY, formulas
+from support.generators.timed_formulas import comparison
 
 DECLARATIONS = """
 rulebook printed

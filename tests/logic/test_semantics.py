@@ -3,17 +3,8 @@
 from fractions import Fraction
 
 import pytest
-from definition import by_definition
 from hypothesis import example, given
 from hypothesis import strategies as st
-from timed import (
-    comparison,
-    letters_of,
-    timed_formulas,
-    timed_words,
-    without_bounds,
-)
-from words import formulas, letters, words
 
 from rulec.logic.formula import (
     Atom,
@@ -28,6 +19,15 @@ from rulec.logic.formula import (
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import holds, truth_values
 from rulec.rulebook.loader import parse_rulebook
+from support.generators.random_formulas import formulas, letters, words
+from support.generators.timed_formulas import (
+    comparison,
+    letters_of,
+    timed_formulas,
+    timed_words,
+    without_bounds,
+)
+from support.oracles.formula_oracle import by_definition
 
 X, Y = Atom("x"), Atom("y")
 

@@ -5,7 +5,6 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from words import ATOMS
 
 from rulec.logic.english.sentence import phrase, sentence
 from rulec.logic.english.sentence_layout import in_one_line, lines
@@ -22,6 +21,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
+from support.generators.random_formulas import ATOMS
 
 NOT, ALWAYS, NEVER = UnaryOperator.NOT, UnaryOperator.ALWAYS, UnaryOperator.NEVER
 EVENTUALLY, NEXT = UnaryOperator.EVENTUALLY, UnaryOperator.NEXT

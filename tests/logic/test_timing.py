@@ -5,7 +5,6 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from timed import formulas_in, timed_formulas
 
 from rulec.logic.bounds import (
     NotAMultipleError,
@@ -18,6 +17,7 @@ from rulec.logic.bounds import (
 )
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.logic.printing import in_words
+from support.generators.timed_formulas import formulas_in, timed_formulas
 
 P, Q = Atom("p"), Atom("q")
 QUARTER = Fraction(1, 4)

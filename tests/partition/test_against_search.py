@@ -2,7 +2,6 @@
 
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from random_scenarios import scenarios
 
 from rulec.api.workflow import compile_rulebook, navigation_graph
 from rulec.diagnostics import RulecError
@@ -13,6 +12,7 @@ from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace.graph_paths import all_traces
+from support.generators.random_scenarios import scenarios
 
 PAPER = compile_rulebook("esterle2019")
 FINE = compile_rulebook(

@@ -3,15 +3,15 @@
 from functools import cache
 from itertools import product
 
-import by_the_book as book
 import shapely
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
-from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
 from rulec.scenario import load_scenario
+from support.generators.random_scenarios import scenarios
+from support.oracles import partition_oracle as book
 
 partitions = st.sampled_from(["paper", "fine"])
 extents = st.sampled_from(["lane", "body"])

@@ -7,7 +7,6 @@ import networkx
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
@@ -23,6 +22,7 @@ from rulec.scenario import (
     load_scenario,
 )
 from rulec.scenario.time_grid import timing
+from support.generators.random_scenarios import scenarios
 
 partitions = st.sampled_from(["paper", "fine"])
 

@@ -4,12 +4,12 @@ from fractions import Fraction
 
 import pytest
 from hypothesis import assume, given
-from random_scenarios import scenarios
 
 from rulec.diagnostics import RulecError
 from rulec.partition import Layer, navigation_graph
 from rulec.partition.time_margin import edges
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario, load_scenario
+from support.generators.random_scenarios import scenarios
 
 
 def names(layer):

@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from roads import RECORDINGS
 
 from rulec.scenario.recorded.ego_start import reference_of, start_of
 from rulec.scenario.recorded.reference_line import dense, reference_line
 from rulec.scenario.recorded.route import lanelets_at, route
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.recording_files import read_recording
+from support.builders.recordings import RECORDINGS
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

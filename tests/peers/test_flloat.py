@@ -13,16 +13,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from drawn import drawn
-from timed import (
-    TIMED_VOCABULARY,
-    is_true,
-    letter_number,
-    letters_of,
-    timed_formulas,
-    timed_words,
-    without_bounds,
-)
 
 from rulec.automata.alphabet import count_letters, propositions_of, reads_of
 from rulec.automata.random_words import verdict
@@ -31,6 +21,16 @@ from rulec.automata.tables import build_machine
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Binary, Constant, Unary
 from rulec.logic.semantics import holds
+from support.generators.drawn import drawn
+from support.generators.timed_formulas import (
+    TIMED_VOCABULARY,
+    is_true,
+    letter_number,
+    letters_of,
+    timed_formulas,
+    timed_words,
+    without_bounds,
+)
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

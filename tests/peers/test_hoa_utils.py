@@ -12,13 +12,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from books import book, rule
-from drawn import drawn
-from words import formulas, letters, words
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
+from support.builders.rulebooks import book, rule
+from support.generators.drawn import drawn
+from support.generators.random_formulas import formulas, letters, words
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

@@ -4,9 +4,7 @@ import re
 from itertools import combinations
 from xml.etree import ElementTree
 
-from books import P, Q, book, compile_here, rule
 from hypothesis import given
-from machines import VOCABULARY, machines
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
@@ -21,6 +19,8 @@ from rulec.report.automata.automaton_layout import (
 )
 from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
 from rulec.report.automata.automaton_svg import as_svg
+from support.builders.rulebooks import P, Q, book, compile_here, rule
+from support.generators.random_machines import VOCABULARY, machines
 
 
 def box_of(state):

@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import pytest
 from hypothesis import assume, given
-from random_scenarios import scenarios
 
 from rulec.api.workflow import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import envelope, navigation_graph
 from rulec.report.maneuvers.envelope_table import COLUMNS, stretches, write_envelopes
+from support.generators.random_scenarios import scenarios
 
 
 @given(scenarios())

@@ -3,7 +3,6 @@
 from functools import reduce
 
 import pytest
-from books import always, both, implies, no
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,6 +10,7 @@ from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperat
 from rulec.logic.printing import in_words
 from rulec.monitoring.explain.explanation import Part
 from rulec.report.verdicts.table_folding import fitting, folded, head, width
+from support.builders.rulebooks import always, both, implies, no
 
 A, B, C = (Atom(f"a_signal_with_a_long_name_{name}") for name in "abc")
 

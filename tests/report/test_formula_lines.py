@@ -5,10 +5,10 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from words import formulas
 
 from rulec.logic.printing import in_words
 from rulec.report.text.formula_lines import formula_lines
+from support.generators.random_formulas import formulas
 
 
 @given(formulas, st.integers(10, 60))

@@ -5,12 +5,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from books import P, book, compile_here, rule
 
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.verify import verify
 from rulec.report.verdicts import verdict_report
 from rulec.trace import Trace
+from support.builders.rulebooks import P, book, compile_here, rule
 
 
 def compiled(**more):

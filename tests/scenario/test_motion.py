@@ -3,10 +3,10 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from random_scenarios import motions
 
 from rulec.scenario import Box, ConstantAcceleration, Obstacle, Trajectory
 from rulec.scenario.motion import facing, position_at, span, stands_forever, swept
+from support.generators.random_scenarios import motions
 
 
 def thing(motion, direction=None, kind="vehicle"):

@@ -1,11 +1,11 @@
 """Every construct, laid out in every sensible way; and with one mistake, which is one error."""
 
 import pytest
-from constructs import CLAUSES, HEADER, HEADS, ITEMS
 
 from rulec.diagnostics import Source
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.syntax import parse, tree
+from support.generators.language_constructs import CLAUSES, HEADER, HEADS, ITEMS
 
 RULE = "hard rule other {\n  require p\n}"
 

@@ -10,12 +10,12 @@ from random import Random
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from steps import grows_in_proportion
-from untidy_files import tree_of, untidy_files
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, print_file
 from rulec.syntax.formatting import format_source, safe_format
+from support.builders.counted_steps import grows_in_proportion
+from support.generators.untidy_files import tree_of, untidy_files
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]

@@ -5,10 +5,8 @@ import unicodedata
 from pathlib import Path
 
 import pytest
-from constructs import CLAUSES, HEADER, ITEMS
 from hypothesis import given
 from hypothesis import strategies as st
-from steps import grows_in_proportion
 
 from rulec.diagnostics import RulecError, Source
 from rulec.report.findings.diagnostics_text import render_diagnostics
@@ -16,6 +14,8 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.syntax import decode, parse
 from rulec.syntax.keywords import CONTEXTUAL, RESERVED, SYMBOLS
 from rulec.syntax.scanner import scan
+from support.builders.counted_steps import grows_in_proportion
+from support.generators.language_constructs import CLAUSES, HEADER, ITEMS
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
 SYNTAX = [

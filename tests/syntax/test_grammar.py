@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given
 from lark import Lark
 from lark.exceptions import UnexpectedInput
-from syntax_trees import files
 
 from rulec.resources import grammar_file
 from rulec.syntax import print_file
+from support.generators.syntax_trees import files
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 WHOLE = Lark(GRAMMAR, parser="lalr", lexer="contextual", start="file")

@@ -4,12 +4,12 @@ import subprocess
 import sys
 
 import pytest
-from steps import grows_in_proportion
 
 from rulec.diagnostics import RulecError, Source
 from rulec.files import MAX_SOURCE_BYTES as MAX_BYTES
 from rulec.rulebook.loader import parse_rulebook
 from rulec.syntax import decode, parse, parse_formula, print_formula
+from support.builders.counted_steps import grows_in_proportion
 
 HEAD = "rulebook big\nsignal p, q\nhard rule r { require "
 

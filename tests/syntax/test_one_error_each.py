@@ -1,11 +1,11 @@
 """As many errors as mistakes, each where its mistake is."""
 
-from breakable import FOOTER, HEADER, broken_rulebooks, rule_parts
 from hypothesis import given
 
 from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import parse_rulebook
+from support.generators.broken_rulebooks import FOOTER, HEADER, broken_rulebooks, rule_parts
 
 
 def test_without_mistakes_there_is_no_error():

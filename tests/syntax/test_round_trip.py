@@ -4,12 +4,12 @@ import re
 
 from hypothesis import given
 from hypothesis import strategies as st
-from syntax_trees import files, formulas
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, parse_formula, print_file, print_formula
 from rulec.syntax.printer import print_whole
 from rulec.syntax.tree import Aggregate, AtomUse, Number, Truth
+from support.generators.syntax_trees import files, formulas
 
 styles = st.sampled_from(["words", "symbols", "written"])
 

@@ -7,12 +7,12 @@ import lark
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from syntax_trees import formulas
 
 from rulec.resources import grammar_file
 from rulec.syntax import grammar as at_work
 from rulec.syntax import parse_formula, parser_tables
 from rulec.syntax.printer import print_whole
+from support.generators.syntax_trees import formulas
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 FILE = grammar_file("rulec.tables.json").read_text(encoding="utf-8")

@@ -5,7 +5,6 @@ from itertools import combinations, pairwise
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from random_scenarios import scenarios
 
 from rulec.api.workflow import find_maneuvers
 from rulec.diagnostics import RulecError
@@ -14,6 +13,7 @@ from rulec.report.pictures.cell_signatures import in_letters
 from rulec.report.pictures.drawing.marks import Area, Line, Words
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
+from support.generators.random_scenarios import scenarios
 
 CELLS = ("cell", "crossing", "chosen")
 

@@ -3,7 +3,6 @@
 import time
 
 import pytest
-from roads import RECORDINGS
 
 from rulec.api.workflow import compile_rulebook, find_maneuvers, navigation_graph
 from rulec.diagnostics import RulecError
@@ -12,6 +11,7 @@ from rulec.scenario import load_scenario
 from rulec.scenario.recorded.recorded_scene import to_scenario
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.recording_files import read_recording
+from support.builders.recordings import RECORDINGS
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))

@@ -5,11 +5,11 @@ import sys
 from dataclasses import replace
 
 import pytest
-from roads import ROAD_XML
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
 from rulec.scenario.commonroad import required_elements
+from support.builders.recordings import ROAD_XML
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 BOUND = "<leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>"

@@ -4,11 +4,11 @@ It is one of CommonRoad's, and not part of this project: RULEC_RECORDINGS names 
 """
 
 import pytest
-from roads import RECORDINGS
 
 from rulec.api.workflow import find_maneuvers
 from rulec.scenario import Choice, load_scenario
 from rulec.scenario.motion import swept
+from support.builders.recordings import RECORDINGS
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILE = RECORDINGS / "USA_US101-1_1_T-1.xml"

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from roads import lanelet, recording, straight
 
 from rulec.scenario.model import MissingLane
 from rulec.scenario.recorded.lane_coordinates import NARROWEST_LANE_M, lanes_along
 from rulec.scenario.recorded.reference_line import reference_line
+from support.builders.recordings import lanelet, recording, straight
 
 
 def lanes_of(lanelets, way, ego_s=10.0):

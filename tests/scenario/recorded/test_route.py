@@ -1,10 +1,10 @@
 """Which lanelets ego follows."""
 
 import pytest
-from roads import lanelet, recording, straight
 
 from rulec.scenario.recorded.recording import State, in_order
 from rulec.scenario.recorded.route import lanelet_of, lanelets_at, route
+from support.builders.recordings import lanelet, recording, straight
 
 FORK = [
     straight(1, 0, 50, successors=(2, 3, 4)),

@@ -6,7 +6,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from roads import recording, rectangle, straight, vehicle
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
@@ -14,6 +13,7 @@ from rulec.scenario.motion import swept
 from rulec.scenario.recorded.recorded_scene import to_scenario
 from rulec.scenario.recorded.recording import Light, Participant
 from rulec.scenario.recorded.traffic_obstacles import GOES_ON_S
+from support.builders.recordings import recording, rectangle, straight, vehicle
 
 ROAD = straight(1, 0, 200, left_of=2)
 BESIDE = straight(2, 0, 200, y=4, right_of=1)

@@ -6,11 +6,11 @@ from contextlib import suppress
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from sumo_files import ROAD_NET, TYPES, body, data, moment, written
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, load_scenario, safe_xml
 from rulec.scenario.recording_files import read_recording
+from support.builders.sumo_files import ROAD_NET, TYPES, body, data, moment, written
 
 GOOD = data(moment(0, body(lane="in_1")), moment(0.1, body(x=21, lane="in_1")))
 

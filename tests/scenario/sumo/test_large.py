@@ -2,9 +2,8 @@
 
 import tracemalloc
 
-from sumo_files import body, data, moment, written
-
 from rulec.scenario.recording_files import read_recording
+from support.builders.sumo_files import body, data, moment, written
 
 STEPS, VEHICLES = 400, 50
 

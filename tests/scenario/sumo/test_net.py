@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from sumo_files import ROAD_NET
 
 from rulec.scenario.recorded.recording import Light
 from rulec.scenario.sumo.lane_borders import beside, without_repeats
 from rulec.scenario.sumo.lanelets import lanelets_of
 from rulec.scenario.sumo.net import read_net
 from rulec.scenario.sumo.traffic_lights import unknown_lights
+from support.builders.sumo_files import ROAD_NET
 
 
 def lanelets(tmp_path, text=ROAD_NET, step_s=0.5):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sumo_files import body, data, moment, written
 
 from rulec.scenario.recorded.track import rectangles
 from rulec.scenario.recording_files import read_recording
 from rulec.scenario.sumo.vehicle_types import CLASSES
+from support.builders.sumo_files import body, data, moment, written
 
 
 def read(folder, *moments, **more):

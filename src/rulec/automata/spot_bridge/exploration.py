@@ -49,7 +49,7 @@ def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> Det
 
     def accepts(colours: int) -> bool:
         marks = [index for index in range(acceptance.num_sets()) if colours >> index & 1]
-        return bool(acceptance.outputs(spot.mark_t(marks)))
+        return bool(acceptance.accepting(spot.mark_t(marks)))
 
     initial = automaton.get_init_state_number()
     after = None if translation.alive is None else _after_the_end(automaton)

@@ -1,0 +1,184 @@
+"""Rules with bounds in seconds: a machine for each step, and none for a step that does not fit."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from rulec.api.workflow import compile_rulebook, find_maneuvers, machines
+from rulec.automata import step_compilation
+from rulec.automata.step_compilation import AnyStep
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.logic.formula import Bound, Unary, UnaryOperator
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verify import verify, verify_or_reason
+from rulec.planning.product.graph_instances import instances
+from rulec.rulebook.model import Rulebook
+from rulec.trace import Trace, TraceGraph
+from rulec.vocabulary import Signal, Vocabulary
+from support.builders.rulebooks import P, Q, always, book, implies, rule
+
+HALF, ONE = Fraction(1, 2), Fraction(1)
+
+
+def within(seconds, formula):
+    return Unary(UnaryOperator.EVENTUALLY, formula, Bound(Fraction(0), Fraction(seconds), "s"))
+
+
+ANSWERED = rule("answered", always(implies(P, within(1, Q))))
+PLAIN = rule("plain", always(implies(P, Q)), strength="soft")
+BOOK = book(ANSWERED, PLAIN)
+
+
+def trace(text, step_s):
+    """``"p.q"``: in each state `p`, `q` or neither."""
+    states = tuple({"p": letter == "p", "q": letter == "q"} for letter in text)
+    return Trace("t", step_s, {}, states, place=SourceLocation("t.jsonl", 3))
+
+
+def violated(verdict):
+    return [one.rule for one in verdict.violations]
+
+
+@pytest.mark.parametrize(
+    ("step_s", "text", "kept"),
+    [
+        (1.0, "pq", True),
+        (1.0, "p.q", False),
+        (0.5, "p.q", True),
+        (0.5, "p..q", False),
+        (0.25, "p...q", True),
+        (0.1, "p" + 9 * "." + "q", True),
+        (0.1, "p" + 10 * "." + "q", False),
+    ],
+)
+def test_seconds_are_seconds_whatever_the_step(step_s, text, kept):
+    every = machines(BOOK)
+    assert ("answered" in violated(verify(trace(text, step_s), every))) is not kept
+    # As for a rulebook that was compiled for this step from the start.
+    rules = compile_rulebook(BOOK, step_s=step_s)
+    assert verify(trace(text, step_s), rules) == verify(trace(text, step_s), every)
+
+
+def test_the_machine_of_another_step_does_not_judge():
+    rules = compile_rulebook(BOOK, step_s=1)
+    with pytest.raises(RulecError) as caught:
+        verify(trace("pq", 0.5), rules)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "R0507"
+    assert problem.message == (
+        "rule `answered` was compiled for steps of 1 s; the trace has steps of 0.5 s"
+    )
+    assert problem.help == "compile its source with `--step 0.5`"
+    assert problem.place == SourceLocation("t.jsonl", 3)
+
+
+def test_without_bounds_in_seconds_one_machine_judges_all():
+    rules = compile_rulebook(book(PLAIN), step_s=1)
+    assert rules.rules[0].step_s is None
+    assert violated(verify(trace("pq", 0.5), rules)) == ["plain"]
+    assert machines(book(PLAIN)).rules == rules.rules
+
+
+def test_a_step_is_the_decimal_that_is_written():
+    """0.1 s is a tenth: ten steps are a second, though the float is a little more than a tenth."""
+    rules = compile_rulebook(BOOK, step_s=0.1)
+    assert rules.rules[0].step_s == Fraction(1, 10)
+    assert isinstance(verify(trace("p", 0.1), rules), Verdict)
+
+
+def test_a_step_that_does_not_fit_is_a_problem_of_that_trace_alone():
+    every = machines(BOOK)
+    answers = [verify_or_reason(trace("pq", step), every) for step in (1, 0.3, 0.5, 0.3)]
+    assert [type(one) for one in answers] == [Verdict, NotJudged, Verdict, NotJudged]
+    (problem,) = answers[1].error.diagnostics
+    assert problem.code == "R0407"
+    assert problem.place == SourceLocation("t.jsonl", 3)
+
+
+def test_a_trace_without_a_step_is_no_question_to_the_compiler():
+    every = machines(BOOK)
+    for step_s in (0.0, -1.0, float("nan"), float("inf")):
+        assert verify_or_reason(trace("pq", step_s), every).error.diagnostics[0].code == "R0501"
+
+
+@pytest.fixture
+def compiled(monkeypatch):
+    """What is compiled, as lists of names, call by call."""
+    calls = []
+
+    def told(rulebook, *, step_s=None):
+        calls.append(([one.name for one in rulebook.rules], step_s))
+        return compile_rulebook_itself(rulebook, step_s=step_s)
+
+    compile_rulebook_itself = step_compilation.compile_rulebook
+    monkeypatch.setattr(step_compilation, "compile_rulebook", told)
+    return calls
+
+
+def test_only_what_is_needed_is_compiled(compiled):
+    every = AnyStep(BOOK)
+    for step in (HALF, ONE, HALF, ONE):
+        rules = every(step).rules
+        assert [one.name for one in rules] == ["answered", "plain"]
+        assert [one.step_s for one in rules] == [step, None]
+    assert compiled == [(["answered", "plain"], HALF), (["answered"], ONE)]
+
+
+def test_a_step_that_does_not_fit_is_found_out_once(compiled):
+    every = AnyStep(BOOK)
+    for _ in range(3):
+        with pytest.raises(RulecError):
+            every(Fraction(3, 10))
+    assert len(compiled) == 1
+    assert every(ONE).rules[1].name == "plain"
+
+
+def test_each_rule_at_the_step_of_its_own_examples(compiled):
+    every = AnyStep(book(replace(ANSWERED, step_s=HALF), ANSWERED_TOO))
+    assert [one.step_s for one in every.at_own_steps().rules] == [HALF, ONE]
+    assert [one.step_s for one in every(HALF).rules] == [HALF, HALF]
+    assert [names for names, _ in compiled] == [["answered", "too"], ["too"]]
+
+
+ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
+
+
+def test_not_every_step_is_kept_for_ever(compiled, monkeypatch):
+    monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
+    every = AnyStep(book(ANSWERED))
+    for step in (1, HALF, Fraction(1, 4), 1):
+        assert every(Fraction(step)).rules[0].step_s == step
+    assert len(compiled) == 4
+
+
+def test_an_empty_rulebook():
+    assert AnyStep(book())(ONE).rules == ()
+    assert machines(book()).rules == ()
+
+
+def test_a_graph_is_judged_by_machines_for_its_step():
+    """p all along, q never: whatever the step, no maneuver answers in a second."""
+    state = {"p": True, "q": False}
+    graph = TraceGraph(
+        0.5, {}, {}, ((state,),), (), (), (), cost_unit=Fraction(1), start=0, goals=(0,)
+    )
+    assert len(instances(graph, compile_rulebook(BOOK, step_s=0.5))) == 1
+    with pytest.raises(RulecError, match=r"compiled for steps of 1 s; the graph has steps of 0.5"):
+        instances(graph, compile_rulebook(BOOK, step_s=1))
+
+
+@pytest.mark.parametrize("step_s", [None, 0.5])
+def test_maneuvers_are_judged_by_machines_for_the_graphs_step(step_s):
+    only_p = replace(ANSWERED, formula=always(implies(P, within(1, P))))
+    words = Vocabulary("words", {}, {"p": Signal("p", (), False)})
+    found = find_maneuvers("s1", Rulebook("test", words, (only_p,)), step_s=step_s)
+    assert [one.step_s for one in found.rules.rules] == [Fraction(step_s or 1)]
+    assert found.satisfying == found.traces > 0
+
+
+def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
+    with pytest.raises(RulecError) as caught:
+        find_maneuvers("s1", compile_rulebook(BOOK, step_s=0.5))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.place) == ("R0507", SourceLocation("s1"))

@@ -1,0 +1,56 @@
+"""Every recording that is at hand: each of its vehicles is judged, or it is said why not."""
+
+import time
+from fractions import Fraction
+
+import pytest
+
+from rulec.api.workflow import machines
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection.requested import RequestedDrives
+from rulec.extraction.violation_tally import ViolationTally
+from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.verify import verify
+from rulec.scenario.recording_files import read_recording
+from support.builders.recordings import RECORDINGS
+
+pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
+FILES = sorted(RECORDINGS.glob("*.xml"))
+if not FILES:
+    pytest.skip(
+        "CommonRoad's scenarios are not here: set RULEC_RECORDINGS", allow_module_level=True
+    )
+GERMAN = machines("de")(Fraction(1, 10))
+PAPER = machines("esterle2019")
+ALMOST_ALL = 0.95
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_its_drives(file):
+    judged = RecordingVerdicts(read_recording(file), PAPER, RequestedDrives(), file.name)
+    tally = ViolationTally()
+    seen = []
+    for one in judged.answers():
+        tally.add(one)
+        seen.append(one.ego if isinstance(one, NoDrive) else one.drive.ego)
+        if not isinstance(one, NoDrive):
+            # Many together are judged as each alone
+            assert isinstance(one.answer, Verdict)
+            assert one.answer == verify(one.drive.trace, judged.rules)
+    assert list(dict.fromkeys(seen)) == list(judged.egos)
+    assert tally.judged >= ALMOST_ALL * len(judged.egos)
+
+
+def test_all_of_them_by_a_country_in_a_minute():
+    """A generous bound, for a machine with much else to do: it takes some 25 s of one processor."""
+    begin = time.process_time()
+    drives = 0
+    for file in FILES:
+        recording = read_recording(file)
+        if recording.step_s != 0.1:
+            continue
+        judged = RecordingVerdicts(recording, GERMAN, RequestedDrives(), file.name)
+        drives += sum(not isinstance(one, NoDrive) for one in judged.answers())
+    assert drives > 200
+    assert time.process_time() - begin < 60

@@ -1,0 +1,44 @@
+"""docs/recordings.md says what there is: every threshold with its value, and every word."""
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+from rulec.extraction.drive_projection import UNITS
+from rulec.extraction.drives import Drives
+from rulec.extraction.selection.thresholds import USUAL
+from rulec.rulebook.loader import load_rulebook
+from rulec.vocabulary import Quantity
+from support.builders.recordings import recording, straight, vehicle
+
+PAGE = (Path(__file__).parents[2] / "docs/recordings.md").read_text()
+
+
+def test_every_threshold_with_its_value():
+    rows = re.findall(r"^\| `(\w+)` \| ([0-9.]+) \|", PAGE, re.MULTILINE)
+    assert rows == [(x.name, f"{getattr(USUAL, x.name):g}") for x in fields(USUAL)]
+
+
+def test_every_word():
+    section = PAGE[PAGE.index("## Words") : PAGE.index("## Thresholds")]
+    cells = [line.split("|")[1] for line in section.splitlines() if line.startswith("| `")]
+    documented = {word for cell in cells for word in re.findall(r"`(\w+)`", cell)}
+    lane = straight(1, 0, 99, signs=frozenset({"STOP", "YIELD", "NO_OVERTAKING_START"}))
+    lane = straight(1, 0, 99, signs=lane.signs, limit_mps=9.0, types=frozenset({"highway"}))
+    found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
+    (drive,) = Drives(found, "right").of("1")
+    lamps = {"light", "crosses_light_line", "indicator", "marked_lanes"}
+    assert drive.words | lamps | {"on_solid_line", "broken_on_own_side"} == documented
+
+
+def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():
+    declared = {
+        **load_rulebook("esterle2019").vocabulary.declarations,
+        **load_rulebook("de").vocabulary.declarations,
+    }
+    (drive,) = Drives(
+        recording([straight(1, 0, 99)], [vehicle(1, {0: (9, 0), 1: (19, 0)})]), "right"
+    ).of("1")
+    assert drive.words <= set(declared)
+    units = {x.name: x.unit for x in declared.values() if isinstance(x, Quantity)}
+    assert {name: units[name] for name in UNITS} == UNITS

@@ -1,0 +1,35 @@
+"""Queues: half of the gaps on a lane are short, by distance or by time."""
+
+import pytest
+
+from rulec.extraction.drives import Drives
+from support.builders.recordings import recording, straight, vehicle
+
+
+def queue_on_the_left(gaps, mps=0.0):
+    """Is there one for ego on the right lane, beside the first of cars of 4 m with these gaps?"""
+    lanes = [straight(1, -200, 400, left_of=2), straight(2, -200, 400, y=4.0, right_of=1)]
+    x, cars = 0.0, []
+    for number, gap in enumerate([*gaps, 0.0], 1):
+        cars.append(vehicle(number, {k: (x + mps * k / 2, 4.0) for k in range(3)}))
+        x += 4.0 + gap
+    ego = vehicle(99, {k: (0.0 + mps * k / 2, 0.0) for k in range(3)})
+    (drive,) = Drives(recording(lanes, [*cars, ego]), "right").of("99")
+    return drive.trace.states[1]["far_lane_queue"]
+
+
+@pytest.mark.parametrize(
+    ("gaps", "mps", "queue"),
+    [
+        ((19, 19), 0.0, True),
+        ((19, 30), 0.0, True),  # one of two is a half
+        ((30, 30), 0.0, False),
+        ((19, 30, 30), 0.0, False),
+        ((5, 30, 5, 30), 0.0, True),
+        ((19,), 0.0, False),  # two cars are no queue
+        ((30, 30), 15.5, True),  # 31 m are 2 s
+        ((32, 32), 15.5, False),
+    ],
+)
+def test_half_of_the_gaps_are_short(gaps, mps, queue):
+    assert queue_on_the_left(gaps, mps) is queue

@@ -1,0 +1,124 @@
+"""Twelve vehicles of a real simulation, whose verdicts were found from its positions alone.
+
+The road is straight, so bodies are turned rectangles along x; what each of these did was counted
+out from them, with the numbers of ``docs/recordings.md``, and the verdict found in the law. Times
+are those of the simulation, in s: of the first state by which a rule is violated.
+"""
+
+import pytest
+
+from rulec.api.workflow import machines
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection.requested import RequestedDrives as Wanted
+from rulec.scenario.recording_files import read_recording
+from support.builders.sumo_files import SUMO
+
+FILE = SUMO / "fcd.xml.gz"
+if not FILE.exists():
+    pytest.skip(f"SUMO's {FILE.name} is not here: set RULEC_RECORDINGS", allow_module_level=True)
+
+# A bus and a car on the lane at the kerb, within the limit, pass nobody and meet nobody
+QUIET = {"de": {}, "gb": {}}
+# 59.6 km/h where 50 are allowed, from its first moment on
+SPEEDING = {"de": {"speed_limit": 0.0}, "gb": {"speed_limit": 0.0}}
+EXPECTED = {
+    "eb.0": QUIET,
+    "ew.2": QUIET,
+    "ew.0": SPEEDING,
+    # Passes two that stand in a queue of the left lane at the crossing, by at most 16 km/h; drives
+    # over the crossing while p.2 is on the lane beside. For Britain the two stand: no overtaking.
+    "ws.0": {
+        "de": {"crossing_overtaking": 40.8, "give_way_to_pedestrians": 45.1},
+        "gb": {"give_way_to_pedestrians": 45.1},
+    },
+    # Passes we.9 on the right by up to 28 km/h, too much for a German queue on the left lane
+    "ws.1": {
+        "de": {
+            "near_side_passing": 61.6,
+            "crossing_overtaking": 61.6,
+            "give_way_to_pedestrians": 61.1,
+        },
+        "gb": {"give_way_to_pedestrians": 61.1},
+    },
+    # Passes we.28 on the right, with no queue: two vehicles on the left lane
+    "we.29": {
+        "de": {"near_side_passing": 138.6, "crossing_overtaking": 138.6},
+        "gb": {"near_side_passing": 138.6, "crossing_overtaking": 138.6},
+    },
+    # Passes the queue on the left lane, which stands, by less than 20 km/h, up to the crossing
+    "we.5": {
+        "de": {"speed_limit": 20.0, "crossing_overtaking": 47.3},
+        "gb": {"speed_limit": 20.0},
+    },
+    # Passes ew.4 on the left, at times by less than 1 km/h
+    "ew.5": {
+        "de": {"speed_limit": 25.8, "crossing_overtaking": 51.3, "speed_advantage": 51.3},
+        "gb": {"speed_limit": 25.8, "crossing_overtaking": 51.3},
+    },
+    # 28.4 m behind ew.7, which stands across both lanes, at 15.1 m/s: it takes 29.4 m
+    "ew.8": {
+        "de": {"speed_limit": 41.2, "following_distance": 58.3},
+        "gb": {"speed_limit": 41.2},
+    },
+    # A corner of its front is on the crossing while p.5 is on the lane beside; it passes p.5 by
+    # 0.9 m when they are level
+    "we.9": {
+        book: {
+            "speed_limit": 36.0,
+            "give_way_to_pedestrians": 70.6,
+            "lateral_gap_to_pedestrians": 71.5,
+        }
+        for book in ("de", "gb")
+    },
+    # Passes we.8 on the right where at times there is no queue, and over the crossing beside p.6
+    "we.12": {
+        book: {
+            "near_side_passing": 81.2,
+            "crossing_overtaking": 81.2,
+            "give_way_to_pedestrians": 80.1,
+        }
+        for book in ("de", "gb")
+    },
+    # Passes we.11, which stood when that began, at the crossing
+    "we.10": {
+        "de": {"speed_limit": 40.0, "crossing_overtaking": 74.8},
+        "gb": {"speed_limit": 40.0},
+    },
+}
+COUNTED = {
+    "de": {
+        "speed_limit",
+        "near_side_passing",
+        "crossing_overtaking",
+        "give_way_to_pedestrians",
+        "following_distance",
+        "lateral_gap_to_pedestrians",
+        "speed_advantage",
+    },
+    "gb": {
+        "speed_limit",
+        "near_side_passing",
+        "crossing_overtaking",
+        "give_way_to_pedestrians",
+        "lateral_gap_to_pedestrians",
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return read_recording(FILE)
+
+
+@pytest.mark.parametrize("book", ["de", "gb"])
+def test_what_they_did(simulated, book):
+    judged = RecordingVerdicts(simulated, machines(book), Wanted(tuple(EXPECTED)), str(FILE))
+    found = {}
+    for one in judged.answers():
+        times = found.setdefault(one.drive.ego, {})
+        for violation in one.answer.violations:
+            if violation.rule in COUNTED[book]:
+                at = round(one.drive.time_s(violation.step), 1)
+                times[violation.rule] = min(at, times.get(violation.rule, at))
+    assert found == {ego: verdicts[book] for ego, verdicts in EXPECTED.items()}
+    assert judged.mirrored == (book == "gb")

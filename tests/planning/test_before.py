@@ -1,0 +1,141 @@
+"""Futures judged after a past, against judging past and future together, path by path."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+import rulec
+from rulec.automata.compiler import compile_rulebook
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.planning.product.graph_instances import instances
+from rulec.planning.trace_history import only_trace, past_of
+from rulec.trace import Trace
+from support.builders.rulebooks import (
+    P,
+    Q,
+    always,
+    book,
+    both,
+    eventually,
+    far,
+    implies,
+    near,
+    no,
+    rule,
+)
+from support.generators.random_graphs import graphs
+
+HALF = Fraction(1, 2)
+CARS = ("car1", "car2")
+RULES = compile_rulebook(
+    book(
+        rule("never_near_then_far", always(no(both(near("x"), eventually(far("x"))))), "x: car"),
+        rule("comes_near", eventually(near("x")), "x: car"),
+        rule("no_two_near", always(no(both(near("x"), near("y")))), "x: thing", "y: thing"),
+        rule("p_is_answered", always(implies(P, eventually(Q)))),
+        rule("ends_in_q", eventually(always(Q)), strength="soft"),
+    )
+)
+
+places = st.sampled_from(["near", "far", "gone"])
+
+
+@st.composite
+def pasts(draw):
+    """States, each with the cars that are there; these come, go and come back."""
+    found = []
+    for _ in range(draw(st.integers(1, 4))):
+        there = draw(st.sets(st.sampled_from(CARS)))
+        state = {"p": draw(st.booleans()), "q": draw(st.booleans())}
+        state["place"] = {name: draw(places) for name in sorted(there)}
+        found.append((state, dict.fromkeys(sorted(there), "car")))
+    return found
+
+
+def after(rules, past):
+    judge = Monitor(rules)
+    for state, objects in past:
+        judge.step(state, objects)
+    return judge
+
+
+@given(pasts(), graphs(objects=CARS))
+def test_a_trace_a_monitor_and_its_snapshot_are_the_same_past(past, graph):
+    names = {name for _, there in past for name in there}
+    stays = {name: [n for n, (_, there) in enumerate(past) if name in there] for name in names}
+    assume(all(held == list(range(held[0], held[-1] + 1)) for held in stays.values()))
+    trace = Trace(
+        "past",
+        0.5,
+        dict.fromkeys(sorted(names), "car"),
+        tuple(state for state, _ in past),
+        {name: (held[0], held[-1]) for name, held in stays.items()},
+    )
+    hard = [one.name for one in RULES.rules if one.strength == "hard"]
+    found = past_of(graph, trace, RULES, HALF)
+    for other in (after(RULES, past), json.loads(json.dumps(after(RULES, past).snapshot()))):
+        same = past_of(graph, other, RULES, HALF)
+        assert same.violations == found.violations
+        assert {key: s for key, s in same.states.items() if key[0] in hard} == found.states
+        assert {key for key in same.settled if key[0] in hard} == found.settled
+
+
+@given(graphs())
+def test_without_a_past_all_begins_here(graph):
+    begun = past_of(graph, Monitor(RULES), RULES, HALF)
+    assert instances(graph, RULES, past=begun) == instances(graph, RULES)
+
+
+def refused(past, scenario="s2"):
+    with pytest.raises(RulecError) as error:
+        rulec.find_maneuvers(scenario, "esterle2019", after=past)
+    (diagnostic,) = error.value.diagnostics
+    return diagnostic
+
+
+BEHIND = {"position": {"o1": "b"}}
+
+
+def test_a_past_that_leads_elsewhere_is_refused():
+    place = SourceLocation("past.jsonl", 1)
+    half = refused(Trace("t", 0.5, {"o1": "vehicle"}, (BEHIND,), place=place))
+    assert (half.code, half.place) == ("R0511", place)
+    assert "steps of 0.5 s" in half.message
+    other = refused(Trace("t", 1.0, {"o1": "pedestrian"}, (BEHIND,)))
+    assert (other.code, other.message) == (
+        "R0511",
+        "`o1` was a `pedestrian` and now is a `vehicle`",
+    )
+
+
+def test_a_past_judged_by_other_rules_is_refused():
+    assert refused(Monitor(RULES)).code == "R0511"
+    assert refused(Monitor(RULES).snapshot()).code == "R0510"
+
+
+def test_what_is_no_trace_is_no_past():
+    assert refused(Trace("t", 1.0, {}, ())).code == "R0506"
+    assert refused(Trace("t", 1.0, {"o1": "vehicle"}, ({"position": {"o1": "x"}},))).code == "R0503"
+
+
+def test_who_has_left_may_come_back_as_another():
+    """Gone before the scenario begins, so it is somebody else."""
+    before = Trace("t", 1.0, {"o1": "pedestrian"}, (BEHIND, {}), {"o1": (0, 0)})
+    found = rulec.find_maneuvers("s2", "esterle2019", after=before)
+    assert (found.satisfying, found.violated_before) == (83, ())
+
+
+def test_there_is_one_past():
+    trace = Trace("t", 1.0, {}, ({},))
+    place = SourceLocation("past.jsonl")
+    assert only_trace([trace], place) is trace
+    with pytest.raises(RulecError, match="several traces"):
+        only_trace([trace, trace], place)
+    unreadable = RulecError(())
+    with pytest.raises(RulecError) as error:
+        only_trace([trace, unreadable], place)
+    assert error.value is unreadable

@@ -1,0 +1,1 @@
+"""What tests of several rooms share: oracles, generators, builders, engines and cases."""

@@ -1,0 +1,1 @@
+"""Small rulebooks, vocabularies, recordings and files, made by hand."""

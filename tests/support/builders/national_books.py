@@ -1,0 +1,45 @@
+"""The national rulebooks that ship, each read and compiled once, and what of them is on a topic."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.compiler import compile_rulebook
+from rulec.diagnostics import Source
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import Loaded, read_rulebook
+from rulec.rulebook.model import Rule
+from rulec.toml import parsed_toml
+
+NO_LAW = {"vocabulary", "schemas", "esterle2019"}
+
+FOLDER = rulebooks_folder()
+NATIONAL = sorted(
+    path.stem
+    for path in FOLDER.glob("*/*.rules")
+    if path.stem == path.parent.name and path.stem not in NO_LAW
+)
+_CASES = Path(__file__).parents[2] / "law" / "cases.toml"
+CASES: list[dict[str, Any]] = parsed_toml(
+    Source(_CASES.name, _CASES.read_text(encoding="utf-8")), "R0704", ""
+)["case"]
+
+
+@cache
+def read(name: str) -> Loaded:
+    return read_rulebook(FOLDER / name / f"{name}.rules")
+
+
+@cache
+def compiled(name: str) -> CompiledRulebook:
+    return compile_rulebook(read(name).rulebook)
+
+
+def rules_on(name: str, topics: list[str]) -> list[Rule]:
+    """The rules of a book with a topic's name, or with one that goes on from it."""
+    return [
+        rule
+        for rule in read(name).rulebook.rules
+        if any(rule.name == topic or rule.name.startswith(f"{topic}_") for topic in topics)
+    ]

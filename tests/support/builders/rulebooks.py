@@ -1,0 +1,77 @@
+"""Rulebooks made in memory for tests of everything behind the language."""
+
+from rulec.automata import compiler
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
+from rulec.diagnostics.diagnostic import at
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
+from rulec.rulebook.model import Rule, Rulebook, Variable
+from support.generators.random_formulas import VOCABULARY
+
+P, Q = Atom("p"), Atom("q")
+
+
+def near(variable: str) -> Atom:
+    return Atom("place", (variable,), "near")
+
+
+def far(variable: str) -> Atom:
+    return Atom("place", (variable,), "far")
+
+
+def no(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.NOT, formula)
+
+
+def always(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.ALWAYS, formula)
+
+
+def eventually(formula: Formula) -> Formula:
+    return Unary(UnaryOperator.EVENTUALLY, formula)
+
+
+def both(left: Formula, right: Formula) -> Formula:
+    return Binary(BinaryOperator.AND, left, right)
+
+
+def implies(left: Formula, right: Formula) -> Formula:
+    return Binary(BinaryOperator.IMPLIES, left, right)
+
+
+def rule(name, formula, *variables, strength="hard"):
+    """A rule over variables given as ``"x: thing"``."""
+    bound = (Variable(*text.split(": ")) for text in variables)
+    return Rule(name, strength, tuple(bound), formula, cite=f"Art. {name}")
+
+
+def compile_here(rulebook, step_s=None):
+    """As the compiler does, without a process of its own: for tests with many small rulebooks."""
+    from rulec.automata import spot_bridge
+    from rulec.automata.spot_worker import _answer
+
+    compiled = []
+    for one in rulebook.rules:
+        step = compiler._step(one, step_s)
+        job = compiler._job(rulebook, one, step, cpu_limit_s=5)
+        compiled.append(compiler._compiled(one, step, _answer(job)))
+    return CompiledRulebook(
+        rulebook.name,
+        rulebook.vocabulary,
+        tuple(compiled),
+        "",
+        "",
+        "",
+        (),
+        "",
+        spot_bridge.VERSION,
+        semantics=rulebook.semantics,
+        levels=rulebook.levels,
+        priorities=rulebook.priorities,
+        axioms=tuple(
+            CompiledAxiom(one.variables, one.formula, at(one.span)) for one in rulebook.axioms
+        ),
+    )
+
+
+def book(*rules):
+    return Rulebook("test", VOCABULARY, rules)

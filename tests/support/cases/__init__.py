@@ -1,0 +1,1 @@
+"""Small rulebooks with traces and their verdicts, thought out by hand."""

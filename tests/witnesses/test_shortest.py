@@ -1,0 +1,178 @@
+"""Shortest traces: they get the verdicts that they are shown for, and none is shorter."""
+
+from fractions import Fraction
+from itertools import product
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
+from rulec.book_tests.example_runs import run_all
+from rulec.logic.formula import Atom, Count, Quantity
+from rulec.logic.semantics import holds
+from rulec.monitoring.verify import run
+from rulec.rulebook.model import Example, Variable
+from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
+from rulec.vocabulary import Quantity as DeclaredQuantity
+from rulec.witnesses.shortest_traces import shortest_traces
+from support.builders.rulebooks import P, Q, always, book, compile_here, eventually, no, rule
+from support.generators.random_formulas import VOCABULARY, formulas
+
+
+def letters(witnesses):
+    """The atoms that hold in each state."""
+    return [
+        frozenset(
+            Atom(name, variables, value if isinstance(value, str) else None)
+            for (name, variables), value in one.facts.items()
+            if value is not False
+        )
+        for one in witnesses
+    ]
+
+
+@given(formulas)
+def test_their_verdicts_and_their_length(formula):
+    one = rule("r", formula, "x: car")
+    rulebook = book(one)
+    compiled = compile_here(rulebook)
+    machine = compiled.rules[0].machine
+    traces = shortest_traces(compiled.rules[0], VOCABULARY)
+    for states, accepts in ((traces.accepted, True), (traces.rejected, False)):
+        if states is None:
+            assert machine.accepting_sink == 0 if not accepts else machine.rejecting_sink == 0
+            continue
+        assert holds(formula, letters(states)) is accepts
+        example = Example(accepts, tuple(state.facts for state in states))
+        shown = book(rule_with(one, example))
+        assert run_all(shown, compiled).outcomes[0].passed
+    if traces.rejected is not None:
+        symbols = range(len(machine.successors[0]))
+        for length in range(1, min(len(traces.rejected), 5)):
+            for word in product(symbols, repeat=length):
+                assert run(machine, word)[0]
+
+
+def rule_with(one, example):
+    return type(one)(one.name, one.strength, one.variables, one.formula, examples=(example,))
+
+
+@given(formulas)
+def test_the_accepted_one_differs_in_one_state_where_that_is_possible(formula):
+    compiled = compile_here(book(rule("r", formula, "x: car"))).rules[0]
+    traces = shortest_traces(compiled, VOCABULARY)
+    if traces.accepted is None or traces.rejected is None:
+        return
+    pairs = list(zip(traces.accepted, traces.rejected, strict=False))
+    near = len(traces.accepted) == len(traces.rejected) and sum(a != b for a, b in pairs) == 1
+    if not near:
+        machine = compiled.machine
+        word = [machine.letters[_letter(machine, state.facts)] for state in traces.rejected]
+        for place in range(len(word)):
+            for symbol in range(len(machine.successors[0])):
+                assert not run(machine, [*word[:place], symbol, *word[place + 1 :]])[0]
+
+
+def _letter(machine, facts):
+    letter, stride = 0, 1
+    for read in machine.reads:
+        letter += stride * read.digit(facts[read.name, read.variables])
+        stride *= read.size
+    return letter
+
+
+def test_the_nearest_miss_is_shown():
+    compiled = compile_here(book(rule("r", always(no(P))))).rules[0]
+    traces = shortest_traces(compiled, VOCABULARY)
+    assert letters(traces.rejected) == [{P}]
+    assert letters(traces.accepted) == [set()]
+
+
+def test_no_trace_is_rejected_or_accepted():
+    for formula, none in ((eventually(Q), None), (no(eventually(Q)), None)):
+        traces = shortest_traces(compile_here(book(rule("r", formula))).rules[0], VOCABULARY)
+        assert traces.accepted is not none
+        assert traces.rejected is not none
+
+
+SPEED, LIMIT = Quantity("speed"), Quantity("limit")
+NUMBERS = Vocabulary(
+    "numbers",
+    {"road_user": ObjectType("road_user"), "bus": ObjectType("bus", "road_user")},
+    {
+        "speed": DeclaredQuantity("speed", (), "km/h", 30.0),
+        "limit": DeclaredQuantity("limit", (), "km/h"),
+        "station": Enumeration("station", ("road_user",), ("behind", "beside")),
+    },
+)
+
+
+def of_numbers(reads, bad, variables=()):
+    """The rule that no state may have one of the letters ``bad``."""
+    total = 1
+    for read in reads:
+        total *= read.size
+    machine = MealyMonitor(
+        reads,
+        tuple(int(letter in bad) for letter in range(total)),
+        ((0, 1), (1, 1)),
+        ((True, False), (False, False)),
+        rejecting_sink=1,
+        accepting_sink=None,
+    )
+    return CompiledRule("r", "hard", variables, "", "", P, machine, "")
+
+
+def at_least(limit):
+    return Threshold(Fraction(limit), inclusive=True)
+
+
+def test_numbers_on_the_right_side_of_their_thresholds():
+    speeds = NumberRead(((Fraction(1), SPEED),), (at_least(50), at_least(100)))
+    over = NumberRead(
+        ((Fraction(1), LIMIT), (Fraction(-1), SPEED)), (Threshold(Fraction(0), inclusive=True),)
+    )
+    # Letter 2 is 100 km/h or more and more than the limit.
+    traces = shortest_traces(of_numbers((speeds, over), {2}), NUMBERS)
+    (rejected,), (accepted,) = traces.rejected, traces.accepted
+    assert rejected.facts["speed", ()] >= 100
+    assert rejected.facts["speed", ()] > rejected.facts["limit", ()] >= 0
+    assert accepted.facts["speed", ()] < 100 or accepted.facts["limit", ()] >= 100
+
+
+def test_a_default_is_kept_where_it_can_be():
+    speeds = NumberRead(((Fraction(1), SPEED),), (at_least(50),))
+    traces = shortest_traces(of_numbers((speeds,), {1}), NUMBERS)
+    assert traces.accepted[0].facts == {("speed", ()): 30.0}
+    assert traces.rejected[0].facts == {("speed", ()): 50.0}
+
+
+def test_what_no_world_can_be_in_violates_nothing():
+    speeds = NumberRead(((Fraction(1), SPEED),), (at_least(50),))
+    doubled = NumberRead(((Fraction(1), SPEED), (Fraction(-2), LIMIT)), (at_least(0),))
+    halves = NumberRead(((Fraction(1), LIMIT),), (at_least(100),))
+    # At 50 km/h at most, but at least twice a limit of 100 km/h or more.
+    traces = shortest_traces(of_numbers((speeds, doubled, halves), {2 + 4}), NUMBERS)
+    assert traces.rejected is None
+
+
+@given(st.sets(st.integers(0, 3), min_size=1, max_size=3))
+def test_counts_say_how_many_objects_a_state_needs(bad):
+    body = Atom("station", ("x",), "behind")
+    count = Count("x", "road_user", body)
+    reads = (
+        Read("station", ("b",), ("behind",), others=True),
+        NumberRead(((Fraction(1), count),), (at_least(1),)),
+    )
+    compiled = of_numbers(reads, bad, (Variable("b", "bus"),))
+    traces = shortest_traces(compiled, NUMBERS)
+    for states in (traces.accepted, traces.rejected):
+        for state in states or ():
+            ((counted, size),) = state.counts
+            assert counted == count
+            # The bus itself is one of the objects of the moment.
+            assert size >= (state.facts["station", ("b",)] == "behind")
+    # A bus behind, and nobody behind: there is no such state, whatever it would violate.
+    if bad == {0}:
+        assert traces.rejected is None
