@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Threshold
 from rulec.logic.formula import Atom, Comparison, Count, Quantity
 from rulec.report.automata.automaton_model import automaton_of
-from rulec.report.automata.guard_text import Wording
+from rulec.report.automata.guard_text import GuardWording
 from support.generators.random_machines import READS, VOCABULARY, machines
 
 SPEED = {0: Fraction(2), 1: Fraction(3), 2: Fraction(4), 3: Fraction(7)}
@@ -132,7 +132,7 @@ def cube(p=(0, 1), place=(0, 1, 2), speed=(0, 1, 2, 3), q=(0, 1)):
 )
 def test_the_words(cubes, text):
     machine = MealyMonitor(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
-    assert Wording(rule_with(machine), VOCABULARY).condition(cubes) == text
+    assert GuardWording(rule_with(machine), VOCABULARY).condition(cubes) == text
 
 
 GAPS = (
@@ -154,7 +154,7 @@ GAPS = (
 def test_a_comparison_is_said_as_the_rulebook_says_it(formula, digit, text):
     read = NumberRead(GAPS, (Threshold(Fraction(0), inclusive=True),))
     machine = MealyMonitor((read,), (0, 0), ((0,),), ((True,),), None, 0)
-    wording = Wording(rule_with(machine, formula), VOCABULARY)
+    wording = GuardWording(rule_with(machine, formula), VOCABULARY)
     assert wording.condition([(frozenset({digit}),)]) == text
 
 
@@ -164,13 +164,15 @@ def test_a_count_that_holds_a_comparison_is_denied_as_a_whole():
     text = "count x: thing (speed < 3 km/h) >= 8"
     read = NumberRead(terms, (Threshold(Fraction(8), inclusive=True),))
     machine = MealyMonitor((read,), (0, 0), ((0,),), ((True,),), None, 0)
-    wording = Wording(rule_with(machine, Comparison(terms, ">=", Fraction(8), text)), VOCABULARY)
+    wording = GuardWording(
+        rule_with(machine, Comparison(terms, ">=", Fraction(8), text)), VOCABULARY
+    )
     assert wording.condition([(frozenset({0}),)]) == f"not ({text})"
 
 
 def test_the_state_of_an_example():
     machine = MealyMonitor(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
-    wording = Wording(rule_with(machine), VOCABULARY)
+    wording = GuardWording(rule_with(machine), VOCABULARY)
     axioms = {("p", ()): True, ("q", ()): False, ("place", ("x",)): "far", ("speed", ()): 0.1}
     assert wording.state(axioms) == "p and not q and far(x) and speed = 0.1 km/h"
     assert wording.state({}) == "true"

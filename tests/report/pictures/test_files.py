@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.report.pictures.drawing.marks import Area, Line, Picture, Words, rectangle
+from rulec.report.pictures.drawing.marks import Area, LabelText, Picture, Polyline, rectangle
 from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes, format_of
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -16,14 +16,16 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 def drawing(number=2):
     square = Area((rectangle(10, 10, 60, 50), rectangle(20, 20, 30, 30)), "chosen", "a <cell>")
-    line = Line(((0, 0), (100, 60)), "rejected")
-    words = Words("b & $f$", (50, 30), "middle")
-    turned = Words("up", (80, 30), "middle", turned=True)
+    line = Polyline(((0, 0), (100, 60)), "rejected")
+    words = LabelText("b & $f$", (50, 30), "middle")
+    turned = LabelText("up", (80, 30), "middle", turned=True)
     pictures = [
         Picture(f"{n} s to {n + 1} s", 120, 70, (square, line, words, turned))
         for n in range(number)
     ]
-    return Drawing("A title", pictures, Picture("", 120, 20, (Words("what it means", (0, 10)),)))
+    return Drawing(
+        "A title", pictures, Picture("", 120, 20, (LabelText("what it means", (0, 10)),))
+    )
 
 
 @pytest.mark.parametrize(
@@ -76,7 +78,7 @@ def test_png():
 
 def test_any_letters_and_long_titles():
     pytest.importorskip("matplotlib")
-    words = Words("漢字 \x07 \U0001f600", (10, 10))
+    words = LabelText("漢字 \x07 \U0001f600", (10, 10))
     strange = Drawing("a title of many words " * 30, [Picture("", 400, 40, (words,))])
     assert as_bytes(strange, "png", "f.png")
     texts = [one.text for one in ET.fromstring(as_bytes(strange, "svg", "f")).iter(f"{SVG}text")]

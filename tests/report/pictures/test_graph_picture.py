@@ -6,7 +6,7 @@ import pytest
 
 from rulec.api.workflow import find_maneuvers
 from rulec.planning.product.accepted_edges import accepted_edges
-from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.graph_picture import graph_picture
 from rulec.trace.graph_paths import paths
 
@@ -24,7 +24,7 @@ def styles(picture, kind):
 @pytest.mark.parametrize("scenario", ["s1", "s2", "s3"])
 def test_every_node_and_every_step_is_there_once(scenario):
     found, picture = drawn(scenario)
-    lines, areas = styles(picture, Line), styles(picture, Area)
+    lines, areas = styles(picture, Polyline), styles(picture, Area)
     # One swatch each in the legend.
     swatches = 2 + (lines["unused"] > 0)
     assert lines.total() - swatches == found.graph.edges
@@ -48,7 +48,7 @@ def test_rejected_steps_of_s2():
     assert here
     assert not here & ways.accepted[2]
     accepted, possible = (sum(map(len, edges)) for edges in (ways.accepted, ways.possible))
-    assert {one.text for one in picture.marks if isinstance(one, Words)} >= {
+    assert {one.text for one in picture.marks if isinstance(one, LabelText)} >= {
         f"{accepted} steps of satisfying maneuvers",
         f"{possible - accepted} steps of rejected ones alone",
         f"{found.graph.edges - possible} steps of no maneuver",
@@ -65,8 +65,8 @@ def test_a_maneuver_is_drawn_through_its_cells():
         f"{p} s, cell {node}" for p, node in enumerate(maneuver.nodes)
     ]
     # Its four steps, and a swatch in the legend.
-    assert styles(picture, Line)["way"] == 4 + 1
-    steps = [one for one in picture.marks if isinstance(one, Line) and one.style != "axis"]
+    assert styles(picture, Polyline)["way"] == 4 + 1
+    steps = [one for one in picture.marks if isinstance(one, Polyline) and one.style != "axis"]
     assert len({one.points for one in steps}) == len(steps), "every step is drawn once"
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.report.pictures.drawing.label_placement import Placing
-from rulec.report.pictures.drawing.marks import Words
+from rulec.report.pictures.drawing.marks import LabelText
 
 lengths = st.integers(0, 120)
 rooms = st.builds(
@@ -40,7 +40,7 @@ def test_inside_and_apart(wanted):
 
 
 def test_the_first_text_that_fits_upright_if_it_can_be():
-    assert Placing().place(["abc", "1"], [(0, 0, 100, 100)]) == Words("abc", (50, 50), "middle")
+    assert Placing().place(["abc", "1"], [(0, 0, 100, 100)]) == LabelText("abc", (50, 50), "middle")
     turned = Placing().place(["abc", "1"], [(0, 0, 25, 100)])
     assert (turned.text, turned.turned) == ("abc", True)
     assert Placing().place(["abc", "1"], [(0, 0, 25, 20)]).text == "1"
@@ -59,4 +59,4 @@ def test_what_is_taken_is_left_alone():
     placing = Placing([(30, 0, 70, 20)])
     words = placing.place(["a"], [(0, 0, 100, 20)])
     assert words.bounds[2] <= 30 or words.bounds[0] >= 70
-    assert placing.first_free([words, Words("b", (150, 10))]) == [Words("b", (150, 10))]
+    assert placing.first_free([words, LabelText("b", (150, 10))]) == [LabelText("b", (150, 10))]

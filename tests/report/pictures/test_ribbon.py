@@ -4,9 +4,9 @@ import pytest
 
 from rulec.api.workflow import compile_rulebook
 from rulec.monitoring.verify import verify
-from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.trace_picture import ribbon_picture
-from rulec.report.pictures.trace_ribbon import Run, ribbon
+from rulec.report.pictures.trace_ribbon import ValueRun, ribbon
 from rulec.trace import Trace
 
 
@@ -31,9 +31,9 @@ def test_rows(rules):
     rows = {row.title: row.runs for row in found.rows}
     assert found.left_out == 0
     assert list(rows) == ["CONGESTED", "surface", "position(v)", "position(w)"]
-    assert rows["CONGESTED"] == (Run(0, 3, value=False),)
-    assert rows["position(v)"] == (Run(0, 0, "b"), Run(1, 2, "r"), Run(3, 3, "f"))
-    assert rows["position(w)"] == (Run(0, 0, None), Run(1, 2, "b"), Run(3, 3, None))
+    assert rows["CONGESTED"] == (ValueRun(0, 3, value=False),)
+    assert rows["position(v)"] == (ValueRun(0, 0, "b"), ValueRun(1, 2, "r"), ValueRun(3, 3, "f"))
+    assert rows["position(w)"] == (ValueRun(0, 0, None), ValueRun(1, 2, "b"), ValueRun(3, 3, None))
 
 
 def test_rows_of_some_objects(rules):
@@ -62,7 +62,7 @@ def test_a_violation_is_marked_where_it_is_decided(rules):
     moment, mark = (
         one
         for one in picture.marks
-        if isinstance(one, Line) and one.style in ("moment", "violation")
+        if isinstance(one, Polyline) and one.style in ("moment", "violation")
     )
     last = next(one for one in picture.marks if isinstance(one, Area) and "f, 1.5" in one.tip)
     assert {x for x, _ in moment.points + mark.points} == {min(x for x, _ in last.rings[0])}
@@ -70,7 +70,7 @@ def test_a_violation_is_marked_where_it_is_decided(rules):
     (top, bottom), ys = sorted(y for _, y in mark.points), [y for _, y in last.rings[0]]
     assert top < min(ys) < max(ys) < bottom
     assert bottom - top < 30
-    words = [one.text for one in picture.marks if isinstance(one, Words)]
+    words = [one.text for one in picture.marks if isinstance(one, LabelText)]
     told = "hard rule R1 [Article 11.1, 11.6] for v = v: beyond saving after state 3, at 1.5 s"
     assert told in words
     assert "1" in words
@@ -90,7 +90,7 @@ def test_a_violation_that_the_end_decides_stands_at_the_end(tmp_path):
     assert any(
         "not fulfilled when the trace ends" in one.text
         for one in picture.marks
-        if isinstance(one, Words)
+        if isinstance(one, LabelText)
     )
 
 
@@ -117,9 +117,11 @@ def test_quantities_and_pairs(tmp_path):
         "gap(b, a) in m",
     ]
     picture = ribbon_picture(found, rules)
-    curves = [one for one in picture.marks if isinstance(one, Line) and one.style == "curve"]
+    curves = [one for one in picture.marks if isinstance(one, Polyline) and one.style == "curve"]
     rising, still, falling, _ = ([y for _, y in one.points] for one in curves)
-    titles = [one.text for one in picture.marks if isinstance(one, Words) and one.anchor == "end"]
+    titles = [
+        one.text for one in picture.marks if isinstance(one, LabelText) and one.anchor == "end"
+    ]
     assert titles[:3] == ["speed(a) in m/s: 0 to 2", "speed(b) in m/s: 0", "gap(a, b) in m: 7 to 9"]
     # Downwards is more y.
     assert rising == sorted(rising, reverse=True)

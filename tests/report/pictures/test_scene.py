@@ -10,7 +10,7 @@ from rulec.api.workflow import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
 from rulec.report.pictures.cell_signatures import in_letters
-from rulec.report.pictures.drawing.marks import Area, Line, Words
+from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
 from support.generators.random_scenarios import scenarios
@@ -33,7 +33,7 @@ def cells_of(picture):
 
 
 def words_of(picture):
-    return [one for one in picture.marks if isinstance(one, Words)]
+    return [one for one in picture.marks if isinstance(one, LabelText)]
 
 
 def apart(one, other):
@@ -141,7 +141,7 @@ def test_obstacles_sweep_ahead_of_where_they_are():
 def test_lanes_are_drawn():
     graph = navigation_graph(load_scenario("s3"))
     picture = scene_pictures(graph, [0], None)[0]
-    lanes = [one for one in picture.marks if isinstance(one, Line) and one.style == "lane"]
+    lanes = [one for one in picture.marks if isinstance(one, Polyline) and one.style == "lane"]
     # Six lanes have five lines between them.
     assert len(lanes) == 5
 
@@ -157,7 +157,7 @@ def test_no_line_is_drawn_between_lanes_that_have_ended():
     picture = scene_pictures(graph, [0], None)[0]
     ends: dict[float, float] = {}
     for one in picture.marks:
-        if isinstance(one, Line) and one.style == "lane":
+        if isinstance(one, Polyline) and one.style == "lane":
             (_, y), (x, _) = one.points
             ends[y] = max(ends.get(y, 0.0), x)
     upper, lower = (ends[y] for y in sorted(ends))

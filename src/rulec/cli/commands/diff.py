@@ -12,7 +12,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import at_option, only_sources, seconds
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.report.rulebooks.diff_text import FORMATS
+from rulec.report.rulebooks.diff_formats import FORMATS
 
 if TYPE_CHECKING:
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff
@@ -87,7 +87,7 @@ def command(
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
-    from rulec.report.rulebooks.diff_text import render
+    from rulec.report.rulebooks.diff_formats import render
     from rulec.report.text.console import put_result
 
     only_sources(rulebooks, "be compared")

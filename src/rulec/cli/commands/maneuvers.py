@@ -103,7 +103,7 @@ def command(
     ranked = None if n_ranked is None else found.ranked(n_ranked)
     shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
     uncertain = any(one.alternatives for one in scene.obstacles)
-    answers = report.Answers(
+    answers = report.ManeuverAnswers(
         listed=listed,
         best=best,
         ranked=ranked,

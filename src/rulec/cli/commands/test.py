@@ -74,7 +74,8 @@ def command(
     could not be read or compiled.
     """
     from rulec.book_tests.edge_coverage import coverage
-    from rulec.report.tests.example_text import render, shortcomings
+    from rulec.report.tests.example_formats import render
+    from rulec.report.tests.example_text import shortcomings
     from rulec.report.text.console import print_aside, print_result, wants_color
 
     compiled = next((one for one in rulebooks if one.endswith(".json")), None)

@@ -186,7 +186,7 @@ class _Run:
                     explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
                     if explained:
                         blocks.append(
-                            report.in_detail(one, judged, explained, every_part=self.every_part)
+                            report.drive_details(one, judged, explained, every_part=self.every_part)
                         )
                 elif isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged):
                     self.complaints.add(one.answer.error)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from textwrap import wrap
 
 from rulec.report.automata.automaton_model import Automaton, Transition
-from rulec.report.automata.layered_layout import Box, arrange
+from rulec.report.automata.layered_layout import LayoutBox, arrange
 
 CHARACTER = 7.3
 """The width of a character in px, a little more than that of the usual fixed-width fonts."""
@@ -35,7 +35,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class AutomatonState:
     """The middle of a state's box, its size, its number and what is written in it."""
 
     middle: Point
@@ -45,7 +45,7 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class TransitionLine:
     """A transition as points from its source to its target, and where its condition begins.
 
     A loop has the three points of its triangle; its condition is centred on ``label_at`` in height,
@@ -60,13 +60,13 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawing:
+class AutomatonDrawing:
     """All of it, in px from the upper left corner."""
 
     width: float
     height: float
-    states: tuple[State, ...]
-    lines: tuple[Line, ...]
+    states: tuple[AutomatonState, ...]
+    lines: tuple[TransitionLine, ...]
 
 
 def is_too_large(automaton: Automaton) -> bool:
@@ -74,9 +74,9 @@ def is_too_large(automaton: Automaton) -> bool:
     return len(automaton.fates) > MOST_STATES or len(automaton.transitions) > MOST_TRANSITIONS
 
 
-def draw(automaton: Automaton) -> Drawing:
+def draw(automaton: Automaton) -> AutomatonDrawing:
     """Lay out an automaton from top to bottom."""
-    return _Layout(automaton).drawing()
+    return _AutomatonLayout(automaton).drawing()
 
 
 def text_width(lines: Sequence[str]) -> float:
@@ -95,7 +95,7 @@ def _broken(text: str) -> tuple[str, ...]:
     return tuple(lines)
 
 
-class _Layout:
+class _AutomatonLayout:
     """States stand in every other layer; between them pass the lines, each with its condition.
 
     A line that goes on past a layer has a place of its own there, so that it passes no text.
@@ -108,7 +108,7 @@ class _Layout:
         self._ways: list[tuple[Transition, list[int]]] = []
         level = _levels(automaton)
         self._layers: list[list[int]] = [[] for _ in range(2 * max(level) + 1)]
-        self._boxes: dict[int, Box] = {}
+        self._boxes: dict[int, LayoutBox] = {}
         self._heights: dict[int, float] = {}
         self._widths: dict[int, float] = {}
         for one in automaton.transitions:
@@ -133,7 +133,7 @@ class _Layout:
             text = _broken(one.label)
             sides[side] = LOOP + text_width(text)
             height = max(height, LINE * len(text))
-        self._boxes[state] = Box(width / 2 + sides[1] + MARGIN, width / 2 + sides[0] + MARGIN)
+        self._boxes[state] = LayoutBox(width / 2 + sides[1] + MARGIN, width / 2 + sides[0] + MARGIN)
         self._widths[state] = width
         self._heights[state] = height
         self._layers[2 * level].append(state)
@@ -147,13 +147,13 @@ class _Layout:
             place = len(self._boxes)
             labelled = layer == start + step
             text = _broken(one.label) if labelled else ()
-            self._boxes[place] = Box(MARGIN, MARGIN + text_width(text))
+            self._boxes[place] = LayoutBox(MARGIN, MARGIN + text_width(text))
             self._heights[place] = LINE * len(text)
             self._layers[layer].append(place)
             way.append(place)
         self._ways.append((one, [*way, one.target]))
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> AutomatonDrawing:
         links = []
         for _, way in self._ways:
             downward = self._layer_of(way[0]) < self._layer_of(way[-1])
@@ -170,11 +170,11 @@ class _Layout:
             for box in layer
         }
         states = tuple(
-            State((x[state], y[state]), self._widths[state], state, text)
+            AutomatonState((x[state], y[state]), self._widths[state], state, text)
             for state, text in enumerate(self._texts)
         )
         width = max(x[box] + self._boxes[box].right for box in x)
-        return Drawing(
+        return AutomatonDrawing(
             width, bottom + LAYER_GAP, states, (*self._lines(x, y), *self._loop_lines(states))
         )
 
@@ -186,7 +186,7 @@ class _Layout:
         layer = self._layers[self._layer_of(box)]
         return max(self._heights[one] for one in layer) / 2
 
-    def _lines(self, x: dict[int, float], y: dict[int, float]) -> list[Line]:
+    def _lines(self, x: dict[int, float], y: dict[int, float]) -> list[TransitionLine]:
         ports = self._ports(x)
         lines = []
         for number, (one, way) in enumerate(self._ways):
@@ -200,7 +200,7 @@ class _Layout:
             points.append((ports[number, 1], y[way[-1]] - down * self._band(way[-1])))
             points.append((ports[number, 1], y[way[-1]] - down * last))
             text = _broken(one.label)
-            lines.append(Line(one, tuple(points), (x[way[1]] + 7, y[way[1]]), text))
+            lines.append(TransitionLine(one, tuple(points), (x[way[1]] + 7, y[way[1]]), text))
         return lines
 
     def _half(self, state: int) -> float:
@@ -221,7 +221,7 @@ class _Layout:
                 ports[number, end] = x[state] + pitch * (index - (len(arriving) - 1) / 2)
         return ports
 
-    def _loop_lines(self, states: Sequence[State]) -> list[Line]:
+    def _loop_lines(self, states: Sequence[AutomatonState]) -> list[TransitionLine]:
         lines = []
         for state, loops in self._loops.items():
             middle, y = states[state].middle
@@ -230,7 +230,7 @@ class _Layout:
                 points = ((edge, y - 9), (edge + side * (LOOP - 8), y), (edge, y + 9))
                 text = _broken(one.label)
                 at = (edge + side * (LOOP - 5), y)
-                lines.append(Line(one, points, at, text, leftward=side < 0))
+                lines.append(TransitionLine(one, points, at, text, leftward=side < 0))
         return lines
 
 

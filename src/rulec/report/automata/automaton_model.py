@@ -7,7 +7,7 @@ from typing import Literal
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.guards import edges
-from rulec.report.automata.guard_text import Wording
+from rulec.report.automata.guard_text import GuardWording
 from rulec.report.findings.source_excerpt import visible
 from rulec.vocabulary import Vocabulary
 
@@ -46,7 +46,7 @@ class Automaton:
 
 def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
     """The automaton of a compiled rule."""
-    wording = Wording(rule, vocabulary)
+    wording = GuardWording(rule, vocabulary)
     machine = rule.machine
     fates: dict[int | None, Fate] = {
         machine.rejecting_sink: "violated",

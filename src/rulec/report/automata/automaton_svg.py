@@ -9,12 +9,12 @@ from itertools import pairwise
 from rulec.report.automata.automaton_layout import (
     LINE,
     STATE_HEIGHT,
-    Drawing,
-    State,
+    AutomatonDrawing,
+    AutomatonState,
+    TransitionLine,
     draw,
     text_width,
 )
-from rulec.report.automata.automaton_layout import Line as Drawn
 from rulec.report.automata.automaton_model import Automaton
 from rulec.report.findings.source_excerpt import visible
 
@@ -77,7 +77,7 @@ def as_svg(automaton: Automaton, name: str) -> str:
     )
 
 
-def _body(drawing: Drawing, automaton: Automaton) -> Iterator[str]:
+def _body(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[str]:
     first = drawing.states[0]
     x, y = first.middle
     top = y - STATE_HEIGHT / 2 - LINE * (len(first.text) - 1) / 2
@@ -89,7 +89,7 @@ def _body(drawing: Drawing, automaton: Automaton) -> Iterator[str]:
         yield from _state(state, automaton.fates[state.number])
 
 
-def _line(line: Drawn) -> Iterator[str]:
+def _line(line: TransitionLine) -> Iterator[str]:
     one = line.transition
     style = "line" if one.accepted else "line rejected"
     (x, y), *rest = line.points
@@ -128,7 +128,7 @@ def _head(tip: tuple[float, float], way: tuple[int, int], *, accepted: bool) -> 
     return f'<polygon class="{"head" if accepted else "head-rejected"}" points="{points}"/>'
 
 
-def _state(state: State, fate: str) -> Iterator[str]:
+def _state(state: AutomatonState, fate: str) -> Iterator[str]:
     (x, y), lines = state.middle, len(state.text)
     height = STATE_HEIGHT + LINE * (lines - 1)
     style = "state" if fate == "open" else f"state {fate}"

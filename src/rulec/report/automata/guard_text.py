@@ -37,7 +37,7 @@ _OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
 _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
-class Wording:
+class GuardWording:
     """The words of one rule: its reads, and how it says its comparisons."""
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:

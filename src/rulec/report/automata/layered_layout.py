@@ -14,7 +14,7 @@ SWEEPS = 24
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class LayoutBox:
     """How far a box reaches to the left and right of the point at which its links arrive."""
 
     left: float
@@ -22,7 +22,9 @@ class Box:
 
 
 def arrange(
-    layers: Sequence[Sequence[int]], boxes: Mapping[int, Box], links: Sequence[tuple[int, int]]
+    layers: Sequence[Sequence[int]],
+    boxes: Mapping[int, LayoutBox],
+    links: Sequence[tuple[int, int]],
 ) -> dict[int, float]:
     """The place of every box across its layer.
 
@@ -81,7 +83,7 @@ def _crossings(layers: Sequence[Sequence[int]], below: Mapping[int, list[int]]) 
 
 def _placed(
     layers: Sequence[Sequence[int]],
-    boxes: Mapping[int, Box],
+    boxes: Mapping[int, LayoutBox],
     above: Mapping[int, list[int]],
     below: Mapping[int, list[int]],
 ) -> dict[int, float]:
@@ -101,7 +103,7 @@ def _placed(
 
 
 def _apart(
-    layer: Sequence[int], boxes: Mapping[int, Box], wanted: Mapping[int, float]
+    layer: Sequence[int], boxes: Mapping[int, LayoutBox], wanted: Mapping[int, float]
 ) -> dict[int, float]:
     """Places as near as possible to those wanted, in this order and without overlaps.
 

@@ -7,7 +7,7 @@ from itertools import groupby
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.report.findings.source_excerpt import Mark, excerpt_lines, visible
+from rulec.report.findings.source_excerpt import Underline, excerpt_lines, visible
 
 _BOLD, _RESET = "\x1b[1m", "\x1b[0m"
 _COLORS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "frame": "\x1b[1;34m"}
@@ -73,19 +73,19 @@ def _block(one: Diagnostic, paint: _Paint) -> Iterator[str]:
             yield f"{gutter} {paint('frame', '=')} {paint('bold', word + ':')} {visible(text)}"
 
 
-def _worth_showing(mark: Mark) -> bool:
+def _worth_showing(mark: Underline) -> bool:
     return bool(mark.place.excerpt.strip()) or bool(mark.words)
 
 
-def _by_file(one: Diagnostic) -> list[tuple[str, list[Mark]]]:
+def _by_file(one: Diagnostic) -> list[tuple[str, list[Underline]]]:
     """The primary place first; other places in its file with it, those in other files behind."""
-    marks = [] if one.place is None else [Mark(one.place, one.expected, "^")]
-    marks += [Mark(label.place, label.message, "-") for label in one.labels]
+    marks = [] if one.place is None else [Underline(one.place, one.expected, "^")]
+    marks += [Underline(label.place, label.message, "-") for label in one.labels]
     files = list(dict.fromkeys(mark.place.file for mark in marks))
     return [(file, [mark for mark in marks if mark.place.file == file]) for file in files]
 
 
-def _address(file: str, mark: Mark) -> str:
+def _address(file: str, mark: Underline) -> str:
     place: SourceLocation = mark.place
     parts = [file, place.line, place.column]
     return ":".join(str(part) for part in parts if part is not None)
@@ -97,7 +97,7 @@ def _number_width(one: Diagnostic) -> int:
     return max((len(str(line)) for line in lines), default=1)
 
 
-def _lines(marks: Sequence[Mark], severity: str) -> Iterator[tuple[str, str, str]]:
+def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str, str]]:
     """What stands left of the frame, the text right of it, and its style."""
     before: int | None = None
     in_order = sorted(marks, key=lambda mark: mark.place.start)

@@ -17,7 +17,7 @@ _REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class Underline:
     """A place to underline with ``sign``, and what to write beside it."""
 
     place: SourceLocation
@@ -50,7 +50,7 @@ def _width(shown: str) -> int:
     return total
 
 
-def excerpt_lines(marks: Sequence[Mark]) -> Iterator[tuple[str, str]]:
+def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
     """The line that all marks share, then an underline for each; with each its mark's sign."""
     excerpt = marks[0].place.excerpt
     primary = next((mark for mark in marks if mark.sign == "^"), marks[0])

@@ -35,7 +35,7 @@ MOST_DEFAULTS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class ManeuverAnswers:
     """What was asked for beside the counts; None is what was not.
 
     ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
@@ -51,7 +51,7 @@ class Answers:
     worlds: Sequence[AlternativeCounts] | None = None
 
 
-def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
+def as_json(found: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """The counts and what was asked for; maneuvers with cells, cost, margin and envelope."""
     graph = found.graph
     data: dict[str, Any] = {
@@ -97,7 +97,7 @@ def as_json(found: Maneuvers, answers: Answers, seconds: float) -> str:
     return json.dumps(data, ensure_ascii=False)
 
 
-def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
+def as_text(found: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """The counts in a few lines, and a block for every maneuver that was asked for."""
     graph, rules = found.graph, found.rules
     names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
@@ -134,12 +134,12 @@ def as_text(found: Maneuvers, answers: Answers, seconds: float) -> str:
     return "\n".join(lines)
 
 
-def _chances(answers: Answers, maneuver: Maneuver) -> dict[str, Any]:
+def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> dict[str, Any]:
     told = answers.chances.get(maneuver.nodes)
     return {} if told is None else {"chances": probabilities.as_data(told)}
 
 
-def _chance_lines(answers: Answers, maneuver: Maneuver) -> list[str]:
+def _chance_lines(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:
     told = answers.chances.get(maneuver.nodes)
     return [] if told is None else probabilities.lines(told)
 

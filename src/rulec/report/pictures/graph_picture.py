@@ -16,15 +16,15 @@ from rulec.report.pictures.drawing.marks import (
     MARGIN,
     WIDTH,
     Area,
-    Line,
+    LabelText,
     Mark,
     Picture,
     Point,
-    Words,
+    Polyline,
     rectangle,
     stacked,
 )
-from rulec.report.pictures.legend import Entry, legend
+from rulec.report.pictures.legend import LegendEntry, legend
 
 _ROW = 34.0
 _TALLEST = 720.0
@@ -117,7 +117,7 @@ def _columns(graph: NavigationGraph) -> _Columns:
 
 def _edges(
     graph: NavigationGraph, columns: _Columns, found: AcceptedEdges, maneuver: Maneuver | None
-) -> list[Line]:
+) -> list[Polyline]:
     """Every step once, those that matter more above the others."""
     half = columns.extent()[0]
     way = set(enumerate(pairwise(maneuver.nodes))) if maneuver else set()
@@ -128,7 +128,7 @@ def _edges(
                 (x0, y0), (x1, y1) = columns.at(p, node), columns.at(p + 1, target)
                 here = (p, (node, target)) in way
                 style = "way" if here else _fate(found, p, node, target)
-                lines.append(Line(((x0 + half, y0), (x1 - half, y1)), style))
+                lines.append(Polyline(((x0 + half, y0), (x1 - half, y1)), style))
     return sorted(lines, key=lambda line: _ORDER.index(line.style))
 
 
@@ -158,37 +158,37 @@ def _nodes(
             yield Area((shape,), style, f"{layer.start_s:g} s, cell {node}: {in_full(cell)}")
             if columns.legible:
                 ink = "faint" if style == "off" else "ink"
-                yield Words(columns.labels[p][node], (x, y), "middle", ink)
+                yield LabelText(columns.labels[p][node], (x, y), "middle", ink)
 
 
-def _times(graph: NavigationGraph, columns: _Columns) -> Iterator[Words]:
+def _times(graph: NavigationGraph, columns: _Columns) -> Iterator[LabelText]:
     wanted = text_width([f"{graph.layers[-1].start_s:g} s  "])
     every = max(1, -int(-wanted // columns.column))
     for p, layer in enumerate(graph.layers):
         if p % every == 0:
             x, _ = columns.at(p, 0)
             at = (x, columns.top - LINE_HEIGHT + 2)
-            yield Words(f"{layer.start_s:g} s", at, "middle", "faint")
+            yield LabelText(f"{layer.start_s:g} s", at, "middle", "faint")
 
 
 def _entries(
     graph: NavigationGraph, found: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
-) -> Iterator[Entry]:
+) -> Iterator[LegendEntry]:
     accepted, possible = (sum(map(len, edges)) for edges in (found.accepted, found.possible))
     if maneuver:
-        yield Entry("way", "the maneuver shown")
+        yield LegendEntry("way", "the maneuver shown")
     if judged:
-        yield Entry("satisfying", f"{accepted:,} steps of satisfying maneuvers")
-        yield Entry("rejected", f"{possible - accepted:,} steps of rejected ones alone")
+        yield LegendEntry("satisfying", f"{accepted:,} steps of satisfying maneuvers")
+        yield LegendEntry("rejected", f"{possible - accepted:,} steps of rejected ones alone")
         if any(
             there - kept
             for there, kept in zip(found.possible_nodes, found.accepted_nodes, strict=True)
         ):
-            yield Entry("violated", "a cell of rejected ones alone")
+            yield LegendEntry("violated", "a cell of rejected ones alone")
     else:
-        yield Entry("satisfying", f"{possible:,} steps of maneuvers")
+        yield LegendEntry("satisfying", f"{possible:,} steps of maneuvers")
     if graph.edges > possible:
-        yield Entry("unused", f"{graph.edges - possible:,} steps of no maneuver")
+        yield LegendEntry("unused", f"{graph.edges - possible:,} steps of no maneuver")
 
 
 def _remarks(graph: NavigationGraph, columns: _Columns) -> Iterator[str]:

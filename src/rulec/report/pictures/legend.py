@@ -10,10 +10,10 @@ from rulec.report.automata.automaton_layout import CHARACTER, text_width
 from rulec.report.pictures.drawing.marks import (
     LINE_HEIGHT,
     Area,
-    Line,
+    LabelText,
     Mark,
     Picture,
-    Words,
+    Polyline,
     rectangle,
 )
 from rulec.report.pictures.drawing.styles import STYLES
@@ -23,14 +23,16 @@ _GAP = 22.0
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LegendEntry:
     """A style and what it stands for."""
 
     style: str
     words: str
 
 
-def legend(entries: Sequence[Entry], words: Sequence[str], width: float, margin: float) -> Picture:
+def legend(
+    entries: Sequence[LegendEntry], words: Sequence[str], width: float, margin: float
+) -> Picture:
     """Swatches with their words, in as many lines as it takes, then lines of words."""
     marks: list[Mark] = []
     x, y = margin, LINE_HEIGHT
@@ -39,13 +41,13 @@ def legend(entries: Sequence[Entry], words: Sequence[str], width: float, margin:
         if x > margin and x + needed > width - margin:
             x, y = margin, y + LINE_HEIGHT + 2
         marks.append(_swatch(entry.style, x, y))
-        marks.append(Words(entry.words, (x + _SWATCH + 6, y)))
+        marks.append(LabelText(entry.words, (x + _SWATCH + 6, y)))
         x += needed + _GAP
     if entries:
         y += LINE_HEIGHT + 4
     for text in words:
         for line in wrap(text, int((width - 2 * margin) / CHARACTER)):
-            marks.append(Words(line, (margin, y), style="faint"))
+            marks.append(LabelText(line, (margin, y), style="faint"))
             y += LINE_HEIGHT
     return Picture("", width, y + 2, tuple(marks))
 
@@ -53,4 +55,4 @@ def legend(entries: Sequence[Entry], words: Sequence[str], width: float, margin:
 def _swatch(style: str, x: float, y: float) -> Mark:
     if STYLES[style].fill or style == "goal":
         return Area((rectangle(x, y - 6, x + _SWATCH, y + 6),), style)
-    return Line(((x, y), (x + _SWATCH, y)), style)
+    return Polyline(((x, y), (x + _SWATCH, y)), style)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rulec.partition import NavigationGraph
 from rulec.report.pictures.drawing.label_placement import Placing, Rectangle
-from rulec.report.pictures.drawing.marks import WIDTH, Area, Mark, Words, rectangle
+from rulec.report.pictures.drawing.marks import WIDTH, Area, LabelText, Mark, rectangle
 from rulec.report.pictures.road_frame import Frame
 from rulec.scenario.motion import span, swept
 
@@ -26,7 +26,7 @@ def obstacle_marks(graph: NavigationGraph, frame: Frame, layer: int) -> Iterator
         yield Area((rectangle(*body),), "body", tip)
 
 
-def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[Words, Rectangle]]:
+def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[LabelText, Rectangle]]:
     """The obstacles' names and bodies as the layer begins, or as they enter in its course."""
     start = graph.layers[layer].start_s
     found = []
@@ -38,17 +38,17 @@ def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[Words
         if body is not None and body.overlaps(frame.outline):
             left, top, right, bottom = frame.box(body)
             at = ((left + right) / 2, (top + bottom) / 2)
-            found.append((Words(name, at, "middle", "name"), (left, top, right, bottom)))
+            found.append((LabelText(name, at, "middle", "name"), (left, top, right, bottom)))
     return found
 
 
-def fits(words: Words, body: Rectangle) -> bool:
+def fits(words: LabelText, body: Rectangle) -> bool:
     """Is there room for the words inside?"""
     left, top, right, bottom = words.bounds
     return body[0] <= left and right <= body[2] and body[1] <= top and bottom <= body[3]
 
 
-def beside(words: Words, body: Rectangle) -> Iterator[Words]:
+def beside(words: LabelText, body: Rectangle) -> Iterator[LabelText]:
     """Places for a name that does not fit into its body: next to it, or just above or below."""
     left, top, right, bottom = words.bounds
     half, (x, y) = (right - left) / 2 + 5, words.at
@@ -75,4 +75,4 @@ def ego_marks(graph: NavigationGraph, frame: Frame, placing: Placing) -> Iterato
     yield Area((shape,), "ego", "ego at the start")
     body = (x - half_length, y - half_width, x + half_length, y + half_width)
     placing.taken.append(body)
-    yield from placing.first_free(beside(Words("ego", (x, y), "middle", "name"), body))
+    yield from placing.first_free(beside(LabelText("ego", (x, y), "middle", "name"), body))

@@ -18,13 +18,13 @@ from rulec.report.pictures.drawing.marks import (
     MARGIN,
     WIDTH,
     Area,
-    Line,
+    LabelText,
     Mark,
     Picture,
-    Words,
+    Polyline,
     rectangle,
 )
-from rulec.report.pictures.legend import Entry, legend
+from rulec.report.pictures.legend import LegendEntry, legend
 from rulec.report.pictures.obstacle_marks import beside, bodies, ego_marks, fits, obstacle_marks
 from rulec.report.pictures.road_frame import Frame
 from rulec.scenario import Road
@@ -44,19 +44,19 @@ def scene_pictures(
 
 def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
     """What the colours and the letters mean."""
-    entries = [Entry("cell", "a cell"), Entry("crossing", "a cell on a crossing")]
+    entries = [LegendEntry("cell", "a cell"), LegendEntry("crossing", "a cell on a crossing")]
     if all(cell.surface == "carriageway" for layer in graph.layers for cell in layer.cells):
         del entries[1]
     if maneuver:
-        entries.append(Entry("chosen", "the maneuver's cell"))
+        entries.append(LegendEntry("chosen", "the maneuver's cell"))
     if graph.objects:
         entries += [
-            Entry("body", "an obstacle as the interval begins"),
-            Entry("swept", "what it sweeps in the interval"),
-            Entry("taken", f"no cell: {_TAKEN[graph.extent]}"),
+            LegendEntry("body", "an obstacle as the interval begins"),
+            LegendEntry("swept", "what it sweeps in the interval"),
+            LegendEntry("taken", f"no cell: {_TAKEN[graph.extent]}"),
         ]
     if graph.scenario.goal:
-        entries.append(Entry("goal", "the goal"))
+        entries.append(LegendEntry("goal", "the goal"))
     road = graph.scenario.road
     frame = Frame(road.outline, 0, len(road.lanes) - 1)
     ratio = f"; across the road {frame.across / frame.along:.2g} times as large as along it"
@@ -74,15 +74,15 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     frame = Frame(road.outline, MARGIN + LINE_HEIGHT, len(road.lanes) - 1)
     chosen = maneuver.nodes[layer] if maneuver else None
     heading = f"{start:g} s to {end:g} s"
-    marks: list[Mark] = [Words(heading, (MARGIN, MARGIN), style="strong")]
+    marks: list[Mark] = [LabelText(heading, (MARGIN, MARGIN), style="strong")]
     if maneuver and chosen is not None:
         bounds = envelope(graph, maneuver.nodes[: layer + 1])[layer]
         right, left = min(d for _, d in bounds.d_right), max(d for _, d in bounds.d_left)
         low, high, right, left = (round(x, 2) for x in (bounds.s_min, bounds.s_max, right, left))
         told = f"cell {chosen}: s {low:g} … {high:g} m, d {right:g} … {left:g} m"
-        marks.append(Words(told, (WIDTH - MARGIN, MARGIN), "end"))
+        marks.append(LabelText(told, (WIDTH - MARGIN, MARGIN), "end"))
     axis = list(_axis(frame))
-    placing = Placing([one.bounds for one in [*marks, *axis] if isinstance(one, Words)])
+    placing = Placing([one.bounds for one in [*marks, *axis] if isinstance(one, LabelText)])
     marks.append(Area((rectangle(*frame.box(road.outline)),), "taken"))
     marks += [Area((rectangle(*frame.box(hole)),), "ground") for hole in road.holes()]
     order = sorted(range(len(here.cells)), key=lambda i: i == chosen)
@@ -113,7 +113,7 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     height = frame.bottom + 14 + LINE_HEIGHT
     columns = int((WIDTH - 2 * MARGIN) / CHARACTER)
     for line in wrap("   ".join(one.replace(" ", "\xa0") for one in key), columns):
-        marks.append(Words(line, (MARGIN, height), style="faint"))
+        marks.append(LabelText(line, (MARGIN, height), style="faint"))
         height += LINE_HEIGHT
     return Picture(heading, WIDTH, height, tuple(marks))
 
@@ -126,17 +126,19 @@ def _cell(frame: Frame, cell: Cell, number: int, chosen: bool) -> Area:
     return Area(shape, style, f"cell {number}: {in_full(cell)}")
 
 
-def _lane_marks(frame: Frame, road: Road) -> Iterator[Line]:
+def _lane_marks(frame: Frame, road: Road) -> Iterator[Polyline]:
     """Lines between lanes, where at least one of the two is there."""
     ends = {s for gap in road.missing for s in gap.s if road.s[0] < s < road.s[1]}
     for right, d in enumerate(road.lanes[1:-1], 1):
         for start, end in pairwise([road.s[0], *sorted(ends), road.s[1]]):
             gone = {gap.lane for gap in road.missing if gap.s[0] <= start and end <= gap.s[1]}
             if not {right, right + 1} <= gone:
-                yield Line((frame.at(start, d), frame.at(end, d)), "lane")
+                yield Polyline((frame.at(start, d), frame.at(end, d)), "lane")
 
 
-def _labels(frame: Frame, cells: Sequence[Cell], placing: Placing) -> tuple[list[Words], list[str]]:
+def _labels(
+    frame: Frame, cells: Sequence[Cell], placing: Placing
+) -> tuple[list[LabelText], list[str]]:
     """The cells' labels, and what those mean that had to be shortened to a number."""
     found, key = [], []
     for number, cell in enumerate(cells):
@@ -155,7 +157,7 @@ def _axis(frame: Frame) -> Iterator[Mark]:
     y = frame.bottom
     for s in ticks(low, high, 12):
         x, _ = frame.at(s, frame.outline.d_min)
-        yield Line(((x, y), (x, y + 4)), "axis")
+        yield Polyline(((x, y), (x, y + 4)), "axis")
         width = len(f"{s:g}") * CHARACTER / 2
         x = min(max(x, width), WIDTH - width)
-        yield Words(f"{s:g}", (x, y + 11), "middle", "faint")
+        yield LabelText(f"{s:g}", (x, y + 11), "middle", "faint")

@@ -16,13 +16,13 @@ from rulec.report.pictures.drawing.marks import (
     MARGIN,
     WIDTH,
     Area,
-    Line,
+    LabelText,
     Mark,
     Picture,
-    Words,
+    Polyline,
     rectangle,
 )
-from rulec.report.pictures.trace_ribbon import Ribbon, Row, extremes, in_words
+from rulec.report.pictures.trace_ribbon import Ribbon, RibbonRow, extremes, in_words
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 
 WIDEST_TITLE = 34
@@ -54,7 +54,7 @@ def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
     words: list[Mark] = []
     y = top
     for row, text in zip(found.rows, titles, strict=True):
-        words.append(Words(text, (axis.left - 10, y + _ROW / 2), "end"))
+        words.append(LabelText(text, (axis.left - 10, y + _ROW / 2), "end"))
         marks += _segments(row, axis, y) if row.values else _curve(row, axis, y)
         words += _values(row, axis, y) if row.values else []
         y += _ROW
@@ -72,26 +72,28 @@ def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
         if rule.name not in explained:
             told.append(("faint", rule.says))
             explained.add(rule.name)
-        marks.append(Words(str(n), (MARGIN, y), style="strong"))
+        marks.append(LabelText(str(n), (MARGIN, y), style="strong"))
         for style, text in told:
             for line in wrap(text, columns - 4):
-                marks.append(Words(line, (MARGIN + 4 * CHARACTER, y), style=style))
+                marks.append(LabelText(line, (MARGIN + 4 * CHARACTER, y), style=style))
                 y += LINE_HEIGHT
         y += 4
     if number > MOST_VIOLATIONS:
-        marks.append(Words(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint"))
+        marks.append(
+            LabelText(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint")
+        )
         y += LINE_HEIGHT
     if found.left_out:
         more = f"{found.left_out:,} row{'s' * (found.left_out != 1)} of defaults left out"
-        marks.append(Words(more, (MARGIN, y), style="faint"))
+        marks.append(LabelText(more, (MARGIN, y), style="faint"))
         y += LINE_HEIGHT
     return Picture(trace.id, WIDTH, y, tuple(marks))
 
 
-def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[Words], float]:
+def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
     """The violations' numbers above their states; and where the rows begin, below them."""
     numbered = sorted((found.decisive(one), n) for n, one in enumerate(found.violations, 1))
-    flags: list[Words] = []
+    flags: list[LabelText] = []
     placing = Placing()
     deepest = top
     for state, group in groupby(numbered, key=lambda one: one[0]):
@@ -100,7 +102,7 @@ def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[Words], float]:
         half = text_width([text]) / 2
         x = min(max(axis.x(state), MARGIN + half), WIDTH - MARGIN - half)
         for level in range(6):
-            words = Words(text, (x, top + level * LINE_HEIGHT + 8), "middle", "strong")
+            words = LabelText(text, (x, top + level * LINE_HEIGHT + 8), "middle", "strong")
             if placing.take(words):
                 flags.append(words)
                 deepest = max(deepest, words.at[1])
@@ -113,17 +115,17 @@ def _violations(found: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
     bottom = top + _ROW * len(found.rows)
     for state in sorted({found.decisive(one) for one in found.violations}):
         x = axis.x(state)
-        yield Line(((x, top - 5), (x, bottom + 4)), "moment")
+        yield Polyline(((x, top - 5), (x, bottom + 4)), "moment")
     for n, violation in enumerate(found.violations, 1):
         x = axis.x(found.decisive(violation))
         about = set(violation.binding.values())
         for place, row in enumerate(found.rows):
             if about & set(row.objects):
                 y = top + _ROW * place
-                yield Line(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")
+                yield Polyline(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")
 
 
-def _segments(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
     for run in row.runs:
         if run.value is not None:
             shape = rectangle(axis.x(run.first), y + 2, axis.x(run.last + 1), y + _ROW - 2)
@@ -132,17 +134,17 @@ def _segments(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
             yield Area((shape,), style, f"{row.title}: {in_words(run.value)}, {when}")
 
 
-def _values(row: Row, axis: _Axis, y: float) -> Iterator[Words]:
+def _values(row: RibbonRow, axis: _Axis, y: float) -> Iterator[LabelText]:
     """What the segments say, where there is room."""
     for run in row.runs:
         if run.value is not None:
             left, right = axis.x(run.first), axis.x(run.last + 1)
             text = in_words(run.value)
             if text_width([text]) + 6 <= right - left:
-                yield Words(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
+                yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
 
 
-def _curve(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
+def _curve(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
     """A quantity between its extremes."""
     low, high = extremes(row)
     scale = (_ROW - 8) / (high - low) if high > low else 0.0
@@ -154,20 +156,20 @@ def _curve(row: Row, axis: _Axis, y: float) -> Iterator[Mark]:
                 for run in group
                 for state in (run.first, run.last + 1)
             ]
-            yield Line(tuple(points), "curve", row.title)
+            yield Polyline(tuple(points), "curve", row.title)
 
 
 def _times(axis: _Axis, y: float) -> Iterator[Mark]:
     end = axis.states * axis.step_s
-    yield Line(((axis.x(0), y + 2), (axis.x(axis.states), y + 2)), "axis")
+    yield Polyline(((axis.x(0), y + 2), (axis.x(axis.states), y + 2)), "axis")
     for time in ticks(0, end, 10):
         x = axis.x(time / axis.step_s)
-        yield Line(((x, y + 2), (x, y + 6)), "axis")
+        yield Polyline(((x, y + 2), (x, y + 6)), "axis")
         text = f"{time:g} s" if time == 0 else f"{time:g}"
-        yield Words(text, (min(x, WIDTH - text_width([text]) / 2), y + 14), "middle", "faint")
+        yield LabelText(text, (min(x, WIDTH - text_width([text]) / 2), y + 14), "middle", "faint")
 
 
-def _title(row: Row) -> str:
+def _title(row: RibbonRow) -> str:
     """What a row is about; of a quantity its extremes, between which the curve runs."""
     text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
     if row.values:

@@ -17,7 +17,7 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class ValueRun:
     """The states from ``first`` to ``last``, both included, in which a value is the same.
 
     ``value`` is None where nothing is said, or who it is about is not there.
@@ -29,7 +29,7 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class RibbonRow:
     """One thing that rules read, such as ``position(v1)``, over a whole trace.
 
     ``values`` are those that there can be, in the vocabulary's order; none for a quantity.
@@ -39,7 +39,7 @@ class Row:
     objects: tuple[str, ...]
     unit: str
     values: tuple[Value, ...]
-    runs: tuple[Run, ...]
+    runs: tuple[ValueRun, ...]
 
     @property
     def title(self) -> str:
@@ -53,7 +53,7 @@ class Ribbon:
     """The rows of a trace and what it violates; ``left_out`` more have nothing but defaults."""
 
     trace: Trace
-    rows: tuple[Row, ...]
+    rows: tuple[RibbonRow, ...]
     left_out: int
     violations: tuple[Violation, ...]
 
@@ -104,7 +104,9 @@ def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
     return sorted(found, key=lambda pair: (order[pair[0]], order[pair[1]]))
 
 
-def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]) -> Row | None:
+def _row(
+    trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]
+) -> RibbonRow | None:
     vocabulary = rules.vocabulary
     declaration = vocabulary.declarations[name]
     if len(declaration.parameters) != len(objects) or not all(
@@ -118,7 +120,7 @@ def _row(trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, .
     if all(value is None for value in values):
         return None
     unit = declaration.unit if isinstance(declaration, Quantity) else ""
-    return Row(name, objects, unit, _possible(declaration), tuple(_runs(values)))
+    return RibbonRow(name, objects, unit, _possible(declaration), tuple(_runs(values)))
 
 
 def _said(state: State, name: str, objects: Sequence[str]) -> bool:
@@ -139,11 +141,11 @@ def _value(
     return value_in(trace.states[number], name, objects, declaration)
 
 
-def _runs(values: Sequence[Value | None]) -> Iterator[Run]:
+def _runs(values: Sequence[Value | None]) -> Iterator[ValueRun]:
     at = 0
     for value, same in groupby(values):
         first, at = at, at + sum(1 for _ in same)
-        yield Run(first, at - 1, value)
+        yield ValueRun(first, at - 1, value)
 
 
 def _possible(declaration: Declaration) -> tuple[Value, ...]:
@@ -152,7 +154,7 @@ def _possible(declaration: Declaration) -> tuple[Value, ...]:
     return () if isinstance(declaration, Quantity) else (False, True)
 
 
-def extremes(row: Row) -> tuple[float, float]:
+def extremes(row: RibbonRow) -> tuple[float, float]:
     """The least and the greatest value of a quantity."""
     numbers = [float(run.value) for run in row.runs if run.value is not None]
     return min(numbers), max(numbers)

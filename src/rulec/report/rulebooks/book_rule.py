@@ -13,7 +13,7 @@ from rulec.logic.english.sentence import Phrase
 from rulec.logic.english.sentence_layout import lines
 from rulec.logic.printing import in_words
 from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
-from rulec.report.rulebooks.rule_provenance import standing
+from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
 from rulec.report.verdicts.state_table import state_table
@@ -88,7 +88,7 @@ def _facts(
     if rule.in_force_from or rule.in_force_until:
         dates = print_in_force(tree.InForce(rule.in_force_from, rule.in_force_until))
         yield "In force", dates.removeprefix("in force ")
-    yield "Origin", escaped(standing(history, book))
+    yield "Origin", escaped(provenance(history, book))
 
 
 def _sentence(phrase: Phrase) -> str:

@@ -14,8 +14,6 @@ from rulec.analysis.trace_table import TraceTable
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.trace_table_text import as_lines
 
-FORMATS = ("text", "markdown", "json", "html", "csv")
-
 WIDTH = 100
 
 COLOURS: dict[Relation, str] = {
@@ -25,31 +23,6 @@ COLOURS: dict[Relation, str] = {
     "incomparable": "magenta",
     "undecided": "yellow",
 }
-
-
-def render(found: RulebookDiff, output_format: str) -> str:
-    """The difference in one of ``FORMATS``."""
-    match output_format:
-        case "json":
-            from rulec.report.rulebooks.diff_json import as_json
-
-            return as_json(found)
-        case "html":
-            from rulec.report.rulebooks.diff_markdown import as_markdown
-            from rulec.report.text.html_page import as_html
-
-            title = f"{found.first.name} compared to {found.second.name}"
-            return as_html(as_markdown(found), title, "")
-        case "markdown":
-            from rulec.report.rulebooks.diff_markdown import as_markdown
-
-            return as_markdown(found)
-        case "csv":
-            from rulec.report.rulebooks.diff_csv import as_csv
-
-            return as_csv(found)
-        case _:
-            return as_text(found)
 
 
 def as_text(found: RulebookDiff) -> str:

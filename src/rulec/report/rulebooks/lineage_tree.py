@@ -23,7 +23,7 @@ from rulec.analysis.lineage.rule_lineage import (
     Step,
 )
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.rulebooks.rule_provenance import standing
+from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.syntax import tree
 from rulec.syntax.printer import print_in_force
 
@@ -108,7 +108,7 @@ def _book(book: Member, *, missing: bool = False) -> Text:
 def _rule(one: RuleHistory, book: str, rules: Tree) -> None:
     gone = one.rule is None
     label = Text(visible(one.name), "dim" if gone else "")
-    label.append(f"  {visible(standing(one, book))}", "dim" if one.last.book != book else "")
+    label.append(f"  {visible(provenance(one, book))}", "dim" if one.last.book != book else "")
     if one.rule is not None and one.rule.in_force is not None:
         label.append(f"  {print_in_force(one.rule.in_force)}", "dim")
     here = rules.add(label)

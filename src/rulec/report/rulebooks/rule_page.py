@@ -20,7 +20,7 @@ from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import in_words
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
-from rulec.report.automata.guard_text import Wording
+from rulec.report.automata.guard_text import GuardWording
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.formula_lines import formula_lines
 from rulec.rulebook.model import Rule, Variable
@@ -61,7 +61,7 @@ class RulePage:
 def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RulePage:
     """The page of a rule that has been compiled."""
     traces = shortest_traces(compiled, vocabulary)
-    wording = Wording(compiled, vocabulary)
+    wording = GuardWording(compiled, vocabulary)
     return RulePage(
         rule,
         automaton_of(compiled, vocabulary),
@@ -72,7 +72,7 @@ def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RuleP
 
 
 def _shown(
-    states: Sequence[Witness] | None, rule: Rule, vocabulary: Vocabulary, wording: Wording
+    states: Sequence[Witness] | None, rule: Rule, vocabulary: Vocabulary, wording: GuardWording
 ) -> ShownTrace | None:
     if states is None:
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rulec.analysis.lineage.rule_lineage import RuleHistory, Step
 
 
-def standing(one: RuleHistory, book: str) -> str:
+def provenance(one: RuleHistory, book: str) -> str:
     """Own, inherited, overriding, or gone, and why; ``book`` is the rulebook in question."""
     last = one.last
     because = f", because {last.because}" if last.because else ""

@@ -23,27 +23,6 @@ MOST_MISSING = 5
 """So many missing edges of a rule are shown; JSON has them all."""
 
 
-def render(
-    runs: Sequence[ExampleRun],
-    covered: Sequence[Sequence[RuleCoverage]] | None,
-    wanted: str,
-    *,
-    color: bool,
-) -> str:
-    """The runs, with the coverage of each unless it is None, as ``full``, ``json`` or ``junit``."""
-    match wanted:
-        case "json":
-            from rulec.report.tests.example_json import as_json
-
-            return as_json(runs, covered)
-        case "junit":
-            from rulec.report.tests.junit import as_junit
-
-            return as_junit(runs, covered)
-        case _:
-            return as_text(runs, covered, color)
-
-
 def as_text(
     runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
 ) -> str:

@@ -125,7 +125,7 @@ def _some(names: Sequence[str]) -> str:
     return f"{shown}{more}"
 
 
-def in_detail(
+def drive_details(
     one: DriveVerdict,
     judged: RecordingVerdicts,
     explained: Sequence[Explanation],

@@ -15,7 +15,7 @@ import click
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.report.automata.guard_text import Wording, runs
+from rulec.report.automata.guard_text import GuardWording, runs
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
@@ -131,7 +131,7 @@ def _states(run: Sequence[tuple[int, str]]) -> str:
 
 def _repaired(explanation: Explanation) -> Iterator[tuple[int, str]]:
     """States by their numbers, and what they would have had to say."""
-    wording = Wording(explanation.rule, explanation.vocabulary)
+    wording = GuardWording(explanation.rule, explanation.vocabulary)
     for change in explanation.repair or ():
         yield change.place, wording.condition(change.cubes)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
-from rulec.report.pictures.drawing.marks import Words
+from rulec.report.pictures.drawing.marks import LabelText
 
 Rectangle = tuple[float, float, float, float]
 """Left, top, right, bottom."""
@@ -27,7 +27,7 @@ class Placing:
 
     taken: list[Rectangle] = field(default_factory=list)
 
-    def take(self, words: Words) -> bool:
+    def take(self, words: LabelText) -> bool:
         """Put words where they stand, if nothing is there."""
         bounds = words.bounds
         if any(_meet(bounds, other) for other in self.taken):
@@ -35,11 +35,11 @@ class Placing:
         self.taken.append(bounds)
         return True
 
-    def first_free(self, choices: Iterable[Words]) -> list[Words]:
+    def first_free(self, choices: Iterable[LabelText]) -> list[LabelText]:
         """The first of these that has its place to itself, taken; empty if none has."""
         return list(islice(filter(self.take, choices), 1))
 
-    def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> Words | None:
+    def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> LabelText | None:
         """The first of the texts that fits into one of the rooms, upright if it can be.
 
         Of the large rooms that in the middle is tried first. None if no text fits anywhere.
@@ -66,16 +66,16 @@ def _preference(rooms: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool,
     return rank
 
 
-def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[Words]:
+def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[LabelText]:
     left, top, right, bottom = room
-    box = Words(text, (0, 0), "middle", turned=turned).bounds
+    box = LabelText(text, (0, 0), "middle", turned=turned).bounds
     spare_x = right - left - (box[2] - box[0]) - 2 * _ROOM
     spare_y = bottom - top - (box[3] - box[1])
     if spare_x < 0 or spare_y < 0:
         return
     for part in _SHIFTS:
         x = left + _ROOM + (box[2] - box[0]) / 2 + part * spare_x
-        yield Words(text, (x, (top + bottom) / 2), "middle", turned=turned)
+        yield LabelText(text, (x, (top + bottom) / 2), "middle", turned=turned)
 
 
 def _meet(one: Rectangle, other: Rectangle) -> bool:

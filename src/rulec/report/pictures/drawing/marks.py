@@ -34,7 +34,7 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class Polyline:
     """A line through points."""
 
     points: tuple[Point, ...]
@@ -43,7 +43,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class LabelText:
     """A line of text whose middle is at the height of ``at``; ``turned`` runs upwards."""
 
     text: str
@@ -63,7 +63,7 @@ class Words:
         return x - before, y - height / 2, x - before + width, y + height / 2
 
 
-Mark = Area | Line | Words
+Mark = Area | Polyline | LabelText
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +90,9 @@ def moved(mark: Mark, right: float, down: float) -> Mark:
     match mark:
         case Area(rings):
             return replace(mark, rings=tuple(there(ring) for ring in rings))
-        case Line(points):
+        case Polyline(points):
             return replace(mark, points=there(points))
-        case Words():
+        case LabelText():
             return replace(mark, at=there([mark.at])[0])
 
 

@@ -9,7 +9,7 @@ from textwrap import wrap
 from typing import Literal, cast, get_args
 
 from rulec.report.automata.automaton_layout import CHARACTER
-from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, Picture, Words, stacked
+from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, LabelText, Picture, stacked
 
 Format = Literal["svg", "png", "html"]
 
@@ -42,7 +42,7 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
     width = max(picture.width for picture in drawing.pictures)
     lines = wrap(drawing.title, int((width - 2 * MARGIN) / CHARACTER))
     words = tuple(
-        Words(line, (MARGIN, MARGIN + n * LINE_HEIGHT), style="strong")
+        LabelText(line, (MARGIN, MARGIN + n * LINE_HEIGHT), style="strong")
         for n, line in enumerate(lines)
     )
     head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, words)

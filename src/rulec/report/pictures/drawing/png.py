@@ -13,7 +13,7 @@ from typing import Any
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.pictures.drawing.marks import Area, Line, Mark, Picture, Point, Words
+from rulec.report.pictures.drawing.marks import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.styles import LIGHT, STYLES
 
 DOTS_PER_PX = 2
@@ -79,10 +79,10 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
             axes.add_patch(
                 PathPatch(path, fc=fill, ec=stroke, lw=width, ls=dash, zorder=order, clip_on=False)
             )
-        case Line(points):
+        case Polyline(points):
             xs, ys = zip(*points, strict=True)
             axes.add_line(Line2D(xs, ys, color=stroke, lw=width, ls=dash, zorder=order))
-        case Words(text, (x, y), anchor, _, turned):
+        case LabelText(text, (x, y), anchor, _, turned):
             around = [withStroke(linewidth=width, foreground=stroke)] if style.halo else None
             axes.text(
                 x,

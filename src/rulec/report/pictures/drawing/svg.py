@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from html import escape
 
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.pictures.drawing.marks import Area, Line, Mark, Picture, Point, Words
+from rulec.report.pictures.drawing.marks import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.styles import as_css
 
 
@@ -39,10 +39,10 @@ def _drawn(mark: Mark) -> Iterator[str]:
         case Area(rings, style, tip):
             path = " ".join(f"M{_through(ring)}Z" for ring in rings)
             yield f'<path class="{style}" fill-rule="evenodd" d="{path}"{_closed("path", tip)}'
-        case Line(points, style, tip):
+        case Polyline(points, style, tip):
             shape = f'class="{style}" points="{_through(points)}"'
             yield f"<polyline {shape}{_closed('polyline', tip)}"
-        case Words(text, (x, y), anchor, style, turned):
+        case LabelText(text, (x, y), anchor, style, turned):
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
             place = f'x="{x:.1f}" y="{y + 4:.1f}" text-anchor="{anchor}"{turn}'
             yield f'<text class="{style}" {place}>{escape(visible(text))}</text>'

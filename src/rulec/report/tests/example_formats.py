@@ -1,0 +1,31 @@
+"""Outcomes of examples, in the format that somebody asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.book_tests.edge_coverage import RuleCoverage
+from rulec.book_tests.example_runs import ExampleRun
+
+
+def render(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    output_format: str,
+    *,
+    color: bool,
+) -> str:
+    """Write the runs as ``full``, ``json`` or ``junit``, with their coverage unless it is None."""
+    match output_format:
+        case "json":
+            from rulec.report.tests.example_json import as_json
+
+            return as_json(runs, covered)
+        case "junit":
+            from rulec.report.tests.junit import as_junit
+
+            return as_junit(runs, covered)
+        case _:
+            from rulec.report.tests.example_text import as_text
+
+            return as_text(runs, covered, color)
