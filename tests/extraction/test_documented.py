@@ -4,10 +4,10 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from rulec.extraction.drive_projection import UNITS
 from rulec.extraction.drives import Drives
 from rulec.extraction.selection.thresholds import USUAL
 from rulec.rulebook.loader import load_rulebook
+from rulec.trace.vocabulary_projection import RECORDED_UNITS
 from rulec.vocabulary import Quantity
 from support.builders.recordings import recording, straight, vehicle
 
@@ -41,4 +41,4 @@ def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():
     ).of("1")
     assert drive.words <= set(declared)
     units = {x.name: x.unit for x in declared.values() if isinstance(x, Quantity)}
-    assert {name: units[name] for name in UNITS} == UNITS
+    assert {name: units[name] for name in RECORDED_UNITS} == RECORDED_UNITS

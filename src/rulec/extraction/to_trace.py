@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.drive_projection import fitted, named_types
+from rulec.extraction.drive_projection import project_columns
 from rulec.extraction.signals.crossing_signals import crossing_words
 from rulec.extraction.signals.ego_signals import ego_words
 from rulec.extraction.signals.flow_signals import flow_words
@@ -22,6 +22,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
 from rulec.scenario.recorded.obstacle_types import WORDS
 from rulec.trace import State, Trace, Value
+from rulec.trace.vocabulary_projection import known_types
 from rulec.vocabulary import Vocabulary
 
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
@@ -72,12 +73,16 @@ def to_trace(seen: DriveContext, ego: str, name: str, telling: TraceWriter) -> D
     words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen) | mark_words(seen)
     types = [WORDS.get(one.type, WORDS["unknown"]) for one in seen.people.participants]
     if telling.vocabulary is not None:
-        words = fitted(words, types, telling.vocabulary, telling.names)
+        words = project_columns(words, types, telling.vocabulary, telling.names)
     words |= SignalColumns(
         {name: np.full(seen.states, value) for name, value in telling.assumed.items()}
     )
     there = list(presences(seen))
-    objects = named_types({one.name: types[one.row] for one in there}, telling.vocabulary)
+    own_types = {one.name: types[one.row] for one in there}
+    if telling.vocabulary is None:
+        objects = {object_name: own[0] for object_name, own in own_types.items()}
+    else:
+        objects = known_types(own_types, telling.vocabulary)
     there = [one for one in there if one.name in objects]
     last = seen.states - 1
     trace = Trace(

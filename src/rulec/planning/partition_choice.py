@@ -1,15 +1,12 @@
-"""Which partition has the words of a rulebook, and its graph in these words."""
+"""The partition that supplies the relations which a rulebook reads."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic, RulecError, named
 from rulec.logic.free_names import names_in
-from rulec.trace import State, TraceGraph, Value
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
@@ -23,49 +20,7 @@ RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
 """The relations that only one partition supplies."""
 
 SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
-"""All that partitions supply."""
-
-
-def in_terms_of(vocabulary: Vocabulary, traces: TraceGraph) -> TraceGraph:
-    """Leave out what the partition supplies and the vocabulary has no word for.
-
-    The author of a rulebook has not written these names, unlike those in a file of traces.
-    """
-    if not vocabulary.types:
-        traces = replace(traces, objects={}, present={})
-    strangers = {name: _strangers(vocabulary, name, traces.objects) for name in SUPPLIED}
-    return replace(
-        traces,
-        states=tuple(
-            tuple([_state(vocabulary, strangers, state) for state in layer])
-            for layer in traces.states
-        ),
-    )
-
-
-def _strangers(vocabulary: Vocabulary, name: str, objects: Mapping[str, str]) -> Set[str]:
-    """The objects that a relation is not about, of types that the vocabulary knows."""
-    declaration = vocabulary.declarations.get(name)
-    if declaration is None or not declaration.parameters:
-        return frozenset()
-    about = declaration.parameters[0]
-    return {
-        item
-        for item, kind in objects.items()
-        if kind in vocabulary.types and not vocabulary.is_subtype(kind, about)
-    }
-
-
-def _state(vocabulary: Vocabulary, strangers: Mapping[str, Set[str]], state: State) -> State:
-    kept: dict[str, Value | Mapping[str, Value]] = {}
-    for name, value in state.items():
-        if name in SUPPLIED and name not in vocabulary.declarations:
-            continue
-        left_out = strangers.get(name)
-        if left_out and isinstance(value, Mapping):
-            value = {item: inner for item, inner in value.items() if item not in left_out}
-        kept[name] = value
-    return kept
+"""The names that partitions supply."""
 
 
 def partition_for(

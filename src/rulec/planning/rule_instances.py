@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
-from rulec.planning.partition_choice import in_terms_of
+from rulec.planning.partition_choice import SUPPLIED
 from rulec.planning.product.graph_instances import Instance, instances
-from rulec.planning.scene_projection import fitted
 from rulec.rulebook.model import Strength
 from rulec.trace import TraceGraph
+from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
@@ -32,9 +32,10 @@ def in_words(
 
     ``obstacles`` are the objects of the traces.
     """
+    recorded = None
     if graph.scenario.account is not None:
-        traces = fitted(vocabulary, traces, obstacles)
-    return in_terms_of(vocabulary, traces)
+        recorded = {name: (own.type, *own.broader) for name, own in obstacles.items()}
+    return project_graph(traces, vocabulary, SUPPLIED, recorded)
 
 
 def past_for(

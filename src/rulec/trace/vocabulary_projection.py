@@ -1,33 +1,151 @@
-"""What nobody has written for one rulebook, as far as the rulebook's vocabulary has words for it.
+"""Projection of supplied values onto what a rulebook's vocabulary declares.
 
-Recorded traffic is such: its types are the most specific that the vocabulary knows, and names that
-the vocabulary does not know, or means otherwise, are left out.
+Nobody has written a recording or a partition for one rulebook: their objects get the most specific
+type that the vocabulary knows, and names that it does not declare, or means otherwise, are left
+out. What an author has written is kept, so that validation can report it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
+from dataclasses import replace
 
-from rulec.trace.trace_model import Value
+from rulec.trace.trace_model import State, TraceGraph, Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
+RECORDED_UNITS = {
+    "speed": "km/h",
+    "limit": "km/h",
+    "speed_difference": "km/h",
+    "gap": "m",
+    "time_headway": "s",
+    "lateral_gap": "m",
+    "distance_to_crossing": "m",
+    "ego_length": "m",
+}
+"""The units of the quantities that recordings supply."""
 
-def known_types(kinds: Mapping[str, Sequence[str]], vocabulary: Vocabulary) -> dict[str, str]:
-    """For each object the first of its ``kinds`` that the vocabulary knows, if it knows one."""
-    found = {}
-    for name, words in kinds.items():
-        known = next((word for word in words if word in vocabulary.types), None)
-        if known is not None:
-            found[name] = known
-    return found
+_Signal = Value | Mapping[str, Value]
 
 
-def could_mean(values: Iterable[Value], declaration: Declaration, unit: str) -> bool:
-    """Could these be what the vocabulary means by the name? ``unit`` is that of numbers."""
+def known_type(types: Iterable[str], vocabulary: Vocabulary) -> str | None:
+    """The first of an object's types, most specific first, that the vocabulary declares."""
+    return next((name for name in types if name in vocabulary.types), None)
+
+
+def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) -> dict[str, str]:
+    """The type of each object of which the vocabulary declares one."""
+    types = {name: known_type(own, vocabulary) for name, own in objects.items()}
+    return {name: own for name, own in types.items() if own is not None}
+
+
+def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:
+    """Whether objects of a type, None for one not declared, may stand as the first parameter."""
+    if own_type is None or own_type not in vocabulary.types:
+        return False
+    return not declaration.parameters or vocabulary.is_subtype(own_type, declaration.parameters[0])
+
+
+def fits(name: str, values: Iterable[Value], declaration: Declaration) -> bool:
+    """Whether recorded values could be what the vocabulary means by the name, unit included."""
     match declaration:
         case Signal():
-            return all(isinstance(one, bool) for one in values)
+            return all(isinstance(value, bool) for value in values)
         case Enumeration():
-            return all(one in declaration.values for one in values)
+            return all(value in declaration.values for value in values)
         case Quantity():
-            return declaration.unit == unit and all(type(one) in (int, float) for one in values)
+            same_unit = declaration.unit == RECORDED_UNITS.get(name)
+            return same_unit and all(type(value) in (int, float) for value in values)
+
+
+def project_graph(
+    traces: TraceGraph,
+    vocabulary: Vocabulary,
+    supplied: Set[str],
+    recorded: Mapping[str, Sequence[str]] | None = None,
+) -> TraceGraph:
+    """Traces in the words of a vocabulary.
+
+    ``supplied`` are the names that a partition supplies: they are left out where the vocabulary
+    does not declare them, and their objects where it means others. ``recorded`` are the types of
+    each object, most specific first, if the scene was recorded: then all names are looked at.
+    """
+    objects = dict(traces.objects) if recorded is None else known_types(recorded, vocabulary)
+    if not vocabulary.types:
+        objects = {}
+    projection = _StateProjection(vocabulary, supplied, traces.objects, recorded)
+    return replace(
+        traces,
+        objects=objects,
+        present={name: span for name, span in traces.present.items() if name in objects},
+        states=tuple(tuple(map(projection.state, layer)) for layer in traces.states),
+    )
+
+
+class _StateProjection:
+    """States in the words of a vocabulary. A value that states share is projected once."""
+
+    def __init__(
+        self,
+        vocabulary: Vocabulary,
+        supplied: Set[str],
+        objects: Mapping[str, str],
+        recorded: Mapping[str, Sequence[str]] | None,
+    ) -> None:
+        self._vocabulary = vocabulary
+        self._supplied = supplied
+        self._recorded = recorded is not None
+        # Types that an author has written and the vocabulary lacks are reported by validation
+        self._types: dict[str, str | None] = (
+            {name: own for name, own in objects.items() if own in vocabulary.types}
+            if recorded is None
+            else {name: known_type(own, vocabulary) for name, own in recorded.items()}
+        )
+        self._excluded: dict[str, Set[str]] = {}
+        self._projected: dict[tuple[str, int], tuple[_Signal, _Signal | None]] = {}
+
+    def state(self, state: State) -> State:
+        """What the vocabulary declares of a state."""
+        kept: dict[str, _Signal] = {}
+        for name, value in state.items():
+            key = (name, id(value))
+            if key not in self._projected:
+                # The value stays beside its projection, so that no other one is given its id
+                self._projected[key] = (value, self._value(name, value))
+            projected = self._projected[key][1]
+            if projected is not None:
+                kept[name] = projected
+        return kept
+
+    def _value(self, name: str, value: _Signal) -> _Signal | None:
+        """A value without the objects that its name is not about; None if nothing is left."""
+        declaration = self._vocabulary.declarations.get(name)
+        by_partition = name in self._supplied
+        if not by_partition and not self._recorded:
+            return value
+        if declaration is None:
+            return None
+        if not by_partition and not _fits(name, value, declaration):
+            return None
+        if not isinstance(value, Mapping):
+            return value
+        excluded = self._others_than(name, declaration)
+        if excluded.isdisjoint(value):
+            return value
+        return {item: inner for item, inner in value.items() if item not in excluded}
+
+    def _others_than(self, name: str, declaration: Declaration) -> Set[str]:
+        """The objects that a name is not about."""
+        if name not in self._excluded:
+            self._excluded[name] = {
+                item
+                for item, own in self._types.items()
+                if not is_about(declaration, own, self._vocabulary)
+            }
+        return self._excluded[name]
+
+
+def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
+    if isinstance(value, Mapping) != bool(declaration.parameters):
+        return False
+    return fits(name, value.values() if isinstance(value, Mapping) else (value,), declaration)

@@ -12,8 +12,7 @@ import numpy as np
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Tracks, Values
-
-_SPREAD, _MORE_M = 2.0, 3.0
+from rulec.scenario.recorded.outline_bounds import outline_bounds
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -55,18 +54,7 @@ def road_extents(people: Tracks, road: DrivenRoad) -> RoadExtents:
     bounds = [np.full(shape, np.nan) for _ in range(6)]
     known = list(people.outlines())
     if known:
-        counts = np.array([len(outline) for _, _, outline in known])
-        starts = np.append(0, np.cumsum(counts)[:-1])
-        corners = np.concatenate([outline for _, _, outline in known])
-        middles = np.add.reduceat(corners, starts) / counts[:, None]
-        away = np.hypot(*(corners - np.repeat(middles, counts, axis=0)).T)
-        # Near the foot of its middle, so that no body is torn apart where a road meets itself
-        reach = np.maximum.reduceat(away, starts) * _SPREAD + _MORE_M
-        around = np.repeat(road.line.coordinates(middles)[:, 0], counts)
-        found = road.line.coordinates_near(corners, around, np.repeat(reach, counts))
-        found[np.isnan(around)] = np.nan
-        places = np.column_stack((found, road.lanes.straightened(found)[:, 1]))
-        low, high = (one.reduceat(places, starts) for one in (np.minimum, np.maximum))
+        low, high = outline_bounds([outline for _, _, outline in known], road.line, road.lanes)
         rows, columns = np.array([(row, column) for row, column, _ in known]).T
         for axis in range(3):
             bounds[2 * axis][rows, columns] = low[:, axis]

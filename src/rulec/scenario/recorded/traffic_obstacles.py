@@ -21,6 +21,7 @@ from rulec.scenario.model import (
 )
 from rulec.scenario.recorded.lane_coordinates import Lanes
 from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.scenario.recorded.outline_bounds import outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.scene_choice import Prediction
@@ -29,7 +30,6 @@ GOES_ON_S = 600.0
 """So long after the end of a recording who was there then is taken to go on."""
 
 _FAR_M = 10.0
-_SPREAD, _MORE_M = 2.0, 3.0
 _SPEED_OVER_S = 0.5
 _AT_ONCE = 20_000
 
@@ -57,19 +57,8 @@ class TrafficView:
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
         """The bounds of outlines in the scenario; None for those that are not near the road."""
-        if not outlines:
-            return []
-        counts = np.array([len(outline) for outline in outlines])
-        starts = np.append(0, np.cumsum(counts)[:-1])
-        places = np.concatenate(outlines)
-        middles = np.add.reduceat(places, starts) / counts[:, None]
-        away = np.hypot(*(places - np.repeat(middles, counts, axis=0)).T)
-        reach = np.maximum.reduceat(away, starts) * _SPREAD + _MORE_M
-        around = np.repeat(self.line.coordinates(middles)[:, 0], counts)
-        found = self.line.coordinates_near(places, around, np.repeat(reach, counts))
-        places = self.lanes.straightened(np.where(np.isnan(around)[:, None], np.nan, found))
-        low = np.minimum.reduceat(places, starts) - (self.ego_s, 0.0)
-        high = np.maximum.reduceat(places, starts) - (self.ego_s, 0.0)
+        low, high = outline_bounds(outlines, self.line, self.lanes)
+        low, high = low[:, ::2] - (self.ego_s, 0.0), high[:, ::2] - (self.ego_s, 0.0)
         wide = Box(
             self.road.s_min - _FAR_M,
             self.road.s_max + _FAR_M,
