@@ -60,9 +60,9 @@ def test_failing_examples_say_where_and_what(odd, capsys):
         '6 |   accept "to <&> right" { b(v);\n'
         "  |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
         "7 |      r(v); f(v) }\n"
-        "  |      ---- beyond saving after this state\n"
+        "  |      ---- cannot be kept any more after this state\n"
         "  = help: either the formula or the example does not say what is meant\n"
-        "  = note: the rule is beyond saving after state 1, counted from 0\n"
+        "  = note: the rule cannot be kept any more after state 1, counted from 0\n"
         "\n"
         "error[R0406]: example number 3 of rule `A` says `reject`, but the rule accepts it\n"
         " --> odd.rules:8:3\n"

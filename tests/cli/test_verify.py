@@ -61,7 +61,7 @@ def test_text(verify):
     assert (status, err) == (1, "")
     assert out == (
         "t1: violated\n"
-        "  hard rule R1 [Article 11.1, 11.6] for v = v1: beyond saving after state 3\n"
+        "  hard rule R1 [Article 11.1, 11.6] for v = v1: cannot be kept any more after state 3\n"
         "2 traces: 1 satisfied, 1 violated\n"
     )
 

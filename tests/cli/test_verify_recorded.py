@@ -66,7 +66,7 @@ def test_a_table_of_rules_and_vehicles(verify):
 def test_the_first_violation_is_explained(verify):
     _, out, _ = verify()
     assert "4: violated" in out.splitlines()
-    assert "  hard rule slow [Art. 1]: beyond saving after state 0" in out.splitlines()
+    assert "  hard rule slow [Art. 1]: cannot be kept any more after state 0" in out.splitlines()
     _, out, _ = verify("--as-recorded")
     assert "mirrored" not in out
 

@@ -26,19 +26,19 @@ def violated(rules):
 @pytest.mark.parametrize(
     ("more", "line"),
     [
-        ({}, "hard rule A [Art. A]: beyond"),
-        ({"cite": ""}, "hard rule A: beyond"),
+        ({}, "hard rule A [Art. A]: cannot be kept"),
+        ({"cite": ""}, "hard rule A: cannot be kept"),
         # The rulebook is called `test`: its own rules need not say so.
-        ({"book": "test"}, "hard rule A [Art. A]: beyond"),
-        ({"book": "vienna"}, "hard rule A [vienna, Art. A]: beyond"),
-        ({"book": "vienna", "cite": ""}, "hard rule A [vienna]: beyond"),
-        ({"level": "legal"}, "hard rule A in legal [Art. A]: beyond"),
+        ({"book": "test"}, "hard rule A [Art. A]: cannot be kept"),
+        ({"book": "vienna"}, "hard rule A [vienna, Art. A]: cannot be kept"),
+        ({"book": "vienna", "cite": ""}, "hard rule A [vienna]: cannot be kept"),
+        ({"level": "legal"}, "hard rule A in legal [Art. A]: cannot be kept"),
         (
             {"strength": "soft", "level": "courtesy", "weight": Fraction(5, 2)},
-            "soft rule A in courtesy weight 2.5 [Art. A]: beyond",
+            "soft rule A in courtesy weight 2.5 [Art. A]: cannot be kept",
         ),
-        ({"strength": "soft"}, "soft rule A [Art. A]: beyond"),
-        ({"level": "a\x1b[31m"}, "hard rule A in a\\x1b[31m [Art. A]: beyond"),
+        ({"strength": "soft"}, "soft rule A [Art. A]: cannot be kept"),
+        ({"level": "a\x1b[31m"}, "hard rule A in a\\x1b[31m [Art. A]: cannot be kept"),
     ],
 )
 def test_a_violation_names_the_rule_as_its_head_does(more, line):

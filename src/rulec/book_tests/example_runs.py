@@ -157,10 +157,12 @@ def surprise(outcome: Outcome) -> Diagnostic:
     labels: tuple[Label, ...] = ()
     notes: tuple[str, ...] = ()
     if outcome.lost_after is not None:
-        notes = (f"the rule is beyond saving after state {outcome.lost_after}, counted from 0",)
+        notes = (
+            f"the rule cannot be kept any more after state {outcome.lost_after}, counted from 0",
+        )
         if example.state_spans:
             place = example.state_spans[outcome.lost_after].place
-            labels = (Label(place, "beyond saving after this state"),)
+            labels = (Label(place, "cannot be kept any more after this state"),)
     elif not outcome.accepted:
         end = "the example did not end here"
         if not outcome.ends:

@@ -71,8 +71,11 @@ def test_a_violation_is_marked_where_it_is_decided(rules):
     assert top < min(ys) < max(ys) < bottom
     assert bottom - top < 30
     words = [one.text for one in picture.marks if isinstance(one, LabelText)]
-    told = "hard rule R1 [Article 11.1, 11.6] for v = v: beyond saving after state 3, at 1.5 s"
-    assert told in words
+    title = (
+        "hard rule R1 [Article 11.1, 11.6] for v = v: "
+        "cannot be kept any more after state 3, at 1.5 s"
+    )
+    assert title in words
     assert "1" in words
 
 

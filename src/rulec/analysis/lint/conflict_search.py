@@ -133,7 +133,7 @@ Graph = Mapping[Node, Sequence[_Step]]
 def _explored(
     machines: Sequence[MealyMonitor], owners: Sequence[int], symbols: Sequence[Symbol]
 ) -> Graph:
-    """The joint states that can be reached, in breadth-first order; those beyond saving end it."""
+    """The joint states that can be reached, in breadth-first order; a rejecting sink ends it."""
     start: Node = (0,) * len(machines)
     graph: dict[Node, list[_Step]] = {}
     waiting = [start]

@@ -39,7 +39,7 @@ def as_data(found: Maneuvers, ranked: RankedManeuver) -> dict[str, Any]:
 
 
 def violation_as_data(found: Maneuvers, one: Violation, rule: CompiledRule) -> dict[str, Any]:
-    """A violation; ``lost_s`` is when the cell begins with which it is beyond saving."""
+    """A violation; ``lost_s`` is when the cell begins that violates the rule for good."""
     return {
         "rule": one.rule,
         "cite": rule.cite,
@@ -75,10 +75,10 @@ def violation_line(found: Maneuvers, violation: Violation) -> str:
 
 
 def when_lost(found: Maneuvers, violation: Violation) -> str:
-    """When the violation is beyond saving."""
+    """When the rule cannot be kept any more."""
     if violation.step is None:
         return "by how it ends"
-    return f"beyond saving from {found.graph.layers[violation.step].start_s:g} s on"
+    return f"cannot be kept any more from {found.graph.layers[violation.step].start_s:g} s on"
 
 
 def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:

@@ -58,7 +58,7 @@ class Ribbon:
     violations: tuple[Violation, ...]
 
     def decisive(self, violation: Violation) -> int:
-        """The state with which a rule is beyond saving; behind the last if the end decides."""
+        """The state after which a rule is violated for good; behind the last if the end decides."""
         return len(self.trace.states) if violation.step is None else violation.step
 
 

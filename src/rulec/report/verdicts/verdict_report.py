@@ -105,7 +105,7 @@ def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
     when = (
         "not fulfilled when the trace ends"
         if violation.step is None
-        else f"beyond saving after state {violation.step}"
+        else f"cannot be kept any more after state {violation.step}"
     )
     about = f" for {where}" if where else ""
     return f"{rule.strength} rule {_title(rule, rulebook)}{about}: {when}"
