@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 
 from rulec.extraction.drives import Drive, Drives
-from rulec.extraction.tracks.mirror import mirrored
+from rulec.extraction.tracks.mirror import mirrored_recording
 from support.generators.random_recordings import scenes
 
 _MIRRORED = {
@@ -43,7 +43,9 @@ def assert_alike(one, other):
 
 @given(scenes())
 def test_words_of_the_mirror_are_the_mirrors_words(found):
-    for one, other in zip(drives(found, "right"), drives(mirrored(found), "left"), strict=True):
+    for one, other in zip(
+        drives(found, "right"), drives(mirrored_recording(found), "left"), strict=True
+    ):
         assert isinstance(one, Drive) == isinstance(other, Drive)
         if isinstance(one, Drive):
             assert one.trace.objects == other.trace.objects
@@ -55,7 +57,7 @@ def test_words_of_the_mirror_are_the_mirrors_words(found):
 @given(scenes())
 def test_a_mirror_in_a_mirror_shows_what_there_is(found):
     found = replace(found, side="right")
-    twice = mirrored(mirrored(found))
+    twice = mirrored_recording(mirrored_recording(found))
     assert twice.side == found.side
     assert twice.lanelets.keys() == found.lanelets.keys()
     for key, lanelet in found.lanelets.items():

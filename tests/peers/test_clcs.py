@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rulec.scenario.recorded.ego_start import reference_of, start_of
-from rulec.scenario.recorded.reference_line import dense, reference_line
+from rulec.scenario.recorded.ego_start import ego_start, reference_lanelet
+from rulec.scenario.recorded.reference_line import densified, reference_line
 from rulec.scenario.recorded.route import lanelets_at, route
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.recording_files import read_recording
@@ -101,8 +101,8 @@ def test_on_recorded_roads(project):
     jobs = []
     for file in files:
         recording = read_recording(file)
-        start = start_of(recording, Choice(), file.name)
-        own = reference_of(recording, Choice(), start.state, file.name)
+        start = ego_start(recording, Choice(), file.name)
+        own = reference_lanelet(recording, Choice(), start.state, file.name)
         way = route(recording, own, lanelets_at(recording, start.targets))
         centre = np.concatenate([recording.lanelets[number].centre for number in way])
         kept = np.append(True, np.hypot(*np.diff(centre, axis=0).T) > 0.05)
@@ -111,5 +111,5 @@ def test_on_recorded_roads(project):
         places = np.array([(state.x, state.y) for state in states])[::10]
         s, d = line.coordinates(places).T
         near = (np.abs(d) < ACROSS_M) & (s > 5) & (s < line.length - 5)
-        jobs.append((dense(centre[kept], 1.0), places[near]))
+        jobs.append((densified(centre[kept], 1.0), places[near]))
     assert compare(jobs, project(jobs)) > 1000

@@ -9,11 +9,11 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.thresholds import Thresholds
+from rulec.extraction.selection.traffic_thresholds import Thresholds
 from rulec.extraction.signals.relations import lanes_touched
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags, Tracks, Values
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.scenario.recorded.recording import Recording
 
 Side = Literal["left", "right"]
@@ -61,15 +61,15 @@ class DriveContext:
         drives = self.people.of_kind("vehicle")[:, None]
         return self.near & drives & (abs(self.others.turned) < 1.0) & self.touched.any(axis=-1)
 
-    def speeds(self) -> Values:
+    def speeds(self) -> Floats:
         """Everybody's speed along the road (km/h), 0 of those who stand."""
-        return standing_at_0(self.others.along * KMH, self.thresholds)
+        return zero_if_standing(self.others.along * KMH, self.thresholds)
 
 
-def standing_at_0(speed_kmh: Values, thresholds: Thresholds) -> Values:
+def zero_if_standing(speed_kmh: Floats, thresholds: Thresholds) -> Floats:
     """Speeds, those of who stands made exactly 0."""
     still = abs(speed_kmh) < thresholds.standing_kmh
-    rest: Values = speed_kmh * ~still
+    rest: Floats = speed_kmh * ~still
     return rest
 
 

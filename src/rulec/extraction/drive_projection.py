@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rulec.extraction.signals.signal_columns import Column, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.partition.cell_valuations import PAPER_SURFACE
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
@@ -40,7 +40,7 @@ def project_columns(
     return SignalColumns(world, about, signals.unknown, only)
 
 
-def _in_paper_words(name: str, column: Column, declaration: Declaration) -> Column:
+def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
     """A surface in the paper's two words, if the vocabulary has only those."""
     if name != "surface" or not isinstance(declaration, Enumeration):
         return column
@@ -49,7 +49,7 @@ def _in_paper_words(name: str, column: Column, declaration: Declaration) -> Colu
     return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
 
 
-def _fits(name: str, column: Column, declaration: Declaration) -> bool:
+def _fits(name: str, column: SignalColumn, declaration: Declaration) -> bool:
     # All floats are alike; the distinct values of others are few
     values = column.ravel()[:1] if column.dtype.kind == "f" else np.unique(column)
     return fits(name, values.tolist(), declaration)

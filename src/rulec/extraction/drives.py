@@ -9,17 +9,17 @@ from itertools import groupby
 import numpy as np
 
 from rulec.extraction.drive_context import Side, drive_context
-from rulec.extraction.selection.relevance import near
-from rulec.extraction.selection.thresholds import USUAL, Thresholds
-from rulec.extraction.to_trace import EVERYTHING, Drive, TraceWriter, to_trace
-from rulec.extraction.tracks.driven_road import DrivenRoad, road_along
+from rulec.extraction.selection.relevance import relevant_participants
+from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
+from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
+from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road
 from rulec.extraction.tracks.driven_route import RouteStretch, driven_stretches
-from rulec.extraction.tracks.junction_lanelets import in_junctions
-from rulec.extraction.tracks.map_matching import Moments, match_to_map
+from rulec.extraction.tracks.junction_lanelets import junction_lanelets
+from rulec.extraction.tracks.map_matching import MatchedLanelets, match_to_map
 from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.tracks.vru_surface import on_crosswalks, on_lanes
-from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Recording
 
 FEWEST_STATES = 2
@@ -46,14 +46,14 @@ class Drives:
         recording: Recording,
         side: Side,
         thresholds: Thresholds = USUAL,
-        telling: TraceWriter = EVERYTHING,
+        telling: TraceWriter = ALL_SIGNALS,
     ) -> None:
         self.recording = recording
         self._thresholds = thresholds
         self._telling = telling
         self._side: Side = side
         self._people = tracks_of(recording, thresholds)
-        self._junctions = in_junctions(recording)
+        self._junctions = junction_lanelets(recording)
         self._ground = (
             on_lanes(recording, self._people),
             on_crosswalks(recording, self._people),
@@ -66,7 +66,7 @@ class Drives:
         return tuple(
             one.id
             for one in self._people.participants
-            if not one.standing and set(WORDS.get(one.type, ())).intersection(_DRIVERS)
+            if not one.standing and set(OBSTACLE_TYPES.get(one.type, ())).intersection(_DRIVERS)
         )
 
     def kinds(self) -> dict[str, type]:
@@ -106,7 +106,7 @@ class Drives:
             everybody = road_extents(people, road)
         if np.isnan(everybody.w[row, columns[0] : columns[1] + 1]).any():
             return NoDrive(ego, "it is far from its road for a while")
-        there = near(row, people, everybody, road, self._thresholds)
+        there = relevant_participants(row, people, everybody, road, self._thresholds)
         seen = drive_context(
             self.recording,
             self._thresholds,
@@ -125,7 +125,7 @@ class Drives:
         """A road, and everybody's place along it unless that were too much to remember."""
         if way not in self._roads:
             try:
-                road = road_along(self.recording, way, self._junctions)
+                road = driven_road(self.recording, way, self._junctions)
                 few = self._people.there.size <= MOST_PLACES
                 self._roads[way] = road, road_extents(self._people, road) if few else None
             except ValueError as reason:
@@ -133,7 +133,7 @@ class Drives:
         return self._roads[way]
 
 
-def _unbroken(people: Tracks, row: int, moments: Moments) -> Iterator[Moments]:
+def _unbroken(people: Tracks, row: int, moments: MatchedLanelets) -> Iterator[MatchedLanelets]:
     """The moments of somebody, parted where the recording does not have them for a while."""
     gone = np.cumsum(~people.there[row])
     for _, columns in groupby(moments, key=lambda column: int(gone[column])):

@@ -10,17 +10,17 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.drive_projection import project_columns
-from rulec.extraction.signals.crossing_signals import crossing_words
-from rulec.extraction.signals.ego_signals import ego_words
-from rulec.extraction.signals.flow_signals import flow_words
-from rulec.extraction.signals.junction_signals import junction_words
-from rulec.extraction.signals.lane_change_signals import lane_change_words
-from rulec.extraction.signals.lane_mark_signals import mark_words
-from rulec.extraction.signals.map_signals import map_words
-from rulec.extraction.signals.other_signals import other_words
+from rulec.extraction.signals.crossing_signals import crossing_signals
+from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.signals.junction_signals import junction_signals
+from rulec.extraction.signals.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
+from rulec.extraction.signals.map_signals import map_signals
+from rulec.extraction.signals.other_signals import other_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
-from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import known_types
 from rulec.vocabulary import Vocabulary
@@ -64,14 +64,21 @@ class TraceWriter:
     assumed: Mapping[str, Value] = field(default_factory=dict)
 
 
-EVERYTHING = TraceWriter()
+ALL_SIGNALS = TraceWriter()
 
 
 def to_trace(seen: DriveContext, ego: str, name: str, telling: TraceWriter) -> Drive:
     """What ``ego`` did, as a trace of that name."""
-    words = ego_words(seen) | other_words(seen) | map_words(seen) | junction_words(seen)
-    words |= crossing_words(seen) | flow_words(seen) | lane_change_words(seen) | mark_words(seen)
-    types = [WORDS.get(one.type, WORDS["unknown"]) for one in seen.people.participants]
+    words = ego_signals(seen) | other_signals(seen) | map_signals(seen) | junction_signals(seen)
+    words |= (
+        crossing_signals(seen)
+        | flow_signals(seen)
+        | lane_change_signals(seen)
+        | lane_mark_signals(seen)
+    )
+    types = [
+        OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"]) for one in seen.people.participants
+    ]
     if telling.vocabulary is not None:
         words = project_columns(words, types, telling.vocabulary, telling.names)
     words |= SignalColumns(

@@ -37,6 +37,6 @@ def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
     )
 
 
-def adds_up(total: Fraction) -> bool:
+def is_distribution(total: Fraction) -> bool:
     """Is it 1, as far as weights are written, such as three times 0.333?"""
     return abs(total - 1) <= _ROUNDING

@@ -51,14 +51,14 @@ class XmlFormat:
         return RulecError(found)
 
 
-Begin = Callable[[str, Mapping[str, str], XMLParserType], None]
+ElementHandler = Callable[[str, Mapping[str, str], XMLParserType], None]
 """Called where an element begins, the root included, with its name and its attributes."""
 
 
 def scan(
     path: Path,
     form: XmlFormat,
-    begin: Begin,
+    begin: ElementHandler,
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.scenario.recorded.recording import State, in_order
+from rulec.scenario.recorded.recording import TrackState, id_order
 from rulec.scenario.recorded.route import lanelet_of, lanelets_at, route
 from support.builders.recordings import lanelet, recording, straight
 
@@ -68,7 +68,7 @@ def test_no_further_than_300_m():
 def test_the_lanelet_that_ego_is_on(place, heading, expected):
     crossing = lanelet(7, [(25, -3), (25, 2)])
     made = recording([*FORK, crossing])
-    assert lanelet_of(made, State(*place, heading, 0, 0)) == expected
+    assert lanelet_of(made, TrackState(*place, heading, 0, 0)) == expected
 
 
 def test_a_road_does_not_turn_back_by_itself():
@@ -85,4 +85,4 @@ def test_a_road_does_not_turn_back_by_itself():
 
 
 def test_ids_that_are_numbers_come_in_their_order():
-    assert sorted(["10", "9", "e2", "100"], key=in_order) == ["9", "10", "e2", "100"]
+    assert sorted(["10", "9", "e2", "100"], key=id_order) == ["9", "10", "e2", "100"]

@@ -6,8 +6,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.scenario.recorded.recording import Light
-from rulec.scenario.sumo.lane_borders import beside, without_repeats
-from rulec.scenario.sumo.lanelets import lanelets_of
+from rulec.scenario.sumo.lane_borders import parallel_line, without_repeats
+from rulec.scenario.sumo.lanelets import net_lanelets
 from rulec.scenario.sumo.net import read_net
 from rulec.scenario.sumo.traffic_lights import unknown_lights
 from support.builders.sumo_files import ROAD_NET
@@ -16,7 +16,7 @@ from support.builders.sumo_files import ROAD_NET
 def lanelets(tmp_path, text=ROAD_NET, step_s=0.5):
     file = tmp_path / "road.net.xml"
     file.write_text(text, encoding="utf-8")
-    return lanelets_of(read_net(file), step_s)
+    return net_lanelets(read_net(file), step_s)
 
 
 def lane(**attributes):
@@ -191,7 +191,7 @@ def test_a_border_is_parallel(pieces, offset):
         heading += turn
         points.append(points[-1] + length * np.array([np.cos(heading), np.sin(heading)]))
     points = np.array(points)
-    line = beside(points, offset)
+    line = parallel_line(points, offset)
     ahead = np.diff(points, axis=0)
     ahead /= np.hypot(*ahead.T)[:, None]
     across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
@@ -207,4 +207,4 @@ def test_points_without_repeats_are_apart(points):
     assert (np.hypot(*np.diff(kept, axis=0).T) > 0.01).all()
     assert kept[0].tolist() == list(points[0])
     assume(len(kept) > 1)
-    assert np.isfinite(beside(kept, 1.0)).all()
+    assert np.isfinite(parallel_line(kept, 1.0)).all()

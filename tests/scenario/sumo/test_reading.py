@@ -68,9 +68,9 @@ def test_kinds_and_sizes(tmp_path, kind, element, expected):
 
 
 def test_every_class_has_a_kind_that_rulebooks_can_have_a_word_for():
-    from rulec.scenario.recorded.obstacle_types import WORDS
+    from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 
-    assert {one.kind for one in CLASSES.values()} <= set(WORDS)
+    assert {one.kind for one in CLASSES.values()} <= set(OBSTACLE_TYPES)
 
 
 def test_speed_and_acceleration(tmp_path):

@@ -7,7 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import Lanelet, Participant, Problem, Recording, State
+from rulec.scenario.recorded.recording import (
+    Lanelet,
+    Participant,
+    PlanningProblem,
+    Recording,
+    TrackState,
+)
 
 BESIDE = Path(__file__).resolve().parents[4] / "shared/data/commonroad"
 RECORDINGS = Path(os.environ.get("RULEC_RECORDINGS", BESIDE))
@@ -90,15 +96,17 @@ def vehicle(number, places, kind="car", length=4.0, width=2.0, speed=0.0, **more
     """A participant: step -> x and y, heading along the x axis unless ``heading`` says else."""
     heading = more.pop("heading", 0.0)
     acceleration = more.pop("acceleration", 0.0)
-    states = {step: State(x, y, heading, speed, acceleration) for step, (x, y) in places.items()}
+    states = {
+        step: TrackState(x, y, heading, speed, acceleration) for step, (x, y) in places.items()
+    }
     outlines = {step: rectangle(x, y, length, width, heading) for step, (x, y) in places.items()}
     return Participant(str(number), kind, more.get("standing", False), states, outlines)
 
 
 def recording(lanelets, participants=(), ego=(0.0, 0.0), goals=(), heading=0.0, step_s=0.5):
     """A recording with one planning problem, number 99, at step 0."""
-    start = State(*ego, heading, 0.0, 0.0)
-    problem = Problem("99", 0, start, np.array(goals, dtype=float).reshape(-1, 2))
+    start = TrackState(*ego, heading, 0.0, 0.0)
+    problem = PlanningProblem("99", 0, start, np.array(goals, dtype=float).reshape(-1, 2))
     return Recording(
         "made by hand", step_s, {x.id: x for x in lanelets}, tuple(participants), (problem,)
     )

@@ -71,7 +71,7 @@ def wanted(
     Raises:
         click.BadParameter: an assumption or a threshold is none.
     """
-    from rulec.extraction.selection.option_values import assumptions, thresholds
+    from rulec.extraction.selection.option_values import assumption_options, threshold_options
     from rulec.extraction.selection.requested import RequestedDrives
 
     if options["assumed"] and vocabulary is None:
@@ -79,8 +79,8 @@ def wanted(
     try:
         return RequestedDrives(
             egos,
-            thresholds(options["thresholds"]),
-            {} if vocabulary is None else assumptions(options["assumed"], vocabulary),
+            threshold_options(options["thresholds"]),
+            {} if vocabulary is None else assumption_options(options["assumed"], vocabulary),
             options["as_recorded"],
         )
     except ValueError as problem:

@@ -21,7 +21,7 @@ def _prediction(
     context: click.Context, parameter: click.Parameter, value: str
 ) -> str | dict[str, Fraction]:
     """A kind of prediction, or several with their probabilities."""
-    from rulec.scenario.alternatives import adds_up
+    from rulec.scenario.alternatives import is_distribution
     from rulec.scenario.recorded.scene_choice import PREDICTIONS
 
     known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
@@ -35,7 +35,7 @@ def _prediction(
         found[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
         if not found[kind]:
             raise click.BadParameter(f"`{part}` has to end in a weight above 0, such as `=0.7`")
-    if not adds_up(sum(found.values(), Fraction(0))):
+    if not is_distribution(sum(found.values(), Fraction(0))):
         raise click.BadParameter("the weights have to add up to 1")
     return found
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import isfinite
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.extraction.selection.thresholds import Thresholds
+from rulec.extraction.selection.traffic_thresholds import Thresholds
 from rulec.trace import Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.units import parse_unit
@@ -17,7 +17,7 @@ from rulec.vocabulary.units import parse_unit
 _NUMBER = re.compile(r"(-?[0-9]{1,15}(?:\.[0-9]{1,15})?)\s*(\S*)")
 
 
-def assumptions(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
+def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
     """Name -> value, from texts such as ``built_up=true`` and ``limit=30 mph``.
 
     Raises:
@@ -72,7 +72,7 @@ def _measure(text: str, name: str, unit: str) -> float:
     return float(Fraction(match[1]) * given.factor / own.factor)
 
 
-def thresholds(texts: Iterable[str]) -> Thresholds:
+def threshold_options(texts: Iterable[str]) -> Thresholds:
     """The usual thresholds but for some, from texts such as ``near_m=200``.
 
     Raises:

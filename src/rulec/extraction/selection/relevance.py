@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.selection.thresholds import Thresholds
+from rulec.extraction.selection.traffic_thresholds import Thresholds
 from rulec.extraction.signals.relations import lanes_touched
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents
@@ -14,7 +14,7 @@ _AGAINST = -0.7
 """The cosine of the angle from which on somebody comes towards ego."""
 
 
-def near(
+def relevant_participants(
     ego: int, people: Tracks, all_placed: RoadExtents, road: DrivenRoad, thresholds: Thresholds
 ) -> Flags:
     """Who is there for ego when."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
-from rulec.extraction.selection.thresholds import USUAL, Thresholds
+from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import Drive, TraceWriter
-from rulec.extraction.tracks.mirror import mirrored
+from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.rulebook.model import Traffic
 from rulec.scenario.recorded.recording import Recording
 from rulec.trace import Value
@@ -61,7 +61,7 @@ def selected_drives(
     side = traffic or own or "right"
     other = own is not None and own != side and not wanted.as_recorded
     if other:
-        recording = mirrored(recording)
+        recording = mirrored_recording(recording)
     telling = TraceWriter(vocabulary, names, wanted.assumed)
     drives = Drives(recording, side, wanted.thresholds, telling)
     return SelectedDrives(recording, other, _chosen(drives.egos(), wanted.egos, file), drives)

@@ -12,20 +12,20 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.map_signals import ahead_of_ego
-from rulec.extraction.signals.signal_columns import SignalColumns, named
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.signals.map_signals import next_crossing
+from rulec.extraction.signals.signal_columns import SignalColumns, named_values
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def crossing_words(view: DriveContext) -> SignalColumns:
+def crossing_signals(view: DriveContext) -> SignalColumns:
     """Words about those who walk, and about those who stop for them."""
-    use = _crossing_use(view)
+    use = _crossing_uses(view)
     somebody = ((use > 0) & view.near).any(axis=0)
     return SignalColumns(
         about={
-            "crossing_use": named(use, _USES),
+            "crossing_use": named_values(use, _USES),
             "stopped_for_pedestrian": _stopped(view) & somebody,
         },
         only={
@@ -35,11 +35,11 @@ def crossing_words(view: DriveContext) -> SignalColumns:
     )
 
 
-def _crossing_use(view: DriveContext) -> NDArray[intp]:
+def _crossing_uses(view: DriveContext) -> NDArray[intp]:
     """The number of the use in ``_USES``, of everybody; it means something of who walks only."""
     others, limits = view.others, view.thresholds
     straight = view.road.lanes.straight
-    start, end = ahead_of_ego(view)
+    start, end = next_crossing(view)
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
@@ -56,17 +56,17 @@ def _crossing_use(view: DriveContext) -> NDArray[intp]:
     return found
 
 
-def _towards(view: DriveContext) -> Values:
+def _towards(view: DriveContext) -> Floats:
     """The speed towards the middle of the road, across it (m/s)."""
     straight = view.road.lanes.straight
     left = view.others.across
-    towards: Values = np.where(view.others.w < (straight[0] + straight[-1]) / 2, left, -left)
+    towards: Floats = np.where(view.others.w < (straight[0] + straight[-1]) / 2, left, -left)
     return towards
 
 
 def _stopped(view: DriveContext) -> Flags:
     """Who stands before the crossing that lies ahead of ego, near to it."""
-    start, _ = ahead_of_ego(view)
+    start, _ = next_crossing(view)
     stands = view.people.speed * KMH < view.thresholds.standing_kmh
     way = start - view.others.s_max
     found: Flags = (

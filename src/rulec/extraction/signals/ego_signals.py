@@ -6,9 +6,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext, standing_at_0
-from rulec.extraction.signals.signal_columns import SignalColumns, named, rounded
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.drive_context import KMH, DriveContext, zero_if_standing
+from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 _EGO_TYPES = {
     "truck": "ego_truck",
@@ -22,12 +22,12 @@ _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def ego_words(view: DriveContext) -> SignalColumns:
+def ego_signals(view: DriveContext) -> SignalColumns:
     """Words about ego alone."""
     limits = view.thresholds
     count = view.states
     (participant,) = view.ego.participants
-    speed = rounded(standing_at_0(view.ego.speed[0] * KMH, limits))
+    speed = rounded(zero_if_standing(view.ego.speed[0] * KMH, limits))
     gained = view.ego.acceleration[0]
     there = view.road.lanes_at(view.own.s[0])
     lane = steady_lane(view, there)
@@ -39,10 +39,10 @@ def ego_words(view: DriveContext) -> SignalColumns:
             "accelerating": gained > limits.accelerating_mps2,
             "braking_hard": gained < -limits.braking_hard_mps2,
             "can_stop_at_once": speed <= limits.stops_at_once_kmh,
-            "lane": named(_from_kerb(view, lane, there), _LANES),
-            "lanes": named(np.clip(there.sum(axis=1) - 1, 0, 2), _COUNTS),
+            "lane": named_values(_from_kerb(view, lane, there), _LANES),
+            "lanes": named_values(np.clip(there.sum(axis=1) - 1, 0, 2), _COUNTS),
             "straddling": _straddling(view, there),
-            "lane_position": named(_place_in_lane(view, lane), _PLACES),
+            "lane_position": named_values(_place_in_lane(view, lane), _PLACES),
         }
     )
 
@@ -88,8 +88,8 @@ def _straddling(view: DriveContext, there: Flags) -> Flags:
 def _place_in_lane(view: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """0 centred, 1 at the near edge, 2 at the far one."""
     straight = view.road.lanes.straight
-    right: Values = view.own.w_min[0] - straight[lane]
-    left: Values = straight[lane + 1] - view.own.w_max[0]
+    right: Floats = view.own.w_min[0] - straight[lane]
+    left: Floats = straight[lane + 1] - view.own.w_max[0]
     near, far = (right, left) if view.side == "right" else (left, right)
     # In a lane that is hardly wider than ego both edges are near, and neither is kept to
     edge = view.thresholds.at_edge_m

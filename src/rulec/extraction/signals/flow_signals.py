@@ -11,10 +11,10 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 
-def flow_words(view: DriveContext) -> SignalColumns:
+def flow_signals(view: DriveContext) -> SignalColumns:
     """Words about traffic as a whole."""
     limits = view.thresholds
     speeds, counts = _around(view)
@@ -42,7 +42,7 @@ def _close(view: DriveContext) -> Flags:
     return view.with_ego & (relations.gap(view.own, view.others) <= reach)
 
 
-def _around(view: DriveContext) -> tuple[Values, Values]:
+def _around(view: DriveContext) -> tuple[Floats, Floats]:
     """The median speed (km/h) of the vehicles around ego and itself, and how many they are."""
     close = _close(view)
     speeds = np.where(close, np.maximum(view.others.along, 0.0), np.nan)
@@ -50,7 +50,7 @@ def _around(view: DriveContext) -> tuple[Values, Values]:
     return np.nanmedian(with_own, axis=0) * KMH, close.sum(axis=0) + 1
 
 
-def _queues(view: DriveContext) -> tuple[Flags, Values]:
+def _queues(view: DriveContext) -> tuple[Flags, Floats]:
     """For every state and lane: is there a queue, and what is its median speed (km/h)?"""
     limits = view.thresholds
     lanes = len(view.road.lanes.straight) - 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import Column, SignalColumns
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 _COLOURS = {
     "red": "red_light",
@@ -17,7 +17,7 @@ _COLOURS = {
 }
 
 
-def junction_words(view: DriveContext) -> SignalColumns:
+def junction_signals(view: DriveContext) -> SignalColumns:
     """Words about junctions on ego's road, and about the lights and signs before them."""
     front, rear = view.own.s_max[0], view.own.s_min[0]
     zone = np.zeros(view.states, dtype=bool)
@@ -28,7 +28,7 @@ def junction_words(view: DriveContext) -> SignalColumns:
         zone |= here
         enters |= _passes(front, start)
         turn[here] = _turn(view, start, end)
-    world: dict[str, Column] = {
+    world: dict[str, SignalColumn] = {
         "junction_zone": zone,
         "enters_junction": enters,
         "turn": turn,
@@ -52,13 +52,13 @@ def _soon(happens: Flags, view: DriveContext) -> Flags:
     return soon
 
 
-def _passes(front: Values, line: float) -> Flags:
+def _passes(front: Floats, line: float) -> Flags:
     """The state in which ego's front is beyond a line for the first time."""
     beyond = front > line
     return np.append(False, beyond[1:] & ~beyond[:-1])
 
 
-def _crosses_stop_line(view: DriveContext, front: Values) -> Flags:
+def _crosses_stop_line(view: DriveContext, front: Floats) -> Flags:
     """Where ego leaves a lanelet with a stop sign: its line is at the end."""
     found = np.zeros(view.states, dtype=bool)
     for piece, end in enumerate(view.road.borders[1:].tolist()):
@@ -79,7 +79,7 @@ def _turn(view: DriveContext, start: float, end: float) -> str:
     return "turn_near" if (turned < 0) == (view.side == "right") else "turn_far"
 
 
-def _lights(view: DriveContext, front: Values) -> tuple[Column, Flags]:
+def _lights(view: DriveContext, front: Floats) -> tuple[SignalColumn, Flags]:
     """The light that is for ego, empty if it shows several colours, and where its line is crossed.
 
     A light is for who is on its lanelet, at whose end the line is. In the state in which ego

@@ -7,11 +7,11 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import steady_lane
-from rulec.extraction.signals.signal_columns import SignalColumns, named
+from rulec.extraction.signals.signal_columns import SignalColumns, named_values
 from rulec.extraction.tracks.tracks import Flags
 
 
-def lane_change_words(view: DriveContext) -> SignalColumns:
+def lane_change_signals(view: DriveContext) -> SignalColumns:
     """Words about changes of lanes."""
     lane = steady_lane(view, view.road.lanes_at(view.own.s[0]))
     changes = np.append(False, lane[1:] != lane[:-1])
@@ -33,7 +33,7 @@ def _indicator(view: DriveContext) -> SignalColumns:
     lit = np.array([(near in (one or ()), far in (one or ())) for one in steps])
     codes = np.where(lit[:, 0] & ~lit[:, 1], 1, np.where(lit[:, 1] & ~lit[:, 0], 2, 0))
     return SignalColumns(
-        {"indicator": named(codes, ("no_indicator", "near_indicator", "far_indicator"))},
+        {"indicator": named_values(codes, ("no_indicator", "near_indicator", "far_indicator"))},
         unknown={"indicator": np.array([one is None for one in steps])},
     )
 

@@ -12,7 +12,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.scenario.recorded.recording import Lanelet
 
 
-def mark_words(view: DriveContext) -> SignalColumns:
+def lane_mark_signals(view: DriveContext) -> SignalColumns:
     """Words about marks; none at all if the map has none."""
     if not any(x.left_mark or x.right_mark for x in view.recording.lanelets.values()):
         return SignalColumns()

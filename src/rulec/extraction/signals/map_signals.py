@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.signal_columns import Column, SignalColumns, rounded
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, rounded
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.recording import Lanelet
 
 NO_LIMIT_KMH = 1000.0
@@ -22,13 +22,13 @@ _SIGNS = {
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
 
 
-def map_words(view: DriveContext) -> SignalColumns:
+def map_signals(view: DriveContext) -> SignalColumns:
     """Words about the road where ego is. What the map has no word about at all is not there."""
     lanelets = _lanelets_at(view, view.own.s[0])
     # Where ego's front was one state before, so that who crosses a line still has its sign
     front = view.own.s_max[0]
     left = _lanelets_at(view, np.append(front[:1], front[:-1]))
-    to_crossing = way_to_crossing(view)
+    to_crossing = distance_to_crossing(view)
     on = to_crossing <= 0
     world = {
         "surface": _surface(view, on),
@@ -50,21 +50,21 @@ def map_words(view: DriveContext) -> SignalColumns:
     return SignalColumns(world, unknown=unknown)
 
 
-def _lanelets_at(view: DriveContext, s: Values) -> list[Lanelet]:
+def _lanelets_at(view: DriveContext, s: Floats) -> list[Lanelet]:
     """The lanelet of ego's lane at places, one for each state."""
     pieces = view.road.piece(s).tolist()
     lanes = view.lane.tolist()
     return [view.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
 
 
-def way_to_crossing(view: DriveContext) -> Values:
+def distance_to_crossing(view: DriveContext) -> Floats:
     """From ego's front to the next pedestrian crossing, 0 on it (m)."""
-    start, _ = ahead_of_ego(view)
-    way: Values = np.clip(start - view.own.s_max[0], 0.0, NO_CROSSING_M)
+    start, _ = next_crossing(view)
+    way: Floats = np.clip(start - view.own.s_max[0], 0.0, NO_CROSSING_M)
     return way
 
 
-def ahead_of_ego(view: DriveContext) -> tuple[Values, Values]:
+def next_crossing(view: DriveContext) -> tuple[Floats, Floats]:
     """Where the pedestrian crossing that ego is on, or the next one, begins and ends, by state.
 
     Infinite where there is none.
@@ -76,7 +76,7 @@ def ahead_of_ego(view: DriveContext) -> tuple[Values, Values]:
     return start, end
 
 
-def _surface(view: DriveContext, on_crossing: Flags) -> Column:
+def _surface(view: DriveContext, on_crossing: Flags) -> SignalColumn:
     """What ego is on; of crossings any part of it counts, of the rest its middle."""
     middle = view.own.s[0]
     found = np.full(view.states, "carriageway", dtype="<U11")

@@ -6,8 +6,8 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumns, named, rounded
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
 
 LONGEST_S = 1000.0
@@ -16,7 +16,7 @@ LONGEST_S = 1000.0
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def other_words(view: DriveContext) -> SignalColumns:
+def other_signals(view: DriveContext) -> SignalColumns:
     """Words about objects."""
     own, others, limits = view.own, view.others, view.thresholds
     station = relations.station(own, others)
@@ -27,15 +27,15 @@ def other_words(view: DriveContext) -> SignalColumns:
     return SignalColumns(
         about={
             "position": relations.position(own, others, view.touched, walking, view.road),
-            "station": named(station, STATIONS),
-            "lateral": named(lateral, LATERALS),
+            "station": named_values(station, STATIONS),
+            "lateral": named_values(lateral, LATERALS),
             "gap": rounded(gap),
             "time_headway": rounded(_headway(view, gap)),
             "lateral_gap": rounded(relations.lateral_gap(own, others)),
             "speed_difference": rounded(own.along * KMH - view.speeds()),
             "safe_gap": np.logical_or(~follows, gap >= safe_distance(view)),
             "precedes": _precedes(view, follows, gap),
-            "oncoming": comes(view) | _waits_to_come(view),
+            "oncoming": is_oncoming(view) | _waits_to_come(view),
             "stopped": view.people.speed * KMH < limits.standing_kmh,
             "parked": _for_good(view, [one.standing for one in view.people.participants]),
             "two_wheeled": _for_good(
@@ -47,14 +47,14 @@ def other_words(view: DriveContext) -> SignalColumns:
     )
 
 
-def _headway(view: DriveContext, gap: Values) -> Values:
+def _headway(view: DriveContext, gap: Floats) -> Floats:
     """How long ego takes for the gap at its speed (s); as good as for ever if it stands."""
     moves = view.own.along * KMH >= view.thresholds.standing_kmh
     seconds = gap / np.where(moves, view.own.along, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
-def safe_distance(view: DriveContext) -> Values:
+def safe_distance(view: DriveContext) -> Floats:
     """How far behind somebody ego has to be not to run into it if it brakes as hard as it can.
 
     Ego brakes as hard after its reaction time. Who comes towards ego counts as standing.
@@ -62,11 +62,11 @@ def safe_distance(view: DriveContext) -> Values:
     limits = view.thresholds
     own = np.maximum(view.own.along, 0.0)
     other = np.maximum(view.others.along, 0.0)
-    distance: Values = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
+    distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
     return distance
 
 
-def comes(view: DriveContext) -> Flags:
+def is_oncoming(view: DriveContext) -> Flags:
     """Who moves against ego's direction?"""
     moves = np.abs(view.others.along) * KMH >= view.thresholds.standing_kmh
     against: Flags = moves & (view.others.along < 0)
@@ -90,9 +90,9 @@ def _faces_ego(view: DriveContext) -> Flags:
     return faces
 
 
-def _precedes(view: DriveContext, follows: Flags, gap: Values) -> Flags:
+def _precedes(view: DriveContext, follows: Flags, gap: Floats) -> Flags:
     """Who is the next one ahead of ego in its lane?"""
-    ahead = np.where(follows & view.near & ~comes(view), gap, np.inf)
+    ahead = np.where(follows & view.near & ~is_oncoming(view), gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
     next_one: Flags = (ahead == nearest) & np.isfinite(ahead)
     return next_one

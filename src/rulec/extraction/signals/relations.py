@@ -11,10 +11,10 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.thresholds import Thresholds
+from rulec.extraction.selection.traffic_thresholds import Thresholds
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
 
@@ -52,7 +52,7 @@ def lateral(own: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenR
     return _side(own.w, low, high)
 
 
-def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Values, Values]:
+def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Floats, Floats]:
     """The bounds of the lanes that others are in; of who is in none, its own."""
     straight = road.lanes.straight
     first = touched.argmax(axis=-1)
@@ -64,16 +64,16 @@ def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Val
     )
 
 
-def _side(w: Values, low: Values, high: Values) -> Codes:
+def _side(w: Floats, low: Floats, high: Floats) -> Codes:
     return np.where(w <= low, RIGHT_OF, np.where(w >= high, LEFT_OF, SAME_LANE))
 
 
-def gap(own: RoadExtents, others: RoadExtents) -> Values:
+def gap(own: RoadExtents, others: RoadExtents) -> Floats:
     """The distance along the road between bodies, 0 beside each other."""
     return np.maximum(np.maximum(others.s_min - own.s_max, own.s_min - others.s_max), 0.0)
 
 
-def lateral_gap(own: RoadExtents, others: RoadExtents) -> Values:
+def lateral_gap(own: RoadExtents, others: RoadExtents) -> Floats:
     """The distance across the road between bodies, 0 behind each other."""
     return np.maximum(np.maximum(others.d_min - own.d_max, own.d_min - others.d_max), 0.0)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags
 
-Column = NDArray[Any]
+SignalColumn = NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,8 +22,8 @@ class SignalColumns:
     objects can be said at all.
     """
 
-    world: Mapping[str, Column] = field(default_factory=dict)
-    about: Mapping[str, Column] = field(default_factory=dict)
+    world: Mapping[str, SignalColumn] = field(default_factory=dict)
+    about: Mapping[str, SignalColumn] = field(default_factory=dict)
     unknown: Mapping[str, Flags] = field(default_factory=dict)
     only: Mapping[str, Flags] = field(default_factory=dict)
 
@@ -36,11 +36,11 @@ class SignalColumns:
         )
 
 
-def named(codes: Column, names: Sequence[str]) -> Column:
+def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
     """The names that whole numbers stand for."""
     return np.array(names)[codes]
 
 
-def rounded(values: Column) -> Column:
+def rounded(values: SignalColumn) -> SignalColumn:
     """Numbers as they are written: to a hundredth, as places are no better known."""
     return np.round(values, 2) + 0.0

@@ -10,13 +10,13 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Flags, Values
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.geometry import Box
-from rulec.scenario.recorded.crosswalks import crossings
+from rulec.scenario.recorded.crosswalks import road_crossings
 from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes_along
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
-from rulec.scenario.recorded.route import beside, extended
+from rulec.scenario.recorded.route import extended_route, lanes_beside
 from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 
@@ -31,7 +31,7 @@ class DrivenRoad:
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
     own_lane: int
-    borders: Values
+    borders: Floats
     line: ReferenceLine
     lanes: Lanes
     crossings: tuple[tuple[float, float], ...]
@@ -44,24 +44,24 @@ class DrivenRoad:
         assert own is not None
         return row[lane] or own
 
-    def piece(self, s: Values) -> NDArray[intp]:
+    def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""
         found = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
         return np.clip(found, 0, len(self.rows) - 1)
 
-    def lanes_at(self, s: Values) -> Flags:
+    def lanes_at(self, s: Floats) -> Flags:
         """Which lanes there are at places: the last axis is that of the lanes, from the right."""
         at = np.searchsorted(self.lanes.s, np.nan_to_num(s), "right") - 1
         return self.lanes.there[np.clip(at, 0, len(self.lanes.there) - 1)]
 
-    def lane_of(self, d: Values) -> NDArray[intp]:
+    def lane_of(self, d: Floats) -> NDArray[intp]:
         """The lanes at straightened offsets; who is beside the road counts to the nearest."""
         straight = self.lanes.straight
         found = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
         return np.clip(found, 0, len(straight) - 2)
 
 
-def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
+def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
     """The road of a chain of lanelets, and what lies straight on before and after it.
 
     ``junctions`` are the lanelets that lie in one.
@@ -69,7 +69,7 @@ def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) ->
     Raises:
         ValueError: its lanes cannot be laid out along a line.
     """
-    whole = extended(recording, way)
+    whole = extended_route(recording, way)
     lanelets = tuple(recording.lanelets[number] for number in whole)
     line = reference_line(np.concatenate([one.centre for one in lanelets]))
     borders = borders_along(lanelets, line)
@@ -86,19 +86,19 @@ def road_along(recording: Recording, way: Sequence[str], junctions: Set[str]) ->
         borders,
         line,
         lanes,
-        tuple(one.s for one in crossings(view)),
+        tuple(one.s for one in road_crossings(view)),
         tuple(_runs(borders, [number in junctions for number in whole])),
     )
 
 
 def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanelet | None, ...]:
-    right = beside(recording, number, left=False)
-    left = beside(recording, number, left=True)
+    right = lanes_beside(recording, number, left=False)
+    left = lanes_beside(recording, number, left=True)
     row = dict(enumerate((number, *left), own)) | dict(zip(range(own - 1, -1, -1), right))  # noqa: B905
     return tuple(recording.lanelets[row[k]] if k in row else None for k in range(count))
 
 
-def _runs(borders: Values, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
+def _runs(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
     """From where to where pieces with a flag follow each other."""
     for flag, pieces in groupby(range(len(flags)), key=lambda piece: flags[piece]):
         if flag:

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rulec.extraction.tracks.map_matching import Moments
+from rulec.extraction.tracks.map_matching import MatchedLanelets
 from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.recorded.route import beside, is_lane
+from rulec.scenario.recorded.route import is_lane, lanes_beside
 
 MOST_HOPS = 4
 """A vehicle passes at most so many lanelets between two of its states."""
@@ -40,7 +40,7 @@ class _Path:
     before: _Path | None
 
 
-def driven_stretches(recording: Recording, moments: Moments) -> Iterator[RouteStretch]:
+def driven_stretches(recording: Recording, moments: MatchedLanelets) -> Iterator[RouteStretch]:
     """The pieces of a drive, each along one road, in their order."""
     first = last = -1
     best: dict[str, _Path] = {}
@@ -62,7 +62,7 @@ def _rows(recording: Recording, places: Mapping[str, float]) -> dict[str, float]
     found: dict[str, float] = {}
     for number, cost in places.items():
         for left in (True, False):
-            row = (number, *beside(recording, number, left=left))
+            row = (number, *lanes_beside(recording, number, left=left))
             for lanes, one in enumerate(row):
                 found[one] = min(
                     found.get(one, cost + lanes * _LANE_COST), cost + lanes * _LANE_COST

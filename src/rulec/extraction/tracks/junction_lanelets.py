@@ -14,7 +14,7 @@ _CROSSING = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
 
 
-def in_junctions(recording: Recording) -> frozenset[str]:
+def junction_lanelets(recording: Recording) -> frozenset[str]:
     """The ids of the lanelets in junctions."""
     lanes = [one for one in recording.lanelets.values() if is_lane(one)]
     found = {one.id for one in lanes if "intersection" in one.types}

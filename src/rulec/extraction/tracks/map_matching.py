@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Tracks, Values
+from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import is_lane
 
@@ -20,11 +20,11 @@ NEAR_M = 3.0
 _BESIDE_COST = 1.0
 _AGAINST = pi / 2
 
-Moments = Mapping[int, Mapping[str, float]]
+MatchedLanelets = Mapping[int, Mapping[str, float]]
 """Column -> lanelet -> how badly it fits: 0 on it and along it, 1 nearly across it or beside it."""
 
 
-def match_to_map(recording: Recording, people: Tracks) -> dict[int, Moments]:
+def match_to_map(recording: Recording, people: Tracks) -> dict[int, MatchedLanelets]:
     """For the rows of those who move: where they are, but for columns without a fitting lane."""
     lanes = [one for one in recording.lanelets.values() if is_lane(one)]
     moving = np.array([not one.standing for one in people.participants], dtype=bool)
@@ -48,11 +48,11 @@ def match_to_map(recording: Recording, people: Tracks) -> dict[int, Moments]:
     return {row: dict(sorted(moments.items())) for row, moments in found.items()}
 
 
-def _directions(lanelet: Lanelet, points: NDArray[np.object_]) -> Values:
+def _directions(lanelet: Lanelet, points: NDArray[np.object_]) -> Floats:
     """The lanelet's direction at the piece of its centre line nearest to each place."""
     steps = np.diff(lanelet.centre, axis=0)
     reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
     along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
     piece = np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(steps) - 1)
-    directions: Values = np.arctan2(steps[piece, 1], steps[piece, 0])
+    directions: Floats = np.arctan2(steps[piece, 1], steps[piece, 0])
     return directions

@@ -8,11 +8,11 @@ from rulec.scenario.recorded.recording import (
     Lamp,
     Lanelet,
     Participant,
+    PlanningProblem,
     Points,
-    Problem,
     Recording,
     Side,
-    State,
+    TrackState,
 )
 
 _LAMPS: dict[Lamp, Lamp] = {
@@ -22,7 +22,7 @@ _LAMPS: dict[Lamp, Lamp] = {
 _OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
 
 
-def mirrored(recording: Recording) -> Recording:
+def mirrored_recording(recording: Recording) -> Recording:
     """With ``y`` turned round, and left and right of everything exchanged. Its own inverse."""
     return replace(
         recording,
@@ -62,9 +62,9 @@ def _participant(one: Participant) -> Participant:
     )
 
 
-def _problem(problem: Problem) -> Problem:
+def _problem(problem: PlanningProblem) -> PlanningProblem:
     return replace(problem, start=_state(problem.start), goals=_points(problem.goals))
 
 
-def _state(state: State) -> State:
+def _state(state: TrackState) -> TrackState:
     return replace(state, y=-state.y, heading=-state.heading)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Tracks, Values
+from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 
 
@@ -23,23 +23,23 @@ class RoadExtents:
     the velocity along the road and to its left (m/s).
     """
 
-    s_min: Values
-    s_max: Values
-    d_min: Values
-    d_max: Values
-    w_min: Values
-    w_max: Values
-    turned: Values
-    along: Values
-    across: Values
+    s_min: Floats
+    s_max: Floats
+    d_min: Floats
+    d_max: Floats
+    w_min: Floats
+    w_max: Floats
+    turned: Floats
+    along: Floats
+    across: Floats
 
     @property
-    def s(self) -> Values:
+    def s(self) -> Floats:
         """The middle along the road."""
         return (self.s_min + self.s_max) / 2
 
     @property
-    def w(self) -> Values:
+    def w(self) -> Floats:
         """The middle across the road."""
         return (self.w_min + self.w_max) / 2
 
@@ -78,9 +78,9 @@ def road_extents(people: Tracks, road: DrivenRoad) -> RoadExtents:
     )
 
 
-def _directions(road: DrivenRoad, s: Values) -> Values:
+def _directions(road: DrivenRoad, s: Floats) -> Floats:
     line = road.line
     piece = np.searchsorted(line.arc, np.nan_to_num(s), "right") - 1
     ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]
-    directions: Values = np.arctan2(ahead[..., 1], ahead[..., 0])
+    directions: Floats = np.arctan2(ahead[..., 1], ahead[..., 0])
     return directions

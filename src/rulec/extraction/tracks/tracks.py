@@ -13,11 +13,11 @@ import numpy as np
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.thresholds import Thresholds
-from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.extraction.selection.traffic_thresholds import Thresholds
+from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 
-Values: TypeAlias = NDArray[float64]
+Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
 
 
@@ -28,13 +28,13 @@ class Tracks:
     participants: tuple[Participant, ...]
     first: int
     there: Flags
-    x: Values
-    y: Values
-    heading: Values
-    vx: Values
-    vy: Values
-    speed: Values
-    acceleration: Values
+    x: Floats
+    y: Floats
+    heading: Floats
+    vx: Floats
+    vy: Floats
+    speed: Floats
+    acceleration: Floats
 
     @property
     def steps(self) -> int:
@@ -62,7 +62,9 @@ class Tracks:
 
     def of_kind(self, word: str) -> Flags:
         """Whose type is this one, or one of its subtypes?"""
-        kinds = [WORDS.get(one.type, WORDS["unknown"]) for one in self.participants]
+        kinds = [
+            OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"]) for one in self.participants
+        ]
         return np.array([word in words for words in kinds], dtype=bool)
 
 

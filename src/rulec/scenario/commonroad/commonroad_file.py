@@ -19,20 +19,23 @@ from typing import Any
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.scenario.commonroad.commonroad_participants import (
+    commonroad_participants,
+    planning_problem,
+)
 from rulec.scenario.commonroad.country_side import side_in
-from rulec.scenario.commonroad.participants import participants_of, problem_of
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded.recording import (
     FARTHEST_M,
     LONGEST_M,
     Lanelet,
+    LaneMark,
     Light,
-    Mark,
     Points,
     Recording,
 )
 
-_MARKS: Mapping[str, Mark] = MappingProxyType(
+_MARKS: Mapping[str, LaneMark] = MappingProxyType(
     {
         "solid": "solid",
         "broad_solid": "solid",
@@ -121,9 +124,9 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
         name,
         step_s,
         lanelets,
-        tuple(participants_of(scenario)),
+        tuple(commonroad_participants(scenario)),
         tuple(
-            problem_of(problem, lanelets)
+            planning_problem(problem, lanelets)
             for _, problem in sorted(problems.planning_problem_dict.items())
         ),
         side=side_in(name),

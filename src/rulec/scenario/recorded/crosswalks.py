@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.scenario.model import Stretch
-from rulec.scenario.recorded.reference_line import dense
+from rulec.scenario.recorded.reference_line import densified
 from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 _NARROWEST_M = 0.1
 _EVERY_M = 0.5
 
 
-def crossings(view: TrafficView) -> tuple[Stretch, ...]:
+def road_crossings(view: TrafficView) -> tuple[Stretch, ...]:
     """The stretches of the road that crosswalks take up; each reaches across the whole road."""
     found = []
     road = view.road
@@ -20,7 +20,7 @@ def crossings(view: TrafficView) -> tuple[Stretch, ...]:
         if "crosswalk" not in lanelet.types:
             continue
         outline = np.concatenate((lanelet.right, lanelet.left[::-1], lanelet.right[:1]))
-        places = view.lanes.straightened(view.line.coordinates(dense(outline, _EVERY_M)))
+        places = view.lanes.straightened(view.line.coordinates(densified(outline, _EVERY_M)))
         on_road = places[(places[:, 1] > road.d_min) & (places[:, 1] < road.d_max), 0] - view.ego_s
         if len(on_road):
             low, high = max(float(on_road.min()), road.s_min), min(float(on_road.max()), road.s_max)

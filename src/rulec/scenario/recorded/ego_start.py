@@ -9,7 +9,13 @@ from math import cos, hypot, sin
 import numpy as np
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
-from rulec.scenario.recorded.recording import Participant, Points, Problem, Recording, State
+from rulec.scenario.recorded.recording import (
+    Participant,
+    PlanningProblem,
+    Points,
+    Recording,
+    TrackState,
+)
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.recorded.scene_choice import Choice
 
@@ -17,7 +23,7 @@ _SAME_PLACE_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class EgoStart:
     """Ego at time 0, which is a step of the file, and places that it goes to.
 
     ``participant`` is the one whose part it takes over, if any.
@@ -25,11 +31,11 @@ class Start:
 
     participant: str | None
     step: int
-    state: State
+    state: TrackState
     targets: Points
 
 
-def start_of(recording: Recording, choice: Choice, file: str) -> Start:
+def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
     """Where the chosen ego is. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
@@ -37,31 +43,33 @@ def start_of(recording: Recording, choice: Choice, file: str) -> Start:
     }
     if not problems and not moving:
         message = "nobody moves in the file, and it has no planning problem"
-        raise unfit(message, "take a recording that has a vehicle", file)
+        raise choice_error(message, "take a recording that has a vehicle", file)
     if choice.ego is None and not problems:
         message = "the file has no planning problem, which would say where ego is"
-        raise unfit(message, f"choose one of its vehicles with --ego: {listed(moving)}", file)
+        raise choice_error(
+            message, f"choose one of its vehicles with --ego: {named_ids(moving)}", file
+        )
     number = recording.problems[0].id if choice.ego is None else str(choice.ego)
     if number in problems:
-        return _of_problem(problems[number], recording, choice, listed(moving), file)
+        return _of_problem(problems[number], recording, choice, named_ids(moving), file)
     if number not in moving:
         message = f"there is no planning problem and no moving obstacle {number}"
-        raise unfit(message, f"choose one of {listed([*problems, *moving])}", file)
+        raise choice_error(message, f"choose one of {named_ids([*problems, *moving])}", file)
     states = moving[number]
     step = min(states) if choice.at_s is None else _step(recording, choice.at_s, file)
     if step not in states:
         first, last = (k * recording.step_s for k in (min(states), max(states)))
         message = f"obstacle {number} has no state at {step * recording.step_s:g} s"
-        raise unfit(message, f"choose a time from {first:g} s to {last:g} s", file)
+        raise choice_error(message, f"choose a time from {first:g} s to {last:g} s", file)
     goal = states[max(states)]
-    return Start(number, step, states[step], np.array([[goal.x, goal.y]]))
+    return EgoStart(number, step, states[step], np.array([[goal.x, goal.y]]))
 
 
 def _of_problem(
-    problem: Problem, recording: Recording, choice: Choice, others: str, file: str
-) -> Start:
+    problem: PlanningProblem, recording: Recording, choice: Choice, others: str, file: str
+) -> EgoStart:
     if choice.at_s is not None and _step(recording, choice.at_s, file) != problem.step:
-        raise unfit(
+        raise choice_error(
             f"planning problem {problem.id} says where ego is at "
             f"{problem.step * recording.step_s:g} s, and at no other time",
             "leave out --at-time"
@@ -69,17 +77,17 @@ def _of_problem(
             file,
         )
     own = (one.id for one in recording.participants if _is_ego(one, problem))
-    return Start(next(own, None), problem.step, problem.start, problem.goals)
+    return EgoStart(next(own, None), problem.step, problem.start, problem.goals)
 
 
-def _is_ego(one: Participant, problem: Problem) -> bool:
+def _is_ego(one: Participant, problem: PlanningProblem) -> bool:
     """Some files have ego's own recorded drive among the obstacles, starting in its place."""
     state = one.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
-def size_of(recording: Recording, start: Start, choice: Choice) -> tuple[float, float]:
+def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
     """Ego's length and width (m): as chosen, and as recorded; 0 where that is not known."""
     length, width = 0.0, 0.0
     for one in recording.participants:
@@ -91,18 +99,20 @@ def size_of(recording: Recording, start: Start, choice: Choice) -> tuple[float, 
     return length, width if choice.ego_width_m is None else choice.ego_width_m
 
 
-def reference_of(recording: Recording, choice: Choice, state: State, file: str) -> str:
+def reference_lanelet(recording: Recording, choice: Choice, state: TrackState, file: str) -> str:
     """The lanelet whose centre line is the reference line. Raises RulecError R0612."""
     if choice.reference is not None:
         reference = str(choice.reference)
         if reference not in recording.lanelets:
             message = f"there is no lanelet {reference}"
-            raise unfit(message, f"choose one of {listed(recording.lanelets)}", file)
+            raise choice_error(message, f"choose one of {named_ids(recording.lanelets)}", file)
         return reference
     own = lanelet_of(recording, state)
     if own is None:
         message = f"ego is on no lanelet, at x = {state.x:g}, y = {state.y:g}"
-        raise unfit(message, "choose a lanelet with --reference, or another ego with --ego", file)
+        raise choice_error(
+            message, "choose a lanelet with --reference, or another ego with --ego", file
+        )
     return own
 
 
@@ -110,15 +120,17 @@ def _step(recording: Recording, at_s: float, file: str) -> int:
     step = round(at_s / recording.step_s)
     if abs(step * recording.step_s - at_s) > 1e-6:
         message = f"the file has no states at {at_s:g} s"
-        raise unfit(message, f"choose a multiple of its time step, {recording.step_s:g} s", file)
+        raise choice_error(
+            message, f"choose a multiple of its time step, {recording.step_s:g} s", file
+        )
     return step
 
 
-def listed(ids: Iterable[str]) -> str:
+def named_ids(ids: Iterable[str]) -> str:
     """Ids for people."""
     return named(list(ids))
 
 
-def unfit(message: str, way_out: str, file: str) -> RulecError:
+def choice_error(message: str, way_out: str, file: str) -> RulecError:
     """What is chosen is not in the file."""
     return RulecError(Diagnostic("R0612", message, SourceLocation(file), help=way_out))

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from rulec.scenario.model import MissingLane
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine, dense
-from rulec.scenario.recorded.route import beside
+from rulec.scenario.recorded.reference_line import ReferenceLine, densified
+from rulec.scenario.recorded.route import lanes_beside
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""
@@ -166,7 +166,7 @@ def _usual_widths(
 
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
     """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
-    rows = [beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
+    rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     found = []
     for k in range(max(map(len, rows))):
         present = np.array([len(row) > k for row in rows])
@@ -187,7 +187,7 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
     for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:
             continue
-        bound = dense(lanelet.left if left else lanelet.right, _EVERY_M)
+        bound = densified(lanelet.left if left else lanelet.right, _EVERY_M)
         places = strip.line.coordinates(bound)
         near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
         found.append(places[near])

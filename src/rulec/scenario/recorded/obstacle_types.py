@@ -13,7 +13,7 @@ from types import MappingProxyType
 _VEHICLE = ("vehicle", "road_user", "obstacle")
 _RIDER = ("light_rider", "vulnerable_user", "road_user", "obstacle")
 
-WORDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "car": ("car", *_VEHICLE),
         "taxi": ("car", *_VEHICLE),

@@ -9,15 +9,15 @@ import numpy as np
 
 from rulec.scenario.model import Account, Ego, Obstacle, Road, Scenario, SignalValue
 from rulec.scenario.recorded.congestion import congested
-from rulec.scenario.recorded.crosswalks import crossings
-from rulec.scenario.recorded.ego_start import reference_of, size_of, start_of, unfit
+from rulec.scenario.recorded.crosswalks import road_crossings
+from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import lanes_along
-from rulec.scenario.recorded.map_signals import signals_of
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
 from rulec.scenario.recorded.scene_choice import Choice
-from rulec.scenario.recorded.traffic_obstacles import TrafficView, obstacles
+from rulec.scenario.recorded.scene_signals import map_signals
+from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
 
 STEP_S = 0.5
 
@@ -29,25 +29,29 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         RulecError: R0612 if what is chosen is not in it.
         ValueError: its lanes cannot be laid out along a line.
     """
-    start = start_of(recording, choice, file)
-    own = reference_of(recording, choice, start.state, file)
+    start = ego_start(recording, choice, file)
+    own = reference_lanelet(recording, choice, start.state, file)
     way = route(recording, own, lanelets_at(recording, start.targets))
     line = reference_line(np.concatenate([recording.lanelets[n].centre for n in way]))
     ((ego_s, ego_d),) = line.coordinates(np.array([[start.state.x, start.state.y]])).tolist()
     if not 0 <= ego_s <= line.length:
         message = f"ego is not beside lanelet {own}, nor the road before and after it"
-        raise unfit(message, "choose with --reference a lanelet of the road that ego is on", file)
+        raise choice_error(
+            message, "choose with --reference a lanelet of the road that ego is on", file
+        )
     lanes = lanes_along(recording, way, line, ego_s)
     ((_, d),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
     if not lanes.straight[0] <= d <= lanes.straight[-1]:
         message = f"ego is beside the road of lanelet {own}, {abs(ego_d):.1f} m from its middle"
-        raise unfit(message, "choose another ego with --ego, or lanelet with --reference", file)
+        raise choice_error(
+            message, "choose another ego with --ego, or lanelet with --reference", file
+        )
     low, high = max(0.0, ego_s - REACH_M), min(line.length, ego_s + REACH_M)
     bounds = tuple(lanes.straight.tolist())
     road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
     view = TrafficView(recording, line, lanes, ego_s, at_s, road.outline)
-    found = tuple(obstacles(view, start.participant, choice.prediction))
+    found = tuple(traffic_obstacles(view, start.participant, choice.prediction))
     told = {
         **_traffic_signals(view, found, choice),
         **_map_signals(view, way, own, start.step),
@@ -55,8 +59,8 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
     others = sum(one.id != start.participant for one in recording.participants)
     return Scenario(
         recording.name,
-        replace(road, surfaces=crossings(view)),
-        Ego(0.0, d, *size_of(recording, start, choice)),
+        replace(road, surfaces=road_crossings(view)),
+        Ego(0.0, d, *ego_size(recording, start, choice)),
         found,
         {name: value for name, (value, _) in told.items()},
         step_s=STEP_S,
@@ -84,4 +88,4 @@ def _map_signals(
     view: TrafficView, way: Sequence[str], own: str, step: int
 ) -> dict[str, tuple[SignalValue, str]]:
     ahead = [view.recording.lanelets[number] for number in way[way.index(own) :]]
-    return signals_of(ahead, view.lanes.count_at(view.ego_s), view.recording.step_s, step)
+    return map_signals(ahead, view.lanes.count_at(view.ego_s), view.recording.step_s, step)

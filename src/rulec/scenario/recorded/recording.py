@@ -22,12 +22,12 @@ LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
 
 Side = Literal["left", "right"]
-Mark = Literal["solid", "broken", "none"]
+LaneMark = Literal["solid", "broken", "none"]
 Lamp = Literal["left_indicator", "right_indicator", "brake_light"]
 """What a vehicle shows others."""
 
 
-def in_order(identifier: str) -> tuple[int, str]:
+def id_order(identifier: str) -> tuple[int, str]:
     """A key by which ids come in an order, and those that are numbers in that of the numbers."""
     return len(identifier), identifier
 
@@ -70,12 +70,12 @@ class Lanelet:
     signs: frozenset[str]
     limit_mps: float | None
     lights: tuple[Light, ...] = ()
-    left_mark: Mark | None = None
-    right_mark: Mark | None = None
+    left_mark: LaneMark | None = None
+    right_mark: LaneMark | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class TrackState:
     """Where a centre is, its heading, and its motion along that heading."""
 
     x: float
@@ -96,18 +96,18 @@ class Participant:
     id: str
     type: str
     standing: bool
-    states: Mapping[int, State]
+    states: Mapping[int, TrackState]
     outlines: Mapping[int, Points]
     lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class PlanningProblem:
     """A planning problem: where ego is at a time step, and places where it wants to go."""
 
     id: str
     step: int
-    start: State
+    start: TrackState
     goals: Points
 
 
@@ -123,7 +123,7 @@ class Recording:
     step_s: float
     lanelets: Mapping[str, Lanelet]
     participants: tuple[Participant, ...]
-    problems: tuple[Problem, ...]
+    problems: tuple[PlanningProblem, ...]
     form: str = "CommonRoad scenario"
     side: Side | None = None
     remarks: tuple[str, ...] = ()

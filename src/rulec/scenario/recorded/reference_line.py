@@ -114,7 +114,7 @@ def reference_line(corners: Points) -> ReferenceLine:
             kept.append(corner)
     if len(kept) == 1:
         raise ValueError("the middle of its lane is in one place")
-    points = dense(np.array(kept), _PIECE_M)
+    points = densified(np.array(kept), _PIECE_M)
     start, end = points[1] - points[0], points[-1] - points[-2]
     extended = np.concatenate(
         (
@@ -132,7 +132,7 @@ def reference_line(corners: Points) -> ReferenceLine:
     return ReferenceLine(arc, extended[:-1], steps / lengths[:, None], lengths, first, last - first)
 
 
-def dense(points: Points, every_m: float) -> Points:
+def densified(points: Points, every_m: float) -> Points:
     """A line of straight pieces with further points, so that no two are farther apart."""
     parts = [points[:1]]
     for one, other in pairwise(points):

@@ -9,7 +9,7 @@ from math import atan2, pi, radians
 import numpy as np
 import shapely
 
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording, State, in_order
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording, TrackState, id_order
 
 REACH_M = 300.0
 """The road is followed this far ahead of ego and behind it, where the file has so much of it."""
@@ -28,7 +28,7 @@ def is_lane(lanelet: Lanelet) -> bool:
     return not lanelet.types & NO_LANES
 
 
-def lanelet_of(recording: Recording, state: State) -> str | None:
+def lanelet_of(recording: Recording, state: TrackState) -> str | None:
     """The lanelet that a vehicle is on: of those in its place the one that leads its way best.
 
     The nearest one if it is beside all of them by no more than 3 m.
@@ -41,7 +41,7 @@ def lanelet_of(recording: Recording, state: State) -> str | None:
 
     def rank(lanelet: Lanelet) -> tuple[float, float, tuple[int, str]]:
         error = abs(_turn(_heading_beside(lanelet, state), state.heading))
-        return (0.0 if inside else far[lanelet.id], round(error, 6), in_order(lanelet.id))
+        return (0.0 if inside else far[lanelet.id], round(error, 6), id_order(lanelet.id))
 
     return min(inside or near, key=rank).id if near else None
 
@@ -57,11 +57,15 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
     return frozenset(
         y
         for x in found
-        for y in (x, *beside(recording, x, left=True), *beside(recording, x, left=False))
+        for y in (
+            x,
+            *lanes_beside(recording, x, left=True),
+            *lanes_beside(recording, x, left=False),
+        )
     )
 
 
-def beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
+def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
     """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
     found: list[str] = []
     lanelet = recording.lanelets[start]
@@ -87,7 +91,7 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     return (*behind[:0:-1], *ahead)
 
 
-def extended(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
+def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
     """A way with the road before and after it, as straight as possible where that branches."""
     ahead = _straight_on(
         recording.lanelets, [way[-1]], lambda x: x.successors, backwards=False, taken=way
@@ -146,7 +150,7 @@ def _straight_on(
             break
         chosen = min(
             options,
-            key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), in_order(x.id)),
+            key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), id_order(x.id)),
         )
         way.append(chosen.id)
         seen.add(chosen.id)
@@ -162,7 +166,7 @@ def _length(lanelet: Lanelet) -> float:
     return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
 
 
-def _heading_beside(lanelet: Lanelet, state: State) -> float:
+def _heading_beside(lanelet: Lanelet, state: TrackState) -> float:
     """The lanelet's direction at the piece of its centre line nearest to a vehicle."""
     centre = shapely.LineString(lanelet.centre)
     along = shapely.line_locate_point(centre, shapely.Point(state.x, state.y))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.scenario.recorded.recording import Points, State
+from rulec.scenario.recorded.recording import Points, TrackState
 
 _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2
 """Corners and middles of the sides of a rectangle of length and width 1."""
@@ -53,13 +53,13 @@ class Track:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TrackStates(Mapping[int, State]):
+class TrackStates(Mapping[int, TrackState]):
     """The states of a track by time step, made when they are asked for."""
 
     track: Track
 
-    def __getitem__(self, step: int) -> State:
-        return State(*self.track.rows[self.track.row_of(step)].tolist())
+    def __getitem__(self, step: int) -> TrackState:
+        return TrackState(*self.track.rows[self.track.row_of(step)].tolist())
 
     def __iter__(self) -> Iterator[int]:
         return iter(self.track.steps.tolist())

@@ -20,7 +20,7 @@ from rulec.scenario.model import (
     SignalValue,
 )
 from rulec.scenario.recorded.lane_coordinates import Lanes
-from rulec.scenario.recorded.obstacle_types import WORDS
+from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
@@ -72,7 +72,7 @@ class TrafficView:
         return [box if box.overlaps(wide) else None for box in boxes]
 
 
-def obstacles(
+def traffic_obstacles(
     view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
 ) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
@@ -88,7 +88,7 @@ def obstacles(
             continue
         expected = weighted(motions)
         first = next(box for box in own if box is not None)
-        words = WORDS.get(one.type, WORDS["unknown"])
+        words = OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"])
         yield Obstacle(
             one.id,
             words[0],

@@ -13,7 +13,7 @@ _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\
 
 
 @dataclass(frozen=True, slots=True)
-class Head:
+class FcdHead:
     """What SUMO's configuration says, which it writes into a comment at the head of its output."""
 
     net: str = ""
@@ -21,7 +21,7 @@ class Head:
     geographic: bool = False
 
 
-def head_of(comment: str) -> Head:
+def fcd_head(comment: str) -> FcdHead:
     """The configuration in a comment, as far as it matters here."""
     options = {name: unescape(value) for name, value in _OPTION.findall(comment)}
     demand = [
@@ -29,14 +29,14 @@ def head_of(comment: str) -> Head:
         for key in ("route-files", "additional-files")
         for name in options.get(key, "").split(",")
     ]
-    return Head(
+    return FcdHead(
         options.get("net-file", ""),
         tuple(filter(None, demand)),
         options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
     )
 
 
-def net_of(path: Path, head: Head) -> Path:
+def net_beside(path: Path, head: FcdHead) -> Path:
     """The net of floating-car data.
 
     Raises:
@@ -64,7 +64,7 @@ def net_of(path: Path, head: Head) -> Path:
     )
 
 
-def demand_of(path: Path, head: Head) -> tuple[Path, ...]:
+def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
     """The files beside floating-car data that may describe the types of vehicles."""
     written = [found for name in head.demand if (found := _beside(path, name)) is not None]
     if written:

@@ -15,8 +15,8 @@ from xml.parsers.expat import XMLParserType
 from rulec.diagnostics import RulecError
 from rulec.scenario.recorded.recording import FARTHEST_M
 from rulec.scenario.safe_xml import XmlFormat, scan, short
-from rulec.scenario.sumo.companion_files import Head, head_of
-from rulec.scenario.sumo.xml_element import Element
+from rulec.scenario.sumo.companion_files import FcdHead, fcd_head
+from rulec.scenario.sumo.xml_element import XmlElement
 
 FCD = XmlFormat(
     "SUMO's floating-car data",
@@ -32,7 +32,7 @@ _NOWHERE = -(2.0**30)
 
 
 @dataclass(slots=True)
-class Course:
+class FcdTrack:
     """A participant, as its rows come: the number of the moment, x, y, angle, speed."""
 
     element: str
@@ -47,9 +47,9 @@ class Course:
 class FloatingCarData:
     """``moments`` are times in microseconds, ``on`` the lanes and edges that are named."""
 
-    head: Head = field(default_factory=Head)
+    head: FcdHead = field(default_factory=FcdHead)
     moments: list[int] = field(default_factory=list)
-    courses: dict[str, Course] = field(default_factory=dict)
+    courses: dict[str, FcdTrack] = field(default_factory=dict)
     on: dict[str, tuple[str, int]] = field(default_factory=dict)
 
 
@@ -64,21 +64,21 @@ def read_fcd(path: Path) -> FloatingCarData:
 
     def comment(text: str) -> None:
         if not data.moments and "<" in text:
-            data.head = head_of(text)
+            data.head = fcd_head(text)
 
     def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
         nonlocal carriers
         if name in BODIES:
             carriers += 1
             if not data.moments:
-                element = Element(name, attributes, parser, path, FCD)
+                element = XmlElement(name, attributes, parser, path, FCD)
                 raise element.wrong(f"a `{name}` is in no `timestep`")
             if carriers == 1 and not attributes.get("vehicle"):
                 _add(data, name, attributes, parser, path)
         elif name == "timestep":
-            moment = _moment(Element(name, attributes, parser, path, FCD))
+            moment = _moment(XmlElement(name, attributes, parser, path, FCD))
             if data.moments and moment <= data.moments[-1]:
-                element = Element(name, attributes, parser, path, FCD)
+                element = XmlElement(name, attributes, parser, path, FCD)
                 raise element.wrong("its time steps are not in ascending order")
             data.moments.append(moment)
 
@@ -90,7 +90,7 @@ def read_fcd(path: Path) -> FloatingCarData:
     return data
 
 
-def _moment(element: Element) -> int:
+def _moment(element: XmlElement) -> int:
     return round(element.number("time") * _MICROSECONDS)
 
 
@@ -125,17 +125,17 @@ def _add(
     moment = len(data.moments) - 1
     if course is None:
         if not 0 < len(key) <= LONGEST_ID:
-            element = Element(name, attributes, parser, path, FCD)
+            element = XmlElement(name, attributes, parser, path, FCD)
             raise element.wrong(f"the id of a `{name}` is empty, or longer than {LONGEST_ID}")
-        course = data.courses[key] = Course(name, attributes.get("type", ""))
+        course = data.courses[key] = FcdTrack(name, attributes.get("type", ""))
     elif course.moments[-1] == moment:
-        element = Element(name, attributes, parser, path, FCD)
+        element = XmlElement(name, attributes, parser, path, FCD)
         raise element.wrong(f"`{short(key)}` is twice in one time step")
     course.moments.append(moment)
     course.rows.extend(row)
     course.accelerations.append(acceleration if abs(acceleration) < FARTHEST_M else float("nan"))
     if "signals" in attributes:
-        number = Element(name, attributes, parser, path, FCD).number("signals")
+        number = XmlElement(name, attributes, parser, path, FCD).number("signals")
         course.lamps[moment] = int(number)
     place = attributes.get("lane") or attributes.get("edge")
     if place and place not in data.on:
@@ -145,7 +145,7 @@ def _add(
 def _wrong(
     name: str, attributes: Mapping[str, str], parser: XMLParserType, path: Path
 ) -> RulecError:
-    element = Element(name, attributes, parser, path, FCD)
+    element = XmlElement(name, attributes, parser, path, FCD)
     element.text("id")
     for key in ("x", "y", "angle", "speed"):
         element.number(key)

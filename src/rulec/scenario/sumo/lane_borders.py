@@ -20,7 +20,7 @@ def without_repeats(points: Points) -> Points:
     return np.array(kept)
 
 
-def beside(points: Points, offset: float) -> Points:
+def parallel_line(points: Points, offset: float) -> Points:
     """The parallel line, at a distance to the left, of at least two points, all different."""
     ahead = np.diff(points, axis=0)
     ahead /= np.hypot(*ahead.T)[:, None]

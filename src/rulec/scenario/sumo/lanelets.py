@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.scenario.recorded.recording import Lanelet, Points
-from rulec.scenario.sumo.lane_borders import beside, without_repeats
-from rulec.scenario.sumo.net import Connection, Lane, Net
-from rulec.scenario.sumo.traffic_lights import lights_of
+from rulec.scenario.sumo.lane_borders import parallel_line, without_repeats
+from rulec.scenario.sumo.net import NetConnection, NetLane, SumoNet
+from rulec.scenario.sumo.traffic_lights import lane_lights
 
 _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}
@@ -36,7 +36,7 @@ _GIVES_WAY = "m"
 _ARMS = 3
 
 
-def lanelets_of(net: Net, step_s: float) -> dict[str, Lanelet]:
+def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     """Lane id -> lanelet, of all lanes that are longer than nothing."""
     shapes = {lane.id: _shape(lane) for lane in net.lanes.values()}
     there = {key for key, shape in shapes.items() if len(shape) > 1}
@@ -47,9 +47,9 @@ def lanelets_of(net: Net, step_s: float) -> dict[str, Lanelet]:
             before[end].append(start)
     limits = _limits(net, before)
     junctions = _junctions(net)
-    lights = lights_of(net, step_s)
-    links: dict[str, list[Connection]] = defaultdict(list)
-    entries: dict[str, list[Connection]] = defaultdict(list)
+    lights = lane_lights(net, step_s)
+    links: dict[str, list[NetConnection]] = defaultdict(list)
+    entries: dict[str, list[NetConnection]] = defaultdict(list)
     for one in net.connections:
         links[one.start].append(one)
         entries[one.end].append(one)
@@ -76,11 +76,11 @@ def lanelets_of(net: Net, step_s: float) -> dict[str, Lanelet]:
     return found
 
 
-def _shape(lane: Lane) -> Points:
+def _shape(lane: NetLane) -> Points:
     return without_repeats(lane.shape)
 
 
-def _lines(lane: Lane, shape: Points) -> tuple[Points, Points, Points]:
+def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
     """Left and right border, and the middle."""
     if lane.edge.function == "walkingarea" and len(shape) > 3:
         # The shape is an outline: one half of it is one side, the other half the other
@@ -89,7 +89,7 @@ def _lines(lane: Lane, shape: Points) -> tuple[Points, Points, Points]:
         count = max(len(right), len(left))
         right, left = _resampled(right, count), _resampled(left, count)
         return left, right, (left + right) / 2
-    return beside(shape, lane.width / 2), beside(shape, -lane.width / 2), shape
+    return parallel_line(shape, lane.width / 2), parallel_line(shape, -lane.width / 2), shape
 
 
 def _resampled(points: Points, count: int) -> Points:
@@ -99,7 +99,7 @@ def _resampled(points: Points, count: int) -> Points:
 
 
 def _successors(
-    connections: list[Connection], there: set[str], known: set[str]
+    connections: list[NetConnection], there: set[str], known: set[str]
 ) -> dict[str, list[str]]:
     """Lane -> next lanes; a lane that is shorter than anything is passed over."""
     direct: dict[str, list[str]] = defaultdict(list)
@@ -116,14 +116,14 @@ def _successors(
     return defaultdict(list, {key: list(dict.fromkeys(reached(key))) for key in there})
 
 
-def _neighbour(lane: Lane, step: int, there: set[str]) -> str | None:
+def _neighbour(lane: NetLane, step: int, there: set[str]) -> str | None:
     if lane.edge.function in ("crossing", "walkingarea"):
         return None
     beside_it = f"{lane.edge.id}_{lane.index + step}"
     return beside_it if beside_it in there else None
 
 
-def _limits(net: Net, before: Mapping[str, list[str]]) -> dict[str, float]:
+def _limits(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, float]:
     """Lane -> legal limit (m/s), for those on which vehicles drive."""
     limits = {}
     for lane in net.lanes.values():
@@ -144,7 +144,7 @@ def _unrounded(limit_mps: float) -> float:
     return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
 
 
-def _junctions(net: Net) -> set[str]:
+def _junctions(net: SumoNet) -> set[str]:
     """The nodes at which roads from several directions meet, rather than one road going on."""
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
@@ -154,7 +154,7 @@ def _junctions(net: Net) -> set[str]:
     return {node for node, others in arms.items() if len(others) >= _ARMS}
 
 
-def _types(lane: Lane, junctions: set[str], entries: list[Connection]) -> Iterator[str]:
+def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> Iterator[str]:
     """CommonRoad's words for the kind of lane."""
     permitted = _permitted(lane)
     if lane.edge.function == "crossing":
@@ -179,7 +179,7 @@ def _rails() -> frozenset[str]:
     return frozenset(one for one in _ALL if one.startswith("rail")) | {"tram", "subway", "ship"}
 
 
-def _permitted(lane: Lane) -> frozenset[str]:
+def _permitted(lane: NetLane) -> frozenset[str]:
     """The classes of road users that may be on the lane."""
     if lane.allow is not None:
         return _ALL if lane.allow == "all" else frozenset(lane.allow.split()) & _ALL

@@ -11,7 +11,7 @@ import numpy as np
 
 from rulec.scenario.recorded.recording import LONGEST_M, Points, Side
 from rulec.scenario.safe_xml import XmlFormat, scan
-from rulec.scenario.sumo.xml_element import Element
+from rulec.scenario.sumo.xml_element import XmlElement
 
 NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
 
@@ -22,7 +22,7 @@ WIDEST_M = 100.0
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class NetEdge:
     """``function`` is empty for a road; ``type`` is what the map's source calls it."""
 
     id: str
@@ -33,11 +33,11 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class Lane:
+class NetLane:
     """``index`` counts from the kerb on; ``shape`` is the middle, of a walking area the outline."""
 
     id: str
-    edge: Edge
+    edge: NetEdge
     index: int
     shape: Points
     width: float
@@ -47,7 +47,7 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
-class Connection:
+class NetConnection:
     """From a lane to the next one, over ``via`` within a junction; ``light`` and link number."""
 
     start: str
@@ -59,7 +59,7 @@ class Connection:
 
 
 @dataclass(frozen=True, slots=True)
-class Programme:
+class SignalProgramme:
     """A traffic light's: by phase its duration (s) and a letter for each link, from a time on."""
 
     begin: float
@@ -67,26 +67,26 @@ class Programme:
 
 
 @dataclass(slots=True)
-class Net:
+class SumoNet:
     """What a net says. A light has several programmes, or None for one that reacts to traffic."""
 
     side: Side = "right"
-    edges: dict[str, Edge] = field(default_factory=dict)
-    lanes: dict[str, Lane] = field(default_factory=dict)
-    connections: list[Connection] = field(default_factory=list)
-    programmes: dict[str, list[Programme | None]] = field(default_factory=dict)
+    edges: dict[str, NetEdge] = field(default_factory=dict)
+    lanes: dict[str, NetLane] = field(default_factory=dict)
+    connections: list[NetConnection] = field(default_factory=list)
+    programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
 
 
-def read_net(path: Path) -> Net:
+def read_net(path: Path) -> SumoNet:
     """The net in a file.
 
     Raises:
         RulecError: R0610 if it is none, R0701 if it cannot be read.
     """
-    net = Net()
-    edge: list[Edge] = []
+    net = SumoNet()
+    edge: list[NetEdge] = []
     phases: list[tuple[float, str]] = []
-    light: list[Element] = []
+    light: list[XmlElement] = []
 
     def finish_light() -> None:
         if light:
@@ -95,7 +95,7 @@ def read_net(path: Path) -> Net:
             phases.clear()
 
     def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
-        element = Element(name, attributes, parser, path, NET)
+        element = XmlElement(name, attributes, parser, path, NET)
         if name != "phase":
             finish_light()
         if name == "net":
@@ -124,9 +124,9 @@ def read_net(path: Path) -> Net:
     return net
 
 
-def _edge(element: Element) -> Edge:
+def _edge(element: XmlElement) -> NetEdge:
     known = element.attributes
-    return Edge(
+    return NetEdge(
         element.text("id"),
         known.get("function", ""),
         known.get("type", ""),
@@ -135,7 +135,7 @@ def _edge(element: Element) -> Edge:
     )
 
 
-def _lane(element: Element, edge: Edge) -> Lane:
+def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
     places = []
     for place in element.text("shape").split():
         numbers = [element.as_number("shape", part) for part in place.split(",")]
@@ -147,7 +147,7 @@ def _lane(element: Element, edge: Edge) -> Lane:
     width = element.positive("width", LANE_WIDTH_M)
     if width > WIDEST_M:
         raise element.wrong(f"a lane is {width:g} m wide", f"{WIDEST_M:g} m at most")
-    return Lane(
+    return NetLane(
         element.text("id"),
         edge,
         int(element.number("index")),
@@ -159,19 +159,19 @@ def _lane(element: Element, edge: Edge) -> Lane:
     )
 
 
-def _connection(element: Element) -> Connection:
+def _connection(element: XmlElement) -> NetConnection:
     start = f"{element.text('from')}_{element.text('fromLane')}"
     end = f"{element.text('to')}_{element.text('toLane')}"
     known = element.attributes
     link = int(element.number("linkIndex", -1.0))
-    return Connection(
+    return NetConnection(
         start, end, known.get("via", ""), known.get("state", ""), known.get("tl", ""), link
     )
 
 
 def _programme(
-    element: Element, phases: tuple[tuple[float, str], ...]
-) -> tuple[str, Programme | None]:
+    element: XmlElement, phases: tuple[tuple[float, str], ...]
+) -> tuple[str, SignalProgramme | None]:
     fixed = element.attributes.get("type", "static") == "static"
     begin = element.number("offset", 0.0)
-    return element.text("id"), Programme(begin, phases) if fixed and phases else None
+    return element.text("id"), SignalProgramme(begin, phases) if fixed and phases else None

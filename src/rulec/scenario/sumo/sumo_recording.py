@@ -11,13 +11,13 @@ from numpy import int64
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
 from rulec.scenario.safe_xml import short
-from rulec.scenario.sumo.companion_files import demand_of, net_of
+from rulec.scenario.sumo.companion_files import demand_beside, net_beside
 from rulec.scenario.sumo.fcd import FCD, FloatingCarData, read_fcd
-from rulec.scenario.sumo.lanelets import lanelets_of
-from rulec.scenario.sumo.net import Net, read_net
-from rulec.scenario.sumo.participants import participants_of, time_step
+from rulec.scenario.sumo.fcd_participants import fcd_participants, time_step
+from rulec.scenario.sumo.lanelets import net_lanelets
+from rulec.scenario.sumo.net import SumoNet, read_net
 from rulec.scenario.sumo.traffic_lights import unknown_lights
-from rulec.scenario.sumo.vehicle_types import VehicleType, known_types, type_called
+from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 
 NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""
@@ -39,14 +39,14 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
     if not data.courses:
         raise FCD.refused(path, "nobody is in it")
-    net_path = net_of(path, data.head) if net_path is None else net_path
+    net_path = net_beside(path, data.head) if net_path is None else net_path
     net = read_net(net_path)
     _check_places(path, data, net_path, net)
     step_s = time_step(path, data.moments)
-    types = known_types(demand_of(path, data.head))
+    types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
     participants = tuple(_participants(data, types, step_s, unknown))
-    lanelets = lanelets_of(net, step_s)
+    lanelets = net_lanelets(net, step_s)
     _check_near(path, participants, lanelets.values())
     return Recording(
         path.name.split(".")[0] or path.name,
@@ -66,13 +66,13 @@ def _participants(
     step = round(step_s * _MICROSECONDS)
     steps = np.array(data.moments, dtype=int64) // step
     for key, course in data.courses.items():
-        kind, known = type_called(course.type, course.element, types)
+        kind, known = vehicle_type(course.type, course.element, types)
         if not known:
             unknown.add(f"`{short(course.type)}` ({kind.kind}, {kind.length:g} m)")
-        yield from participants_of(key, course, kind, steps, step_s)
+        yield from fcd_participants(key, course, kind, steps, step_s)
 
 
-def _remarks(unknown: Iterable[str], net: Net) -> Iterator[str]:
+def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     guessed = sorted(unknown)
     if guessed:
         yield f"types that no file describes are taken to be as usual: {_some(guessed)}"
@@ -86,7 +86,7 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
 
 
-def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: Net) -> None:
+def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
     """Has the net all lanes and edges that the data name? Raises RulecError R0615."""
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rulec.scenario.recorded.recording import Light
-from rulec.scenario.sumo.net import Net, Programme
+from rulec.scenario.sumo.net import SignalProgramme, SumoNet
 
 COLOURS: Mapping[str, str] = {
     "r": "red",
@@ -21,7 +21,7 @@ COLOURS: Mapping[str, str] = {
 """SUMO's letters, and CommonRoad's words; ``s`` is red with an arrow that lets turn right."""
 
 
-def lights_of(net: Net, step_s: float) -> dict[str, list[Light]]:
+def lane_lights(net: SumoNet, step_s: float) -> dict[str, list[Light]]:
     """Lane -> the lights at its end, one for each way on that has its own.
 
     A light that reacts to traffic, or has several programmes, has none that the net could tell.
@@ -38,12 +38,12 @@ def lights_of(net: Net, step_s: float) -> dict[str, list[Light]]:
     return found
 
 
-def unknown_lights(net: Net) -> list[str]:
+def unknown_lights(net: SumoNet) -> list[str]:
     """The lights whose programme is not known."""
     return [name for name, known in net.programmes.items() if len(known) > 1 or None in known]
 
 
-def _light(programme: Programme, link: int, step_s: float) -> Light | None:
+def _light(programme: SignalProgramme, link: int, step_s: float) -> Light | None:
     phases: list[tuple[str, int]] = []
     ends, done = 0.0, 0
     for duration, letters in programme.phases:

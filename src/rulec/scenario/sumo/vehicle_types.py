@@ -9,7 +9,7 @@ from types import MappingProxyType
 from xml.parsers.expat import XMLParserType
 
 from rulec.scenario.safe_xml import XmlFormat, root_of, scan
-from rulec.scenario.sumo.xml_element import Element
+from rulec.scenario.sumo.xml_element import XmlElement
 
 DEMAND = XmlFormat(
     "SUMO's vehicle types",
@@ -78,7 +78,7 @@ _UNKNOWN = VehicleType("unknown", 5.0, 1.8)
 _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "container"}
 
 
-def known_types(files: Iterable[Path]) -> dict[str, VehicleType]:
+def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
     """The types that files describe; other files than those with types have none.
 
     Raises:
@@ -98,14 +98,14 @@ def known_types(files: Iterable[Path]) -> dict[str, VehicleType]:
                 form: XmlFormat = form,
             ) -> None:
                 if name == "vType":
-                    element = Element(name, attributes, parser, path, form)
+                    element = XmlElement(name, attributes, parser, path, form)
                     found[element.text("id")] = _described(element)
 
             scan(path, form, begin)
     return found
 
 
-def _described(element: Element) -> VehicleType:
+def _described(element: XmlElement) -> VehicleType:
     usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
     return VehicleType(
         usual.kind,
@@ -114,7 +114,7 @@ def _described(element: Element) -> VehicleType:
     )
 
 
-def type_called(
+def vehicle_type(
     name: str, element: str, known: Mapping[str, VehicleType]
 ) -> tuple[VehicleType, bool]:
     """What a participant of this type is, and whether that is known rather than taken to be so.

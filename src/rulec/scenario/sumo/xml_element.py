@@ -13,7 +13,7 @@ from rulec.scenario.safe_xml import XmlFormat, short
 
 
 @dataclass(frozen=True, slots=True)
-class Element:
+class XmlElement:
     """An element of a file that is being read."""
 
     name: str

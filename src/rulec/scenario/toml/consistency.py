@@ -10,7 +10,7 @@ from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.motion import swept
 from rulec.scenario.toml.field_check import Findings, quoted, shown
-from rulec.scenario.toml.field_locations import Table
+from rulec.scenario.toml.field_locations import TomlTable
 
 NARROWEST_M = 0.01
 # What a state calls by these names comes from the partition
@@ -18,7 +18,7 @@ RESERVED = ("position", "surface", "station", "lateral")
 
 
 def check_interval(
-    value: tuple[float, float] | None, table: Table, key: str, findings: Findings
+    value: tuple[float, float] | None, table: TomlTable, key: str, findings: Findings
 ) -> bool:
     """Is ``from`` before ``to``, by more than a hair?"""
     if value is None or value[1] - value[0] >= NARROWEST_M:
@@ -34,7 +34,7 @@ def check_interval(
     return False
 
 
-def check_lanes(lanes: Sequence[float], table: Table, findings: Findings) -> bool:
+def check_lanes(lanes: Sequence[float], table: TomlTable, findings: Findings) -> bool:
     """Do the bounds ascend from right to left?"""
     for right, left in pairwise(lanes):
         if left - right < NARROWEST_M:
@@ -51,7 +51,7 @@ def check_lanes(lanes: Sequence[float], table: Table, findings: Findings) -> boo
     return True
 
 
-def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
+def check_ego(ego: Ego, road: Road, table: TomlTable, findings: Findings) -> None:
     """Is ego on the road?"""
     if not road.outline.covers(ego.s, ego.d):
         findings.add(
@@ -71,21 +71,21 @@ def check_ego(ego: Ego, road: Road, table: Table, findings: Findings) -> None:
         )
 
 
-def check_collision(ego: Ego, obstacle: Obstacle, table: Table, findings: Findings) -> None:
+def check_collision(ego: Ego, obstacle: Obstacle, table: TomlTable, findings: Findings) -> None:
     """Do ego and the obstacle stand in the same place at time 0?"""
     body = swept(obstacle, 0.0, 0.0)
     if body is not None and body.overlaps(ego.body):
         findings.add(
             "R0605",
             f"ego stands inside {table.words}",
-            Table("ego", None, "ego"),
+            TomlTable("ego", None, "ego"),
             expected=f"a place outside {body} at time 0",
             way_out="move one of the two",
         )
 
 
 def check_signals(
-    raw: dict[str, object], table: Table, findings: Findings
+    raw: dict[str, object], table: TomlTable, findings: Findings
 ) -> dict[str, SignalValue]:
     """Signals are passed on as they are, so here only their form is looked at."""
     signals: dict[str, SignalValue] = {}

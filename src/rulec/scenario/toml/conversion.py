@@ -16,15 +16,15 @@ from rulec.scenario.toml.consistency import (
     check_signals,
 )
 from rulec.scenario.toml.field_check import Findings, quoted, read_table
-from rulec.scenario.toml.field_locations import Table
-from rulec.scenario.toml.obstacle_tables import Listed, read_obstacles
+from rulec.scenario.toml.field_locations import TomlTable
+from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles
 from rulec.scenario.toml.schema import RawEgo, RawGoal, RawMissing, RawRoad, RawScenario, RawSurface
 
-_TOP = Table("", None, "the scenario")
-_ROAD = Table("road", None, "road")
-_EGO = Table("ego", None, "ego")
-_GOAL = Table("goal", None, "goal")
-_SIGNALS = Table("signals", None, "signals")
+_TOP = TomlTable("", None, "the scenario")
+_ROAD = TomlTable("road", None, "road")
+_EGO = TomlTable("ego", None, "ego")
+_GOAL = TomlTable("goal", None, "goal")
+_SIGNALS = TomlTable("signals", None, "signals")
 
 
 def to_scenario(raw: Mapping[str, object], name: str, findings: Findings) -> Scenario:
@@ -78,7 +78,7 @@ def _road(raw: object, findings: Findings) -> Road | None:
 def _stretches(raw: object, findings: Findings) -> tuple[Stretch, ...]:
     stretches: list[Stretch] = []
     for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
-        place = Table("road.surface", number, f"road.surface {number}")
+        place = TomlTable("road.surface", number, f"road.surface {number}")
         table = read_table(RawSurface, item, place, findings)
         if table is None or not check_interval(table.s, place, "s", findings):
             continue
@@ -99,7 +99,7 @@ def _stretches(raw: object, findings: Findings) -> tuple[Stretch, ...]:
 def _missing(raw: object, road: RawRoad | None, findings: Findings) -> tuple[MissingLane, ...]:
     missing: list[MissingLane] = []
     for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
-        place = Table("road.missing", number, f"road.missing {number}")
+        place = TomlTable("road.missing", number, f"road.missing {number}")
         table = read_table(RawMissing, item, place, findings)
         if table is None or not check_interval(table.s, place, "s", findings):
             continue
@@ -147,7 +147,7 @@ def _goal(raw: object, road: Road | None, findings: Findings) -> Box | None:
 
 
 def _signals(
-    raw: object, obstacles: tuple[Listed, ...], findings: Findings
+    raw: object, obstacles: tuple[LocatedObstacle, ...], findings: Findings
 ) -> dict[str, SignalValue]:
     signals = check_signals(dict(raw), _SIGNALS, findings) if isinstance(raw, Mapping) else {}
     for obstacle, table in obstacles:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 
 from rulec.diagnostics import Diagnostic, did_you_mean, nearest_name
-from rulec.scenario.toml.field_locations import Table, TomlText
+from rulec.scenario.toml.field_locations import TomlTable, TomlText
 
 T = TypeVar("T", bound=msgspec.Struct)
 
@@ -26,7 +26,7 @@ class Findings:
         self,
         code: str,
         message: str,
-        table: Table,
+        table: TomlTable,
         key: str | None = None,
         *,
         expected: str = "",
@@ -38,7 +38,7 @@ class Findings:
         self.errors.append(Diagnostic(code, message, place, expected=expected, help=way_out))
 
 
-def read_table(kind: type[T], raw: object, table: Table, findings: Findings) -> T | None:
+def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings) -> T | None:
     """A table as a ``kind``; None if it had mistakes, which are then in ``findings``."""
     if not isinstance(raw, Mapping):
         findings.add("R0604", f"{table.words} is {shown(raw)}", table, expected="a table of fields")
@@ -112,7 +112,7 @@ def words_of(kind: object) -> str:
     return ""
 
 
-def _unknown_field(key: str, known: list[str], table: Table, findings: Findings) -> str | None:
+def _unknown_field(key: str, known: list[str], table: TomlTable, findings: Findings) -> str | None:
     """Report a field; the known one that is probably meant, if there is one close by."""
     findings.add(
         "R0603",

@@ -17,7 +17,7 @@ _KEY = re.compile(r"""\s*(["']?)([^"'=\s]+)\1\s*=""")
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TomlTable:
     """A table of the file: heading, number (from 1) in an array of tables, and what to call it."""
 
     heading: str
@@ -37,7 +37,7 @@ class TomlText:
 
     source: Source
 
-    def place(self, table: Table, key: str | None = None) -> SourceLocation:
+    def place(self, table: TomlTable, key: str | None = None) -> SourceLocation:
         """The line of a key, else that of its table's heading, else the file."""
         number = table.number or 0
         line = self._lines.get((table.heading, number, key))

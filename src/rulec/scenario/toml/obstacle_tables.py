@@ -9,24 +9,24 @@ from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obsta
 from rulec.scenario.motion import stands_forever
 from rulec.scenario.toml.consistency import check_signals
 from rulec.scenario.toml.field_check import Findings, quoted, read_table
-from rulec.scenario.toml.field_locations import Table
+from rulec.scenario.toml.field_locations import TomlTable
 from rulec.scenario.toml.prediction_tables import read_predictions
 from rulec.scenario.toml.schema import MOST_OBSTACLES, RawObstacle
 
-Listed = tuple[Obstacle, Table]
+LocatedObstacle = tuple[Obstacle, TomlTable]
 
 _PREDICTED = ("s", "d", "speed", "acceleration", "lateral_speed", "until_d")
 
 
-def read_obstacles(raw: object, findings: Findings) -> tuple[Listed, ...]:
+def read_obstacles(raw: object, findings: Findings) -> tuple[LocatedObstacle, ...]:
     """The sound ones among the obstacles, each with its place in the file."""
     if not isinstance(raw, list) or len(raw) > MOST_OBSTACLES:
         return ()
-    listed: list[Listed] = []
+    listed: list[LocatedObstacle] = []
     numbers: dict[str, int] = {}
     before = 0
     for number, item in enumerate(raw, start=1):
-        place = Table("obstacle", number, _words(item, number))
+        place = TomlTable("obstacle", number, _words(item, number))
         table = read_table(RawObstacle, item, place, findings)
         ahead, before = before, before + _number_of_predictions(item)
         if isinstance(item, Mapping) and isinstance(name := item.get("id"), str):
@@ -34,7 +34,7 @@ def read_obstacles(raw: object, findings: Findings) -> tuple[Listed, ...]:
         if table is None:
             continue
         expected = read_predictions(table, item, place, ahead, findings, _motion)
-        signals = Table("obstacle.signals", number, place.words)
+        signals = TomlTable("obstacle.signals", number, place.words)
         values = check_signals(table.signals, signals, findings)
         if expected is None:
             continue
@@ -65,7 +65,7 @@ def _words(item: object, number: int) -> str:
 
 
 def _check_unique(
-    name: str, number: int, numbers: dict[str, int], place: Table, findings: Findings
+    name: str, number: int, numbers: dict[str, int], place: TomlTable, findings: Findings
 ) -> None:
     first = numbers.setdefault(name, number)
     if first != number:
@@ -78,7 +78,7 @@ def _check_unique(
         )
 
 
-def _check_direction(obstacle: Obstacle, place: Table, findings: Findings) -> None:
+def _check_direction(obstacle: Obstacle, place: TomlTable, findings: Findings) -> None:
     motions = (obstacle.motion, *(one.motion for one in obstacle.alternatives))
     standing = obstacle.walking_direction is None and any(map(stands_forever, motions))
     if obstacle.type == PEDESTRIAN and standing:
@@ -92,7 +92,7 @@ def _check_direction(obstacle: Obstacle, place: Table, findings: Findings) -> No
 
 
 def _motion(
-    table: RawObstacle, item: Mapping[str, object], place: Table, findings: Findings
+    table: RawObstacle, item: Mapping[str, object], place: TomlTable, findings: Findings
 ) -> Motion | None:
     if table.trajectory is not None:
         return _trajectory(table.trajectory, item, place, findings)
@@ -124,7 +124,7 @@ def _motion(
 def _trajectory(
     points: list[tuple[float, float, float]],
     item: Mapping[str, object],
-    place: Table,
+    place: TomlTable,
     findings: Findings,
 ) -> Motion | None:
     both = [key for key in _PREDICTED if key in item]

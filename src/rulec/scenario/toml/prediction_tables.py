@@ -7,20 +7,20 @@ from fractions import Fraction
 
 import msgspec
 
-from rulec.scenario.alternatives import Weighted, adds_up, weighted
+from rulec.scenario.alternatives import Weighted, is_distribution, weighted
 from rulec.scenario.model import Motion
 from rulec.scenario.toml.field_check import Findings, read_table
-from rulec.scenario.toml.field_locations import Table
+from rulec.scenario.toml.field_locations import TomlTable
 from rulec.scenario.toml.schema import RawObstacle, RawPrediction
 
-ReadMotion = Callable[[RawObstacle, Mapping[str, object], Table, Findings], Motion | None]
+ReadMotion = Callable[[RawObstacle, Mapping[str, object], TomlTable, Findings], Motion | None]
 """Gives the motion of a table's fields; the mapping is what the file has there."""
 
 
 def read_predictions(
     table: RawObstacle,
     item: Mapping[str, object],
-    place: Table,
+    place: TomlTable,
     before: int,
     findings: Findings,
     motion_of: ReadMotion,
@@ -45,7 +45,7 @@ def read_predictions(
     found: list[tuple[Fraction, Motion]] = []
     for number, raw in enumerate(table.prediction, start=1):
         words = f"{place.words}, prediction {number}"
-        here = Table("obstacle.prediction", before + number, words)
+        here = TomlTable("obstacle.prediction", before + number, words)
         prediction = read_table(RawPrediction, raw, here, findings)
         if prediction is None:
             continue
@@ -60,7 +60,7 @@ def read_predictions(
     if len(found) < len(table.prediction):
         return None
     total = sum((weight for weight, _ in found), Fraction(0))
-    if not adds_up(total):
+    if not is_distribution(total):
         findings.add(
             "R0605",
             f"the weights of {place.words}'s predictions add up to {float(total):g}",

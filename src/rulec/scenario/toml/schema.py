@@ -19,11 +19,11 @@ _Speed = Annotated[float, Meta(ge=-1000, le=1000)]
 _PRINTABLE = r"^[^\x00-\x1f\x7f]+$"
 _IDENTIFIER = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
-Name = Annotated[
+NameField = Annotated[
     str, Meta(max_length=200, pattern=_PRINTABLE, description="a name in quotes, on one line")
 ]
-Text = Annotated[str, Meta(description="a text in quotes")]
-Kind = Annotated[
+TextField = Annotated[str, Meta(description="a text in quotes")]
+TypeField = Annotated[
     str,
     Meta(
         max_length=200,
@@ -34,13 +34,13 @@ Kind = Annotated[
 Seconds = Annotated[
     float, Meta(gt=0, le=100_000, description="seconds, above 0 and at most 100000")
 ]
-Along = Annotated[_Metres, Meta(description="a place along the road, in metres")]
-Across = Annotated[_Metres, Meta(description="an offset in metres, positive to the left")]
-FromTo = Annotated[
+PositionField = Annotated[_Metres, Meta(description="a place along the road, in metres")]
+OffsetField = Annotated[_Metres, Meta(description="an offset in metres, positive to the left")]
+IntervalField = Annotated[
     tuple[_Metres, _Metres],
     Meta(description="two numbers in metres, from and to, such as `[30.0, 34.0]`"),
 ]
-Size = Annotated[float, Meta(ge=0.01, le=1000, description="metres, from 0.01 to 1000")]
+SizeField = Annotated[float, Meta(ge=0.01, le=1000, description="metres, from 0.01 to 1000")]
 AlongSpeed = Annotated[
     _Speed, Meta(description="m/s along the road, negative for oncoming traffic, at most 1000")
 ]
@@ -66,17 +66,17 @@ TimedPositions = Annotated[
     list[tuple[Annotated[float, Meta(ge=-100_000, le=100_000)], _Metres, _Metres]],
     Meta(min_length=1, description="a list of `[t, s, d]` in seconds and metres"),
 ]
-Table = Annotated[dict[str, Any], Meta(description="a table")]
-Tables = Annotated[list[Any], Meta(description="tables, each under its own `[[heading]]`")]
-Obstacles = Annotated[
+TableField = Annotated[dict[str, Any], Meta(description="a table")]
+TablesField = Annotated[list[Any], Meta(description="tables, each under its own `[[heading]]`")]
+ObstaclesField = Annotated[
     list[Any],
     Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} `[[obstacle]]`"),
 ]
-Weight = Annotated[
+WeightField = Annotated[
     float, Meta(gt=0, le=1, description="a probability, above 0 and at most 1, such as `0.7`")
 ]
 MOST_PREDICTIONS = 10
-Predictions = Annotated[
+PredictionsField = Annotated[
     list[Any],
     Meta(
         max_length=MOST_PREDICTIONS,
@@ -88,81 +88,81 @@ Predictions = Annotated[
 class RawScenario(Struct):
     """The top of the file; its tables are read one by one."""
 
-    road: Table
-    ego: Table
-    name: Name = ""
-    about: Text = ""
+    road: TableField
+    ego: TableField
+    name: NameField = ""
+    about: TextField = ""
     horizon_s: Seconds = 4.0
     step_s: Seconds = 1.0
-    obstacle: Obstacles = []
-    signals: Table = {}
-    goal: Table | None = None
+    obstacle: ObstaclesField = []
+    signals: TableField = {}
+    goal: TableField | None = None
 
 
 class RawRoad(Struct):
     """``[road]``."""
 
-    s: FromTo
+    s: IntervalField
     lanes: LaneBounds
-    surface: Tables = []
-    missing: Tables = []
+    surface: TablesField = []
+    missing: TablesField = []
 
 
 class RawSurface(Struct):
     """``[[road.surface]]``."""
 
     type: SurfaceName
-    s: FromTo
+    s: IntervalField
 
 
 class RawMissing(Struct):
     """``[[road.missing]]``."""
 
     lane: LaneNumber
-    s: FromTo
+    s: IntervalField
 
 
 class RawEgo(Struct):
     """``[ego]``."""
 
-    s: Along
-    d: Across
-    length: Size | None = None
-    width: Size | None = None
+    s: PositionField
+    d: OffsetField
+    length: SizeField | None = None
+    width: SizeField | None = None
 
 
 class RawGoal(Struct):
     """``[goal]``."""
 
-    s: FromTo | None = None
-    d: FromTo | None = None
+    s: IntervalField | None = None
+    d: IntervalField | None = None
 
 
 class RawObstacle(Struct):
     """``[[obstacle]]``."""
 
-    id: Name
-    type: Kind
-    length: Size
-    width: Size
-    s: Along | None = None
-    d: Across | None = None
+    id: NameField
+    type: TypeField
+    length: SizeField
+    width: SizeField
+    s: PositionField | None = None
+    d: OffsetField | None = None
     speed: AlongSpeed = 0.0
     acceleration: Acceleration = 0.0
     lateral_speed: SidewaysSpeed = 0.0
-    until_d: Across | None = None
+    until_d: OffsetField | None = None
     trajectory: TimedPositions | None = None
     walking_direction: Degrees | None = None
-    signals: Table = {}
-    prediction: Predictions = []
+    signals: TableField = {}
+    prediction: PredictionsField = []
 
 
 class RawPrediction(Struct):
     """``[[obstacle.prediction]]``: what it does not say is as its obstacle says."""
 
-    weight: Weight
+    weight: WeightField
     speed: AlongSpeed | None = None
     acceleration: Acceleration | None = None
     lateral_speed: SidewaysSpeed | None = None
-    until_d: Across | None = None
+    until_d: OffsetField | None = None
     trajectory: TimedPositions | None = None

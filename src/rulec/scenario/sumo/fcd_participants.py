@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lamp, Participant
 from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
-from rulec.scenario.sumo.fcd import FCD, Course
+from rulec.scenario.sumo.fcd import FCD, FcdTrack
 from rulec.scenario.sumo.vehicle_types import VehicleType
 
 MOST_STEPS = 1_000_000
@@ -62,8 +62,8 @@ def time_step(path: Path, moments: list[int]) -> float:
     return step / _MICROSECONDS
 
 
-def participants_of(
-    key: str, course: Course, kind: VehicleType, steps: NDArray[int64], step_s: float
+def fcd_participants(
+    key: str, course: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
 ) -> Iterator[Participant]:
     """A vehicle, person or container; who vanishes and comes back is another one then.
 
@@ -92,7 +92,7 @@ def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
 
 
 def _accelerations(
-    course: Course, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
+    course: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
 ) -> NDArray[float64]:
     """As the file says; where it does not, the change of speed since the step before."""
     said = np.array(course.accelerations, dtype=float)

@@ -28,7 +28,7 @@ _COUNTS = {1: "one_lane", 2: "two_lanes"}
 _KMH = 3.6
 
 
-def signals_of(
+def map_signals(
     ahead: Sequence[Lanelet], lanes: int, step_s: float, step: int
 ) -> dict[str, tuple[SignalValue, str]]:
     """Signal -> value, and where it comes from.

@@ -15,14 +15,14 @@ from rulec.scenario.recorded.recording import (
     FARTHEST_M,
     Lanelet,
     Participant,
+    PlanningProblem,
     Points,
-    Problem,
-    State,
+    TrackState,
 )
 from rulec.scenario.recorded.track import rectangles
 
 
-def participants_of(scenario: Any) -> Iterator[Participant]:
+def commonroad_participants(scenario: Any) -> Iterator[Participant]:
     """All obstacles of a scenario of the library's, in its order."""
     for one in scenario.static_obstacles:
         yield _participant(one, [one.initial_state], standing=True)
@@ -41,7 +41,7 @@ def _states_of(obstacle: Any) -> list[Any]:
 
 
 def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Participant:
-    known: dict[int, State] = {}
+    known: dict[int, TrackState] = {}
     outlines: dict[int, Points] = {}
     for state in states:
         step = int(state.time_step)
@@ -87,10 +87,10 @@ def _corners(occupancy: Any) -> Points:
     return np.concatenate((corners[:-1], middles))
 
 
-def _state(state: Any, outline: Points) -> State:
+def _state(state: Any, outline: Points) -> TrackState:
     position = state.position
     x, y = position[:2] if isinstance(position, np.ndarray) else outline.mean(axis=0)
-    return State(
+    return TrackState(
         _number(float(x)),
         _number(float(y)),
         _number(state.orientation),
@@ -109,7 +109,7 @@ def _number(value: Any) -> float:
     return number
 
 
-def problem_of(problem: Any, lanelets: Mapping[str, Lanelet]) -> Problem:
+def planning_problem(problem: Any, lanelets: Mapping[str, Lanelet]) -> PlanningProblem:
     """A planning problem of the library's."""
     start = problem.initial_state
     outline = (
@@ -122,7 +122,7 @@ def problem_of(problem: Any, lanelets: Mapping[str, Lanelet]) -> Problem:
             for number in numbers
             if (lanelet := lanelets.get(str(number))) is not None
         ]
-    return Problem(
+    return PlanningProblem(
         str(problem.planning_problem_id),
         int(start.time_step),
         _state(start, outline),
