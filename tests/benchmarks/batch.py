@@ -20,9 +20,9 @@ from timing import in_turns, processor_time
 import rulec
 from rulec.monitoring.batch.columnize import gathered
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
-from rulec.monitoring.bits.bit_verdicts import verify_on_bits
-from rulec.monitoring.bits.trace_planes import Across
 from rulec.monitoring.verify import verify
+from support.oracles.bits.bit_verdicts import verify_on_bits
+from support.oracles.bits.trace_planes import Across
 
 EVERY = 400
 SPOT = "Spot, a word automaton per trace"
@@ -31,7 +31,7 @@ COPY_BOOLEANS = "copying the Boolean columns"
 ALONE = (SPOT, COPY, COPY_BOOLEANS)
 WANTED = {
     "machines, from cells": (0.3, 1500),
-    "bits, from Boolean columns": (0.15, None),
+    "oracle on bits, from Boolean columns": (0.15, None),
 }
 
 
@@ -49,8 +49,8 @@ def measure(rounds: int) -> Iterator[Result]:
     engines = {
         "machines, from cells": lambda: verify_cells(cells, rules),
         "machines, from columns": lambda: verify_columns(columns, rules),
-        "bits, from columns": lambda: list(verify_on_bits(columns, rules)),
-        "bits, from Boolean columns": by_bits(rules, layout, booleans),
+        "oracle on bits, from columns": lambda: list(verify_on_bits(columns, rules)),
+        "oracle on bits, from Boolean columns": by_bits(rules, layout, booleans),
     }
     taken = in_turns(
         {
@@ -78,7 +78,7 @@ def measure(rounds: int) -> Iterator[Result]:
     inputs = {
         "machines, from cells": [cells.cells],
         "machines, from columns": columns.values.values(),
-        "bits, from Boolean columns": booleans.values(),
+        "oracle on bits, from Boolean columns": booleans.values(),
     }
     found = {name: peak(engines[name]) / bytes_of(arrays) for name, arrays in inputs.items()}
     yield Result(

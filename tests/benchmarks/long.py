@@ -1,54 +1,63 @@
-"""How long one trace of ten million states takes, by formulas on random Booleans."""
+"""How long one trace of ten million states takes, by formulas on random Booleans.
+
+rulec's machines run from the columns; the tests' oracle on bits reads the same.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from figure import Result
 from program import run
 from timing import in_turns, processor_time
 
-from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
-from rulec.monitoring.bits import along
+import rulec
+from rulec.logic.bounds import in_steps
+from rulec.logic.formula import Atom
+from rulec.monitoring.batch.engine import verify_columns
+from rulec.rulebook.loader import parse_rulebook
+from rulec.trace.trace_columns import TraceColumns, layout_of
+from support.oracles.bits import along
 
 LENGTH = 10_000_000
-P, Q = Atom("p"), Atom("q")
-RECENTLY = Unary(UnaryOperator.ONCE, P, Bound(Fraction(0), Fraction(20), "steps"))
-
-
-def always(formula):
-    return Unary(UnaryOperator.ALWAYS, formula)
-
-
-FORMULAS = {
-    "always (p implies eventually q)": always(
-        Binary(BinaryOperator.IMPLIES, P, Unary(UnaryOperator.EVENTUALLY, Q))
-    ),
-    "always (p weak until q)": always(Binary(BinaryOperator.WEAK_UNTIL, P, Q)),
-    "always (q implies once[<= 20 steps] p)": always(Binary(BinaryOperator.IMPLIES, Q, RECENTLY)),
-}
+FORMULAS = (
+    "always (p implies eventually q)",
+    "always (p weak until q)",
+    "always (q implies once[<= 20 steps] p)",
+)
+RULEBOOK = "rulebook r signal p, q hard rule r {{ require {} }}"
+MACHINES, BITS, COPY = "machines, {}", "oracle on bits, {}", "copying a column"
 
 
 def measure(rounds: int) -> Iterator[Result]:
-    """Every formula."""
+    """Every formula, by both."""
     chance = np.random.default_rng(1)
-    columns = {P: chance.random(LENGTH) < 0.9, Q: chance.random(LENGTH) < 0.1}
-    taken = in_turns(
-        {
-            name: processor_time(lambda one=one: along(one, LENGTH, columns.__getitem__), LENGTH)
-            for name, one in FORMULAS.items()
-        }
-        | {"copying a column": processor_time(columns[P].copy, LENGTH)},
-        rounds,
-    )
-    copy = taken.pop("copying a column")
+    p, q = chance.random(LENGTH) < 0.9, chance.random(LENGTH) < 0.1
+    propositions = {Atom("p"): p, Atom("q"): q}
+    columns = TraceColumns(layout_of([LENGTH]), {("p", ()): p, ("q", ()): q}, {})
+    tasks = {}
+    for text in FORMULAS:
+        rules = rulec.compile_rulebook(parse_rulebook(RULEBOOK.format(text)))
+        formula = in_steps(rules.rules[0].formula, columns.step_s)
+        by_machines = partial(verify_columns, columns, rules)
+        by_bits = partial(along, formula, LENGTH, propositions.__getitem__)
+        if by_machines()[0].accepted.tolist() != [by_bits()]:
+            raise RuntimeError(f"they disagree on `{text}`")
+        tasks[MACHINES.format(text)] = processor_time(by_machines, LENGTH)
+        tasks[BITS.format(text)] = processor_time(by_bits, LENGTH)
+    tasks[COPY] = processor_time(p.copy, LENGTH)
+    taken = in_turns(tasks, rounds)
+    copy = taken.pop(COPY)
     yield Result(
         "One long trace",
         f"{LENGTH:,} states from two Boolean columns, p mostly true and q seldom; per step",
-        [one.figure(name, "ns", 1) for name, one in taken.items()]
-        + [copy.figure("copying a column", "ns")],
+        [
+            one.figure(name, "ns", *([1] if name.startswith("oracle") else []))
+            for name, one in taken.items()
+        ]
+        + [copy.figure(COPY, "ns")],
     )
 
 

@@ -14,8 +14,8 @@ from timing import in_turns, processor_time
 
 import rulec
 from rulec.monitoring.batch.engine import verify_cells
-from rulec.monitoring.bits.trace_planes import Across
 from rulec.monitoring.verify import verify
+from support.oracles.bits.trace_planes import Across
 
 EVERY = 1500
 PROGRAMS = {"rtamt": "rtamt_traces", "reelay": "reelay_traces", "flloat": "flloat_traces"}
@@ -33,7 +33,7 @@ def measure(rounds: int) -> Iterator[Result]:
     by_automata = by_spot(rules, sample)
     few, all_ = float(len(sample) * cells.layout.n_steps), float(cells.layout.n_states)
     ours: dict[str, tuple[Callable[[], list[bool]], float]] = {
-        "bits, from Boolean columns": (
+        "oracle on bits, from Boolean columns": (
             lambda: Across(cells.layout, booleans.__getitem__).holds(formula)[::EVERY].tolist(),
             all_,
         ),

@@ -23,7 +23,6 @@ from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.sum_thresholds import digits_of_sum
 from rulec.monitoring.batch.trace_groups import grouped
 from rulec.monitoring.batch.value_encoding import OddError
-from rulec.monitoring.bits.bit_verdicts import verify_on_bits
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
@@ -43,6 +42,7 @@ from support.builders.rulebooks import (
 )
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY
+from support.oracles.bits.bit_verdicts import verify_on_bits
 
 
 @given(rulebooks(), chunks())

@@ -1,1 +1,1 @@
-"""TODO monitoring."""
+"""Verdicts of compiled rulebooks on traces: whole, many together, or still running."""

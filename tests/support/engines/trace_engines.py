@@ -12,12 +12,12 @@ from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columnize import gathered
 from rulec.monitoring.batch.trace_groups import grouped
-from rulec.monitoring.bits.bit_verdicts import verify_on_bits
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.table_writer import kinds_in
 from rulec.trace.formats.trace_files import read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.engines.engine import each, told
+from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.presence import there
 from support.oracles.rulebook_oracle import Oracle, Refused, Said
 from support.oracles.state_oracle import below

@@ -5,8 +5,8 @@ import spot
 
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
-from rulec.monitoring.bits import along
 from support.engines.engine import each
+from support.oracles.bits import along
 from support.oracles.past_in_spot import in_spot, spot_automaton
 from support.oracles.rulebook_oracle import Said, in_steps
 from support.oracles.state_oracle import Reading, number

@@ -1,1 +1,1 @@
-"""Many traces at once: machines run over columns of letters, a step of all traces at a time."""
+"""Many traces at once: machines run over columns of letters, one step of all traces at a time."""

@@ -1,1 +1,1 @@
-"""TODO monitoring/explain."""
+"""Explanations of violations, and the nearest trace that keeps the rule."""

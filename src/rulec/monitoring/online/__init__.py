@@ -1,1 +1,1 @@
-"""What a monitor is made of: machines that take one state after the other, as they come."""
+"""Runtime monitoring: Mealy monitors that take one state after the other."""

@@ -17,8 +17,6 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.logic.semantics import holds
-from rulec.monitoring.bits import across, along
-from rulec.monitoring.bits.plane_program import program_of
 from rulec.trace.trace_columns import layout_of
 from support.generators.random_formulas import formulas, letters, words
 from support.generators.timed_formulas import (
@@ -31,6 +29,8 @@ from support.generators.timed_formulas import (
     timed_states,
     timed_words,
 )
+from support.oracles.bits import across, along
+from support.oracles.bits.plane_program import program_of
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 P, Q = Atom("p"), Atom("q")

@@ -21,7 +21,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.monitoring.bits.plane_algebra import Algebra, Plane
+from support.oracles.bits.plane_algebra import Algebra, Plane
 
 _AT_ONCE = frozenset(
     {

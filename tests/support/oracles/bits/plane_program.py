@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import steps_to_settle
-from rulec.monitoring.bits.plane_algebra import Algebra, Plane
-from rulec.monitoring.bits.temporal_operators import Evaluation
+from support.oracles.bits.plane_algebra import Algebra, Plane
+from support.oracles.bits.temporal_operators import Evaluation
 
 _Place: TypeAlias = int
 """Where a plane lies: that of the first operation at 1. At 0 is the None of ``until``."""

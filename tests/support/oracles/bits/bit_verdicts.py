@@ -14,8 +14,8 @@ from rulec.logic.formula import Atom, Comparison, Proposition
 from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
 from rulec.monitoring.batch.kleene_columns import Mask
 from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
-from rulec.monitoring.bits.trace_planes import Across
 from rulec.trace.trace_columns import Array, TraceColumns, layout_of
+from support.oracles.bits.trace_planes import Across
 
 
 def verify_on_bits(

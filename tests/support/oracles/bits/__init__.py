@@ -3,7 +3,7 @@
 It knows nothing of automata, so it is also an independent check on them.
 """
 
-from rulec.monitoring.bits.instant_planes import along
-from rulec.monitoring.bits.trace_planes import across
+from support.oracles.bits.instant_planes import along
+from support.oracles.bits.trace_planes import across
 
 __all__ = ["across", "along"]

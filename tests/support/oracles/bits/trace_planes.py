@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics
-from rulec.monitoring.bits.plane_program import program_of
 from rulec.trace.trace_columns import Array, Layout
+from support.oracles.bits.plane_program import program_of
 
 Bits = NDArray[np.uint8]
 

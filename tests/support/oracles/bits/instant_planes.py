@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics
-from rulec.monitoring.bits.plane_program import program_of
+from support.oracles.bits.plane_program import program_of
 
 _MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 
