@@ -8,17 +8,17 @@ from hypothesis import strategies as st
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import (
-    Article,
     Audit,
-    Counts,
-    Finding,
+    AuditCounts,
+    AuditFinding,
+    CitedArticle,
     articles_of,
     audit,
-    changes,
-    compared,
+    audit_changes,
+    compare_audits,
 )
-from rulec.analysis.lineage.book_lineage import inheritance
-from rulec.analysis.lineage.rule_lineage import Inheritance, Member, RuleHistory, Step
+from rulec.analysis.lineage.book_lineage import book_lineage_of
+from rulec.analysis.lineage.rule_lineage import BookHeader, BookLineage, LineageStep, RuleHistory
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.model import Rule
@@ -32,7 +32,7 @@ def path(tmp_path_factory):
 
 def audited(path, at, failing=()):
     loaded = read_rulebook(path, at=at)
-    return audit(loaded.rulebook, inheritance(loaded.books, at), failing)
+    return audit(loaded.rulebook, book_lineage_of(loaded.books, at), failing)
 
 
 def found(one, kind):
@@ -76,12 +76,12 @@ def test_what_is_there(path):
     one = audited(path, "2024-06-01")
     assert (one.rulebook, one.law, one.at) == ("village", "", "2024-06-01")
     # kept, changed, softer, own; two examples each of kept and changed, and one of own.
-    assert one.counts == Counts(4, 3, 1, 3, 2, 1, 5, 3, 4, 3)
+    assert one.counts == AuditCounts(4, 3, 1, 3, 2, 1, 5, 3, 4, 3)
     # The nearest law first, in each the smallest number.
     assert one.articles == (
-        Article("island", "§ 10a", ("changed",)),
-        Article("mainland", "§ 2", ("softer",)),
-        Article("mainland", "§ 9", ("kept",)),
+        CitedArticle("island", "§ 10a", ("changed",)),
+        CitedArticle("mainland", "§ 2", ("softer",)),
+        CitedArticle("mainland", "§ 9", ("kept",)),
     )
 
 
@@ -106,8 +106,8 @@ def test_a_rule_made_hard_again_is_not_softened(path):
 def test_articles_in_the_order_of_their_numbers():
     cites = ["Art. 11.6", "Art. 9", "Art. 11.10", "Art. 9", "", "9", "Annex"]
     rules = [Rule(f"r{at}", "hard", (), Constant(True), cite) for at, cite in enumerate(cites)]
-    steps = [RuleHistory(one.name, (Step("b", "declared", None),)) for one in rules]
-    found = articles_of(rules, Inheritance((Member("b"),), tuple(steps), ()))
+    steps = [RuleHistory(one.name, (LineageStep("b", "declared", None),)) for one in rules]
+    found = articles_of(rules, BookLineage((BookHeader("b"),), tuple(steps), ()))
     assert [(one.cite, one.rules) for one in found] == [
         ("Annex", ("r6",)),
         ("Art. 9", ("r1", "r3")),
@@ -118,39 +118,41 @@ def test_articles_in_the_order_of_their_numbers():
 
 
 def made(name, *findings):
-    return Audit(name, "", "", "", "2024-01-01", Counts(), (), findings)
+    return Audit(name, "", "", "", "2024-01-01", AuditCounts(), (), findings)
 
 
-A, B = Finding("uncited", "a"), Finding("uncited", "b")
+A, B = AuditFinding("uncited", "a"), AuditFinding("uncited", "b")
 
 
 def test_what_has_changed():
-    found = changes(made("x", A, replace(B, kind="dated")), made("x", replace(A, note="n"), B))
+    found = audit_changes(
+        made("x", A, replace(B, kind="dated")), made("x", replace(A, note="n"), B)
+    )
     assert found.appeared == (replace(B, kind="dated"),)
     assert found.vanished == (B,)
 
 
-findings = st.lists(st.builds(Finding, st.sampled_from(list(KINDS)), st.sampled_from("abc")))
+findings = st.lists(st.builds(AuditFinding, st.sampled_from(list(KINDS)), st.sampled_from("abc")))
 
 
 @given(findings, findings)
 def test_changes_lead_from_the_old_to_the_new(old, new):
-    found = changes(made("x", *new), made("x", *old))
+    found = audit_changes(made("x", *new), made("x", *old))
     assert set(new) == set(old) - set(found.vanished) | set(found.appeared)
     assert set(found.appeared).isdisjoint(old)
     assert set(found.vanished).isdisjoint(new)
 
 
 def test_each_rulebook_is_compared_with_itself():
-    found = compared([made("x", A), made("y", A)], [made("y", B), made("x", A)])
+    found = compare_audits([made("x", A), made("y", A)], [made("y", B), made("x", A)])
     assert (found["x"].appeared, found["x"].vanished) == ((), ())
     assert (found["y"].appeared, found["y"].vanished) == ((A,), (B,))
 
 
 def test_one_rulebook_can_be_compared_with_any_other():
-    assert compared([made("x", A)], [made("y", A)])["x"].appeared == ()
+    assert compare_audits([made("x", A)], [made("y", A)])["x"].appeared == ()
 
 
 def test_to_a_rulebook_without_an_older_audit_everything_is_new():
-    found = compared([made("x", A), made("y", A)], [made("x", A)])
+    found = compare_audits([made("x", A), made("y", A)], [made("x", A)])
     assert (found["x"].appeared, found["y"].appeared) == ((), (A,))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rulec.analysis.diff.diverse_witnesses import unusual
+from rulec.analysis.diff.diverse_witnesses import non_default_names
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.model import Axiom, Variable
@@ -40,7 +40,7 @@ def check(one, other, traces):
         for witness in traces_of_one:
             assert not allows(forbids, witness)
             assert allows(permits, witness)
-        needs = [unusual(witness, one.rulebook.vocabulary) for witness in traces_of_one]
+        needs = [non_default_names(witness, one.rulebook.vocabulary) for witness in traces_of_one]
         for number, later in enumerate(needs):
             assert not any(earlier <= later for earlier in needs[:number])
     expected = {

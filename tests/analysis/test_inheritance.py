@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.lineage.book_lineage import inheritance
-from rulec.analysis.lineage.rule_lineage import Setting
+from rulec.analysis.lineage.book_lineage import book_lineage_of
+from rulec.analysis.lineage.rule_lineage import ConstantValue
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
 from support.builders import rulebook_family as island
@@ -19,7 +19,7 @@ def path(tmp_path_factory):
 @pytest.fixture(scope="module")
 def village(path):
     loaded = read_rulebook(path, at="2024-01-01")
-    return inheritance(loaded.books, loaded.rulebook.at)
+    return book_lineage_of(loaded.books, loaded.rulebook.at)
 
 
 def steps(found, name):
@@ -97,12 +97,12 @@ def test_the_rule_before_and_after(village):
 
 def test_options_and_definitions(village):
     assert settings(village, "strict") == [
-        Setting("mainland", "off"),
-        Setting("village", "on", current=True),
+        ConstantValue("mainland", "off"),
+        ConstantValue("village", "on", current=True),
     ]
     assert settings(village, "slow") == [
-        Setting("mainland", "speed <= pace"),
-        Setting("island", "speed < pace", current=True),
+        ConstantValue("mainland", "speed <= pace"),
+        ConstantValue("island", "speed < pace", current=True),
     ]
 
 
@@ -117,14 +117,14 @@ def test_options_and_definitions(village):
 )
 def test_the_value_that_counts_on_a_day(path, book, at, current):
     loaded = read_rulebook(path.with_stem(book), at=at)
-    found = settings(inheritance(loaded.books, at), "pace")
+    found = settings(book_lineage_of(loaded.books, at), "pace")
     assert [one.text for one in found if one.current] == [current]
 
 
 def test_a_definition_with_parameters():
     text = "rulebook r type t signal near(o: t) define d(v: t, side) = near(v) and side(v)"
     file, _ = parse(decode("r.rules", text.encode()))
-    (one,) = inheritance([file], "2024-01-01").provisions
+    (one,) = book_lineage_of([file], "2024-01-01").provisions
     assert (one.kind, one.head) == ("definition", "d(v: t, side)")
 
 
@@ -145,7 +145,7 @@ def test_what_only_a_dropped_rule_speaks_of_is_not_used():
         'rulebook b\nextends a\ndrop rule r because "no"',
     )
     files = [parse(decode("x", text.encode()))[0] for text in texts]
-    assert [inheritance(files[:n], "2024-01-01").provisions[0].used for n in (1, 2)] == [
+    assert [book_lineage_of(files[:n], "2024-01-01").provisions[0].used for n in (1, 2)] == [
         True,
         False,
     ]
@@ -175,7 +175,7 @@ def test_it_agrees_with_the_rulebook_as_meant(done):
         item = word % number if word else ""
         texts.append(f"rulebook b{number} extends b{number - 1} {item}")
     files = [parse(decode("x", text.encode()))[0] for text in texts]
-    (history,) = inheritance(files, "2024-01-01").rules
+    (history,) = book_lineage_of(files, "2024-01-01").rules
 
     from rulec.rulebook.resolve import resolve
 

@@ -6,7 +6,7 @@ from hypothesis.strategies import composite
 
 from rulec.api.workflow import compile_rulebook
 from rulec.book_tests.edge_coverage import coverage, percent
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom
 from rulec.logic.printing import in_words
 from rulec.report.tests.example_text import missing_example
@@ -23,7 +23,7 @@ only is one of lone
 
 def covered(*rules, pattern=None):
     rulebook = parse_rulebook(HEAD + "\n".join(rules))
-    return coverage(run_all(rulebook, compile_rulebook(rulebook), pattern=pattern))
+    return coverage(run_rulebook_examples(rulebook, compile_rulebook(rulebook), pattern=pattern))
 
 
 WORDS = parse_rulebook(HEAD + "hard rule A { require p }").vocabulary
@@ -105,7 +105,7 @@ def test_with_every_proposed_example_everything_is_covered(formula):
     assert len(before.missing_edges) == before.n_edges
     examples = "\n".join(missing_example(edge, WORDS) for edge in before.missing_edges)
     rulebook = parse_rulebook(f"{HEAD}hard rule A (v: t) {{ {rule}\n{examples} }}")
-    run = run_all(rulebook, compile_rulebook(rulebook))
+    run = run_rulebook_examples(rulebook, compile_rulebook(rulebook))
     assert all(one.passed for one in run.outcomes), in_words(rulebook.rules[0].formula)
     (after,) = coverage(run)
     assert after.missing_edges == ()

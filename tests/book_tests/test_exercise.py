@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.api.workflow import compile_rulebook
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.book_tests.verdict_coverage import uncovered_verdicts, verdicts
 from rulec.rulebook.loader import parse_rulebook
 
@@ -14,7 +14,7 @@ HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"
 
 def run_of(*rules, pattern=None):
     rulebook = parse_rulebook(HEAD + "\n".join(rules))
-    return run_all(rulebook, compile_rulebook(rulebook), pattern=pattern)
+    return run_rulebook_examples(rulebook, compile_rulebook(rulebook), pattern=pattern)
 
 
 def said(*rules, pattern=None):

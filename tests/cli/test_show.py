@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 from rulec.api.workflow import compile_rulebook
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook
 
@@ -241,7 +241,7 @@ def test_the_shortest_traces_can_be_pasted(capsys):
             for word, trace in (("accept", page.accepted), ("reject", page.rejected))
         )
         pasted = parse_rulebook(book.format(formula=formula, examples=examples))
-        run = run_all(pasted, compile_rulebook(pasted))
+        run = run_rulebook_examples(pasted, compile_rulebook(pasted))
         assert [one.passed for one in run.outcomes] == [True, True]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from rulec.api.workflow import compile_rulebook
 from rulec.automata.bundle.bundle_file import to_json
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.monitoring.verify import run
 from rulec.rulebook.loader import parse_rulebook
 
@@ -28,7 +28,7 @@ def blocks(language):
 def test_rulebooks_check(text):
     if re.search(r"^rulebook ", text, re.MULTILINE):
         rulebook = parse_rulebook(text)
-        run = run_all(rulebook, compile_rulebook(rulebook))
+        run = run_rulebook_examples(rulebook, compile_rulebook(rulebook))
         assert [one.name for one in run.outcomes if not one.passed] == []
 
 

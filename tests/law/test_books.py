@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.rulebook.files.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
@@ -31,7 +31,7 @@ def test_the_shared_patterns_have_no_mistakes() -> None:
 
 @of_every_book
 def test_its_examples_come_out_as_they_say(name: str) -> None:
-    outcomes = run_all(read(name).rulebook, compiled(name)).outcomes
+    outcomes = run_rulebook_examples(read(name).rulebook, compiled(name)).outcomes
     assert [one for one in outcomes if not one.passed] == []
 
 

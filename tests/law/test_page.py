@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, read, rules_on
 
@@ -59,7 +59,7 @@ def test_the_options_are_those_of_the_treaty():
 def test_the_sample_is_a_rulebook():
     (text,) = re.findall(r"^```rulec\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
     rulebook = parse_rulebook(text)
-    outcomes = run_all(rulebook, compile_rulebook(rulebook)).outcomes
+    outcomes = run_rulebook_examples(rulebook, compile_rulebook(rulebook)).outcomes
     assert outcomes
     assert all(one.passed for one in outcomes)
     assert rulebook.levels == load_rulebook("schemas").levels

@@ -5,7 +5,7 @@ import pytest
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.edge_coverage import coverage
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances
@@ -160,7 +160,7 @@ def test_facts_that_exclude_a_state_only_together():
     found = problem({"p": True, "q": True, "r": True}, objects={}, rulebook=compile_rulebook(book))
     assert found.message == "state 0 cannot be: `q implies not r` holds in every state"
     with pytest.raises(RulecError) as caught:
-        run_all(book, compile_rulebook(book))
+        run_rulebook_examples(book, compile_rulebook(book))
     (found,) = caught.value.diagnostics
     assert found.code == "R0306"
     assert found.message.startswith("this state cannot be: ")
@@ -207,7 +207,7 @@ def test_suggested_examples_and_shortest_traces_keep_to_the_facts():
     )
     compiled = compile_rulebook(book)
     assert compiled.rules[0].machine.letters == (0, 1, 1, -1)
-    (found,) = coverage(run_all(book, compiled))
+    (found,) = coverage(run_rulebook_examples(book, compiled))
     assert found.missing_edges == ()
 
 
@@ -217,7 +217,7 @@ def test_what_facts_rule_out_is_not_missing_from_examples():
         "fact speed <= 3 m/s\n"
         "hard rule r { require always (p or q or speed > 3 m/s) accept { q } reject { not q } }"
     )
-    (found,) = coverage(run_all(book, compile_rulebook(book)))
+    (found,) = coverage(run_rulebook_examples(book, compile_rulebook(book)))
     assert found.missing_values == ()
     assert found.missing_edges == ()
 
@@ -229,7 +229,7 @@ def test_numbers_are_not_suggested_against_a_fact():
         "fact lights or speed < 50 km/h\n"
         "hard rule r { require always (near implies speed < 60 km/h and not lights) }"
     )
-    (found,) = coverage(run_all(book, compile_rulebook(book)))
+    (found,) = coverage(run_rulebook_examples(book, compile_rulebook(book)))
     suggested = [edge.states[-1] for edge in found.missing_edges if edge.accepted]
     assert [dict(state.says) for state in suggested] == [
         {("near", ()): False, ("lights", ()): False}

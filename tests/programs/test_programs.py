@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import read_rulebook
@@ -49,7 +49,7 @@ def test_a_good_rulebooks_examples_come_out_as_they_say(path: Path) -> None:
     tree, _ = parse(decode(path.name, path.read_bytes()))
     if tree.kind == "rulebook":
         rulebook = read_rulebook(path).rulebook
-        outcomes = run_all(rulebook, compile_rulebook(rulebook)).outcomes
+        outcomes = run_rulebook_examples(rulebook, compile_rulebook(rulebook)).outcomes
         assert [one for one in outcomes if not one.passed] == []
 
 

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import Quantity
-from rulec.witnesses.fourier_motzkin import Bounded, solve
+from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
 X, Y, Z = (Quantity(name) for name in "xyz")
 
 bounded = st.builds(
-    Bounded,
+    LinearBound,
     st.dictionaries(
         st.sampled_from([X, Y, Z]),
         st.sampled_from([Fraction(n) for n in (-2, -1, 1, 2)]),
@@ -41,29 +41,35 @@ def test_against_a_search(system):
 
 def test_what_speaks_of_no_unknown_holds_or_does_not():
     for limit, strict, holds in ((0, False, True), (0, True, False), (-1, False, False)):
-        assert (solve([Bounded({}, Fraction(limit), strict)], [X], {}) is not None) is holds
+        assert (solve([LinearBound({}, Fraction(limit), strict)], [X], {}) is not None) is holds
 
 
 def test_what_is_preferred_is_taken_where_it_fits():
-    below = Bounded({X: Fraction(1)}, Fraction(50), strict=True)
+    below = LinearBound({X: Fraction(1)}, Fraction(50), strict=True)
     assert solve([below], [X], {X: Fraction(13)}) == {X: Fraction(13)}
     assert solve([below], [X], {X: Fraction(50)}) == {X: Fraction(0)}
 
 
 def test_short_decimals():
     between = [
-        Bounded({X: Fraction(-1)}, Fraction(-12, 10), strict=True),
-        Bounded({X: Fraction(1)}, Fraction(13, 10), strict=True),
+        LinearBound({X: Fraction(-1)}, Fraction(-12, 10), strict=True),
+        LinearBound({X: Fraction(1)}, Fraction(13, 10), strict=True),
     ]
     assert solve(between, [X], {}) == {X: Fraction(121, 100)}
 
 
 def test_no_whole_number_between():
-    between = [Bounded({X: Fraction(-2)}, Fraction(-1)), Bounded({X: Fraction(4)}, Fraction(3))]
+    between = [
+        LinearBound({X: Fraction(-2)}, Fraction(-1)),
+        LinearBound({X: Fraction(4)}, Fraction(3)),
+    ]
     assert solve(between, [X], {}) is not None
     assert solve(between, [X], {}, frozenset([X])) is None
 
 
 def test_a_third_has_no_decimal():
-    third = [Bounded({X: Fraction(3)}, Fraction(1)), Bounded({X: Fraction(-3)}, Fraction(-1))]
+    third = [
+        LinearBound({X: Fraction(3)}, Fraction(1)),
+        LinearBound({X: Fraction(-3)}, Fraction(-1)),
+    ]
     assert solve(third, [X], {}) is None

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Count, Quantity
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import run
@@ -46,7 +46,7 @@ def test_their_verdicts_and_their_length(formula):
         assert holds(formula, letters(states)) is accepts
         example = Example(accepts, tuple(state.facts for state in states))
         shown = book(rule_with(one, example))
-        assert run_all(shown, compiled).outcomes[0].passed
+        assert run_rulebook_examples(shown, compiled).outcomes[0].passed
     if traces.rejected is not None:
         symbols = range(len(machine.successors[0]))
         for length in range(1, min(len(traces.rejected), 5)):

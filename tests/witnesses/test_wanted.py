@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.book_tests.edge_coverage import coverage
-from rulec.book_tests.example_runs import run_all
+from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.model import Example, Rulebook, Variable
@@ -31,7 +31,7 @@ from support.builders.rulebooks import (
 def covered(formula, *examples):
     one = replace(rule("A", formula, "v: car"), examples=examples)
     rulebook = Rulebook("test", MEASURED, (one,))
-    run = run_all(rulebook, compile_here(rulebook))
+    run = run_rulebook_examples(rulebook, compile_here(rulebook))
     (found,) = coverage(run)
     return found, run
 

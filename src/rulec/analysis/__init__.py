@@ -1,1 +1,1 @@
-"""Questions about rulebooks rather than about traces."""
+"""Answer questions about rulebooks rather than about traces."""

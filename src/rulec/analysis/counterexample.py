@@ -11,23 +11,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rulec.analysis.diff.shared_vocabulary import shared_words
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.diff.shared_vocabulary import shared_vocabulary
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
 from rulec.rulebook.model import Axiom
 from rulec.trace import Trace
-from rulec.witnesses.joint_alphabet import Alphabet
-from rulec.witnesses.letter_functions import machine_column
+from rulec.witnesses.joint_alphabet import JointAlphabet
+from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import shortest
-from rulec.witnesses.trace_synthesis import alone, staged
+from rulec.witnesses.shortest_word import shortest_word
+from rulec.witnesses.trace_synthesis import single_rule_rulebook, synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 
 
-def counterexample(side: Side, others: Sequence[Side], given: Sequence[Axiom] = ()) -> Trace | None:
+def counterexample(
+    side: AnalyzedRule, others: Sequence[AnalyzedRule], given: Sequence[Axiom] = ()
+) -> Trace | None:
     """A shortest trace that a rule forbids and all others allow; None if there is none.
 
     ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
@@ -35,18 +37,18 @@ def counterexample(side: Side, others: Sequence[Side], given: Sequence[Axiom] = 
     scene = _scene(side, others, given)
     own = {variable.name: variable.name for variable in side.rule.variables}
     machines, wanted = [side.rule.machine], [False]
-    columns = [machine_column(side.rule.machine, own, scene)]
+    columns = [monitor_function(side.rule.machine, own, scene)]
     for other in others:
         for binding in scene.bindings(other.rule.variables):
             machines.append(other.rule.machine)
-            columns.append(machine_column(other.rule.machine, binding, scene))
+            columns.append(monitor_function(other.rule.machine, binding, scene))
             wanted.append(True)
-    alphabet = Alphabet(scene, columns)
-    word = shortest(machines, wanted, alphabet.symbols)
+    alphabet = JointAlphabet(scene, columns)
+    word = shortest_word(machines, wanted, alphabet.symbols)
     if word is None:
         return None
-    forbidding = alone(side.rulebook, side.rule, scene)
-    allowing = [alone(other.rulebook, other.rule, scene) for other in others]
+    forbidding = single_rule_rulebook(side.rulebook, side.rule, scene)
+    allowing = [single_rule_rulebook(other.rulebook, other.rule, scene) for other in others]
 
     def shows(trace: Trace) -> bool:
         forbids = bool(verify(trace, forbidding).violations)
@@ -54,20 +56,22 @@ def counterexample(side: Side, others: Sequence[Side], given: Sequence[Axiom] = 
 
     situations = [alphabet.situations[symbol] for symbol in word]
     steps = [one.rule.step_s for one in (side, *others) if one.rule.step_s is not None]
-    return staged(situations, scene, (*steps, Fraction(1))[0], shows)
+    return synthesize_trace(situations, scene, (*steps, Fraction(1))[0], shows)
 
 
-def _scene(side: Side, others: Sequence[Side], given: Sequence[Axiom]) -> ObjectUniverse:
+def _scene(
+    side: AnalyzedRule, others: Sequence[AnalyzedRule], given: Sequence[Axiom]
+) -> ObjectUniverse:
     """The objects that a rule speaks of, in the words of all the rulebooks."""
     sides = (side, *others)
-    read = {name for one in sides for name in read_by(one.rule)}
+    read = {name for one in sides for name in declarations_read(one.rule)}
     axioms = tuple(dict.fromkeys((*(fact for one in sides for fact in one.axioms), *given)))
     asked = read | {name for fact in axioms for name in names_in(fact.formula)}
     vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
     for other in others:
         if other.rulebook.vocabulary == vocabulary:
             continue
-        words = shared_words(vocabulary, other.rulebook.vocabulary)
+        words = shared_vocabulary(vocabulary, other.rulebook.vocabulary)
         for name in sorted(words.unlike & asked):
             raise UndecidedError(f"`{name}` is not declared alike in both")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
@@ -75,7 +79,7 @@ def _scene(side: Side, others: Sequence[Side], given: Sequence[Axiom]) -> Object
     return ObjectUniverse(objects, vocabulary, axioms, unsaid - read)
 
 
-def read_by(rule: CompiledRule) -> frozenset[str]:
+def declarations_read(rule: CompiledRule) -> frozenset[str]:
     """The declarations that a rule reads."""
     names: set[str] = set()
     for read in rule.machine.reads:

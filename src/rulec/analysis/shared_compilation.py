@@ -15,7 +15,7 @@ from rulec.rulebook.model import Axiom, Rule, Rulebook
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class AnalyzedRule:
     """A compiled rule, the rulebook that it is part of and the facts known there.
 
     Sides with the same ``law`` have rules that mean the same by their very words.
@@ -27,21 +27,21 @@ class Side:
     law: int
 
 
-Key = tuple[object, ...]
+CompilationKey = tuple[object, ...]
 
 
-class Distinct:
+class SharedCompiler:
     """Compiles rules, each law once."""
 
     def __init__(self, tell: Callable[[float], object] = lambda _: None) -> None:
         self._tell = tell
-        self._machines: dict[Key, CompiledRule] = {}
-        self._laws: dict[Key, int] = {}
+        self._machines: dict[CompilationKey, CompiledRule] = {}
+        self._laws: dict[CompilationKey, int] = {}
         self._headers: dict[int, CompiledRulebook] = {}
 
     def sides(
         self, rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
-    ) -> list[dict[str, Side]]:
+    ) -> list[dict[str, AnalyzedRule]]:
         """For each rulebook the chosen ones of its rules by name, each for the step it names.
 
         Raises RulecError if one cannot be compiled.
@@ -55,7 +55,7 @@ class Distinct:
             self._tell(number + 1)
             found.append(
                 {
-                    name: Side(
+                    name: AnalyzedRule(
                         replace(header, rules=()),
                         book.axioms,
                         _named(self._machines[key], chosen[name]),
@@ -67,7 +67,7 @@ class Distinct:
         return found
 
 
-def _key(rule: Rule, book: Rulebook) -> Key:
+def _key(rule: Rule, book: Rulebook) -> CompilationKey:
     """What a rule's machine depends on."""
     read = dict.fromkeys(names_in(rule.formula))
     return (

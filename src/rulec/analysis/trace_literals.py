@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rulec.analysis.counterexample import read_by
+from rulec.analysis.counterexample import declarations_read
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Atom
 from rulec.logic.printing import number_in_words
@@ -15,9 +15,9 @@ from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 from rulec.witnesses.state_synthesis import keys_of
 
 
-def in_words_of(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> str:
+def trace_literal(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> str:
     """``{ behind(v); beside(v) and fog }``: what is not said has its default."""
-    names = frozenset(name for rule in rules for name in read_by(rule))
+    names = frozenset(name for rule in rules for name in declarations_read(rule))
     states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
     return f"{{ {states} }}"
 

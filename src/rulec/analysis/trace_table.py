@@ -13,7 +13,7 @@ from rulec.witnesses.state_synthesis import keys_of
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SignalRow:
     """What is the case in each column: ``title`` names it, ``unit`` is empty if it has none.
 
     ``usual``: it is the default in all of them.
@@ -30,7 +30,7 @@ class TraceTable:
     """States that are the same one after the other share a column, from the first to the last."""
 
     columns: tuple[tuple[int, int], ...]
-    rows: tuple[Row, ...]
+    rows: tuple[SignalRow, ...]
 
 
 def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
@@ -47,5 +47,5 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
             values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
             usual = all(value == declaration.default for value in values)
-            rows.append(Row(str(Atom(name, items)), unit, values, usual))
+            rows.append(SignalRow(str(Atom(name, items)), unit, values, usual))
     return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))

@@ -8,12 +8,12 @@ from rulec.logic.formula import Atom, Comparison, Count, Formula, atoms_of
 from rulec.rulebook.model import Rulebook
 
 
-def words_used(rulebook: Rulebook) -> frozenset[str]:
+def used_declarations(rulebook: Rulebook) -> frozenset[str]:
     """The enumerations, signals and quantities that the formula of some rule mentions."""
-    return frozenset(name for rule in rulebook.rules for name in words_in(rule.formula))
+    return frozenset(name for rule in rulebook.rules for name in declared_names_in(rule.formula))
 
 
-def words_in(formula: Formula) -> Iterator[str]:
+def declared_names_in(formula: Formula) -> Iterator[str]:
     """The names of declarations in a formula, in their order, with repetitions."""
     for atom in atoms_of(formula):
         match atom:
@@ -21,4 +21,6 @@ def words_in(formula: Formula) -> Iterator[str]:
                 yield name
             case Comparison(terms):
                 for _, term in terms:
-                    yield from words_in(term.body) if isinstance(term, Count) else (term.name,)
+                    yield from (
+                        declared_names_in(term.body) if isinstance(term, Count) else (term.name,)
+                    )

@@ -8,11 +8,11 @@ from fractions import Fraction
 from pathlib import Path
 
 from rulec.analysis.audit.rulebook_audit import Audit, audit
-from rulec.analysis.diff.rulebook_comparison import RulebookDiff, difference, setting_pairs
-from rulec.analysis.lineage.book_lineage import read_with_inheritance
-from rulec.analysis.lint.rulebook_findings import findings
+from rulec.analysis.diff.rulebook_comparison import RulebookDiff, diff_rulebooks, setting_pairs
+from rulec.analysis.lineage.book_lineage import read_with_lineage
+from rulec.analysis.lint.rulebook_findings import rulebook_findings
 from rulec.automata.step_compilation import AnyStep
-from rulec.book_tests.example_runs import ExampleRun, run_all
+from rulec.book_tests.example_runs import ExampleRun, run_rulebook_examples
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.loader import read_rulebook
 
@@ -30,7 +30,7 @@ def run_examples(
     """
     loaded = read_rulebook(reference, search_path, at)
     compiled = AnyStep(loaded.rulebook).at_own_steps()
-    return run_all(loaded.rulebook, compiled, loaded.warnings, pattern)
+    return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 
 def audit_rulebook(
@@ -46,7 +46,7 @@ def audit_rulebook(
     ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
     ``at``: as for ``load_rulebook``. Raises RulecError.
     """
-    loaded, inherited = read_with_inheritance(reference, search_path, at)
+    loaded, inherited = read_with_lineage(reference, search_path, at)
     warn(loaded.warnings)
     outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
     failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
@@ -67,13 +67,13 @@ def compare_rulebooks(
     """Compare the rules of two rulebooks, given by name or by their sources' paths.
 
     ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
-    as for ``rulec.analysis.diff.rulebook_comparison.difference``. Raises RulecError.
+    as for ``rulec.analysis.diff.rulebook_comparison.diff_rulebooks``. Raises RulecError.
     """
     (one, ours), (other, theirs) = (
-        read_with_inheritance(each, search_path, at) for each in (first, second)
+        read_with_lineage(each, search_path, at) for each in (first, second)
     )
     warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = difference(one.rulebook, other.rulebook, patterns, step_s, tell, most)
+    found = diff_rulebooks(one.rulebook, other.rulebook, patterns, step_s, tell, most)
     # What rules that were not asked for depend on is not asked for either.
     return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
 
@@ -95,4 +95,6 @@ def analyze_rulebook(
     # On the same side of the road: a treaty's near side is that of the party's traffic.
     bases = [read_rulebook(Path(one), search_path, book.at, book.traffic) for one in above]
     extends = loaded.books[-1].extends
-    return findings(book, [one.rulebook for one in bases], tell, extends.span if extends else None)
+    return rulebook_findings(
+        book, [one.rulebook for one in bases], tell, extends.span if extends else None
+    )

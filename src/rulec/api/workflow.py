@@ -58,12 +58,12 @@ def machines(
         return rules
     if not isinstance(rules, str | Path):
         return AnyStep(rules).simplest()
-    from rulec.book_tests.example_runs import surprises
+    from rulec.book_tests.example_runs import example_warnings
     from rulec.rulebook.loader import read_rulebook
 
     loaded = read_rulebook(rules, search_path, at)
     compiled = AnyStep(loaded.rulebook)
-    warn([*loaded.warnings, *surprises(loaded.rulebook, compiled.at_own_steps)])
+    warn([*loaded.warnings, *example_warnings(loaded.rulebook, compiled.at_own_steps)])
     return compiled.simplest()
 
 

@@ -1,1 +1,1 @@
-"""TODO book_tests."""
+"""Run the examples of a rulebook and measure what they cover."""

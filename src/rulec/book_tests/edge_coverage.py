@@ -9,18 +9,23 @@ from rulec.automata.alphabet import letters_with
 from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
-from rulec.book_tests.example_runs import ExampleRun, Outcome, example_trace, own_names
+from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_trace, own_names
 from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import columns_of
 from rulec.rulebook.model import Rule
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.coverage_witness import CoverageWitness, possible_letters, truths, wanted
+from rulec.witnesses.coverage_witness import (
+    CoverageWitness,
+    coverage_witness,
+    possible_letters,
+    truths,
+)
 
 
 @dataclass(frozen=True, slots=True)
-class MissingEdge:
+class UncoveredEdge:
     """An edge of a rule's machine that no example takes, with a shortest example that would.
 
     The edge leads from state ``source`` to ``target``; ``accepted`` is what the rule does with the
@@ -44,7 +49,7 @@ class RuleCoverage:
 
     rule: str
     n_edges: int
-    missing_edges: tuple[MissingEdge, ...]
+    missing_edges: tuple[UncoveredEdge, ...]
     n_values: int
     missing_values: tuple[tuple[Proposition, bool], ...]
 
@@ -84,7 +89,7 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
 def _coverage(
     rule: Rule,
     compiled: CompiledRule,
-    outcomes: Sequence[Outcome],
+    outcomes: Sequence[ExampleOutcome],
     rulebook: CompiledRulebook,
     axioms: Sequence[Formula],
 ) -> RuleCoverage:
@@ -94,11 +99,11 @@ def _coverage(
     edges = list(_edges(machine, paths, letters))
     taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
-        symbol: wanted(letter, machine, rule.formula, vocabulary, axioms)
+        symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
-        MissingEdge(
+        UncoveredEdge(
             source,
             machine.successors[source][symbol],
             tuple(states[one] for one in (*paths[source], symbol)),
@@ -122,7 +127,7 @@ def _coverage(
 
 
 def _moments(
-    rule: Rule, outcomes: Sequence[Outcome], rulebook: CompiledRulebook
+    rule: Rule, outcomes: Sequence[ExampleOutcome], rulebook: CompiledRulebook
 ) -> Iterator[StateView]:
     for one in outcomes:
         trace = example_trace(rule, one.example)

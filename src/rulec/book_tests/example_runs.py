@@ -18,7 +18,7 @@ from rulec.trace import Trace
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ExampleOutcome:
     """How an example came out.
 
     ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
@@ -55,12 +55,12 @@ class ExampleRun:
 
     rulebook: Rulebook
     compiled: CompiledRulebook
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[ExampleOutcome, ...]
     warnings: tuple[Diagnostic, ...] = ()
     pattern: str | None = None
 
 
-def run_all(
+def run_rulebook_examples(
     rulebook: Rulebook,
     compiled: CompiledRulebook,
     warnings: tuple[Diagnostic, ...] = (),
@@ -89,7 +89,7 @@ def _is_like(pattern: str, rule: str, example: str) -> bool:
 
 def _outcome(
     rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
-) -> Outcome:
+) -> ExampleOutcome:
     """The verdict for the binding that gives every variable its own name."""
     trace = example_trace(rule, example)
     where = "this state".format
@@ -101,7 +101,7 @@ def _outcome(
     except ImpossibleStateError as error:
         raise _no_state(rule, example, error) from None
     ends = compiled.semantics == "finite"
-    return Outcome(rule, example, number, word, *run(machine.machine, word), ends)
+    return ExampleOutcome(rule, example, number, word, *run(machine.machine, word), ends)
 
 
 def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:
@@ -134,7 +134,7 @@ def own_names(rule: Rule) -> dict[str, str]:
     return {variable.name: variable.name for variable in rule.variables}
 
 
-def surprises(
+def example_warnings(
     rulebook: Rulebook, compiled: Callable[[Sequence[Rule]], CompiledRulebook]
 ) -> list[Diagnostic]:
     """The warnings about all such examples; ``compiled`` compiles rules for their examples' steps.
@@ -145,11 +145,11 @@ def surprises(
     rules = tuple(
         [one for one in rulebook.rules if one.examples or not speaks_of_seconds(one.formula)]
     )
-    outcomes = run_all(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [surprise(one) for one in outcomes if not one.passed]
+    outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
+    return [example_warning(one) for one in outcomes if not one.passed]
 
 
-def surprise(outcome: Outcome) -> Diagnostic:
+def example_warning(outcome: ExampleOutcome) -> Diagnostic:
     """The warning (R0406) about an example that comes out otherwise than it says."""
     rule, example = outcome.rule, outcome.example
     name = f"`{example.label}`" if example.label else f"number {outcome.number}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.book_tests.example_runs import ExampleRun, Outcome
+from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Rule
@@ -20,7 +20,7 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
     """
     if run.pattern is not None:
         return
-    of_rule: dict[int, list[Outcome]] = {id(rule): [] for rule in run.rulebook.rules}
+    of_rule: dict[int, list[ExampleOutcome]] = {id(rule): [] for rule in run.rulebook.rules}
     for one in run.outcomes:
         of_rule[id(one.rule)].append(one)
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):

@@ -1,1 +1,1 @@
-"""TODO witnesses."""
+"""States, traces and counterexamples synthesised from what monitors read."""

@@ -13,10 +13,10 @@ from rulec.logic.formula import Count, Formula, Quantity
 from rulec.logic.free_names import variables_of
 from rulec.witnesses.letter_functions import body_of, speaks_of_extra, truths_of
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
-from rulec.witnesses.state_synthesis import JointState, Key, Value, numbers_for, value_of
+from rulec.witnesses.state_synthesis import JointState, Subject, Value, solve_numbers, value_of
 from rulec.witnesses.undecided import UndecidedError
 
-MOST_COMPANY = 40
+MOST_COUNTED_OBJECTS = 40
 """So many objects can be there besides those that rules speak of."""
 
 MOST_TRIED = 20_000
@@ -28,27 +28,27 @@ class CountedObject:
 
     type: str
     adds: tuple[int, ...]
-    values: Mapping[Key, Value]
+    values: Mapping[Subject, Value]
 
 
-Company = tuple[CountedObject, ...]
+CountedObjects = tuple[CountedObject, ...]
 
 
-def company_for(situation: JointState, scene: ObjectUniverse) -> Company | None:
+def fewest_counted_objects(situation: JointState, scene: ObjectUniverse) -> CountedObjects | None:
     """As few further objects as make the counts come out; None if none do."""
     counts = _wanted(situation)
     if not counts:
         return ()
-    kinds = kinds_of(situation, scene)
+    kinds = object_kinds(situation, scene)
     enough = [_enough(count, situation) for count in counts]
     start = tuple(dict(situation.counted)[count] for count in counts)
-    waiting: list[tuple[tuple[int, ...], Company]] = [(start, ())]
+    waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(start, ())]
     seen = {start}
     for sums, company in waiting:
         if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
             return company
-        if len(company) == MOST_COMPANY:
-            raise UndecidedError(f"it takes more than {MOST_COMPANY} objects to be counted")
+        if len(company) == MOST_COUNTED_OBJECTS:
+            raise UndecidedError(f"it takes more than {MOST_COUNTED_OBJECTS} objects to be counted")
         for kind in kinds:
             after = tuple(
                 min(a + b, most) for a, b, most in zip(sums, kind.adds, enough, strict=True)
@@ -61,16 +61,16 @@ def company_for(situation: JointState, scene: ObjectUniverse) -> Company | None:
     return None
 
 
-def company_of(
+def counted_objects_of_types(
     situation: JointState, scene: ObjectUniverse, types: Sequence[str]
-) -> Company | None:
+) -> CountedObjects | None:
     """One companion of each of these types, so that the counts come out; None if they cannot."""
     counts = _wanted(situation)
-    kinds = kinds_of(situation, scene, types) if types else []
+    kinds = object_kinds(situation, scene, types) if types else []
     start = tuple(dict(situation.counted)[count] for count in counts)
-    reached: dict[tuple[int, ...], Company] = {start: ()}
+    reached: dict[tuple[int, ...], CountedObjects] = {start: ()}
     for wanted in types:
-        following: dict[tuple[int, ...], Company] = {}
+        following: dict[tuple[int, ...], CountedObjects] = {}
         for sums, company in reached.items():
             for kind in kinds:
                 if kind.type == wanted:
@@ -89,7 +89,7 @@ def _enough(count: Count, situation: JointState) -> int:
     for read, _ in situation.sides:
         if any(term == count for _, term in read.terms):
             if len(read.terms) > 1:
-                return MOST_COMPANY + 1
+                return MOST_COUNTED_OBJECTS + 1
             most = max(most, *(ceil(one.limit) + 1 for one in read.thresholds))
     return most
 
@@ -115,7 +115,7 @@ def _comes_out(situation: JointState, scene: ObjectUniverse, counted: Mapping[Co
     return True
 
 
-def kinds_of(
+def object_kinds(
     situation: JointState, scene: ObjectUniverse, types: Sequence[str] = ()
 ) -> list[CountedObject]:
     """What a further object could be, as far as the counts tell; the most general types first.
@@ -182,9 +182,9 @@ def _digit(read: Read | NumberRead, situation: JointState, scene: ObjectUniverse
 
 def _said(
     digits: Sequence[tuple[Read | NumberRead, int]], situation: JointState, scene: ObjectUniverse
-) -> dict[Key, Value] | None:
+) -> dict[Subject, Value] | None:
     """What a state says of the object so that the reads come out so; None if it cannot."""
-    values: dict[Key, Value] = {}
+    values: dict[Subject, Value] = {}
     sides = []
     for read, digit in digits:
         if not speaks_of_extra(read):
@@ -194,7 +194,7 @@ def _said(
         else:
             sides.append((_given(read, situation, scene), digit))
     if sides:
-        numbers = numbers_for(sides, scene.vocabulary, {})
+        numbers = solve_numbers(sides, scene.vocabulary, {})
         if numbers is None:
             return None
         for term, number in numbers.items():

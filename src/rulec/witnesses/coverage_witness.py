@@ -63,7 +63,7 @@ def truths(comparison: Comparison, machine: MealyMonitor) -> set[bool]:
     }
 
 
-def wanted(
+def coverage_witness(
     letter: int,
     machine: MealyMonitor,
     formula: Formula,

@@ -16,7 +16,7 @@ _MOST_PLACES = 9
 
 
 @dataclass(frozen=True, slots=True)
-class Bounded:
+class LinearBound:
     """``sum of coefficients * unknowns <= limit``, or ``<`` if ``strict``."""
 
     coefficients: Mapping[Term, Fraction]
@@ -25,7 +25,7 @@ class Bounded:
 
 
 def solve(
-    system: Sequence[Bounded],
+    system: Sequence[LinearBound],
     unknowns: Sequence[Term],
     preferred: Mapping[Term, Fraction],
     whole: frozenset[Term] = frozenset(),
@@ -42,7 +42,7 @@ def solve(
     Returns:
         A number for each unknown; None if there are none, or none that short decimals write.
     """
-    stages: list[tuple[Term, list[Bounded]]] = []
+    stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)
     for name in unknowns:
         stages.append((name, [one for one in rest if one.coefficients.get(name)]))
@@ -58,7 +58,7 @@ def solve(
     return found
 
 
-def _without(name: Term, system: Sequence[Bounded]) -> list[Bounded]:
+def _without(name: Term, system: Sequence[LinearBound]) -> list[LinearBound]:
     """What the inequalities say about the other unknowns."""
     rest = [one for one in system if not one.coefficients.get(name)]
     above = [one for one in system if one.coefficients.get(name, 0) > 0]
@@ -74,13 +74,13 @@ def _without(name: Term, system: Sequence[Bounded]) -> list[Bounded]:
             }
             sums = {other: size for other, size in sums.items() if size}
             limit = upper.limit / up + lower.limit / low
-            rest.append(Bounded(sums, limit, upper.strict or lower.strict))
+            rest.append(LinearBound(sums, limit, upper.strict or lower.strict))
     return rest
 
 
 def _choose(
     name: Term,
-    about: Sequence[Bounded],
+    about: Sequence[LinearBound],
     found: Mapping[Term, Fraction],
     preferred: Fraction | None,
     *,

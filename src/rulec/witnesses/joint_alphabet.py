@@ -7,15 +7,20 @@ from heapq import heappop, heappush
 
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.formula import Count
-from rulec.witnesses.counted_objects import company_for
+from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
-from rulec.witnesses.letter_functions import LetterFunction, count_column, fact_column
+from rulec.witnesses.letter_functions import LetterFunction, axiom_function, count_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.state_synthesis import JointState, numbers_for, situation, usual_digit
+from rulec.witnesses.state_synthesis import (
+    JointState,
+    default_digit,
+    solve_numbers,
+    synthesize_state,
+)
 from rulec.witnesses.undecided import UndecidedError
 
-Symbol = tuple[int, ...]
+JointLetter = tuple[int, ...]
 """For each machine the class of the letter that it reads."""
 
 MOST_SYMBOLS = 20_000
@@ -25,7 +30,7 @@ Steps = tuple["tuple[int, int]", "Steps"] | None
 """The digits chosen on a way through the diagrams, the first one first."""
 
 
-class Alphabet:
+class JointAlphabet:
     """The symbols that machines can read together, each with a plain state in which they do.
 
     States are those that the scene's facts allow; numbers fit together, and there can be as many
@@ -34,8 +39,8 @@ class Alphabet:
 
     def __init__(self, scene: ObjectUniverse, machines: Sequence[LetterFunction]) -> None:
         self._scene = scene
-        axioms = [fact_column(one, scene.vocabulary) for one in scene.fact_formulas()]
-        self._counts = [count_column(one, scene) for one in _counts((*machines, *axioms))]
+        axioms = [axiom_function(one, scene.vocabulary) for one in scene.fact_formulas()]
+        self._counts = [count_function(one, scene) for one in _counts((*machines, *axioms))]
         columns = [*machines, *(one.column for one in self._counts), *axioms]
         self._joint = joint_reads(columns, scene.vocabulary)
         self._n_machines = len(machines)
@@ -46,9 +51,9 @@ class Alphabet:
             self._diagrams.of(column, views)
             for column, views in zip(columns, self._joint.views, strict=True)
         ]
-        self._usual = [usual_digit(read, scene.vocabulary) for read in self._joint.reads]
-        self._plain: dict[tuple[int, ...], dict[Symbol, tuple[int, Steps]]] = {}
-        found: dict[Symbol, list[tuple[int, int, Steps, Symbol]]] = {}
+        self._usual = [default_digit(read, scene.vocabulary) for read in self._joint.reads]
+        self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
+        found: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
         number = 0
         for sides, ways in self._numbered(self._cleared(roots), ()):
             cost = sum(self._cost(level, digit) for level, digit in sides)
@@ -62,14 +67,14 @@ class Alphabet:
                 )
             if len(found) > MOST_SYMBOLS:
                 raise UndecidedError("too many different states of the world have to be told apart")
-        self.situations: Mapping[Symbol, JointState] = {
+        self.situations: Mapping[JointLetter, JointState] = {
             symbol: best
             for symbol, candidates in found.items()
             if (best := self._best(candidates)) is not None
         }
 
     @property
-    def symbols(self) -> list[Symbol]:
+    def symbols(self) -> list[JointLetter]:
         """All that can be read."""
         return list(self.situations)
 
@@ -97,7 +102,7 @@ class Alphabet:
 
     def _numbered(
         self, nodes: tuple[int, ...], sides: tuple[tuple[int, int], ...]
-    ) -> Iterator[tuple[tuple[tuple[int, int], ...], Mapping[Symbol, tuple[int, Steps]]]]:
+    ) -> Iterator[tuple[tuple[tuple[int, int], ...], Mapping[JointLetter, tuple[int, Steps]]]]:
         """All ways for sums to come out, and what is then left to be read."""
         if not nodes:
             return
@@ -118,16 +123,16 @@ class Alphabet:
         known = {term for read, _ in others for _, term in read.terms}
         if known.isdisjoint(term for _, term in last.terms):
             return True
-        return numbers_for(numbers, self._scene.vocabulary, {}) is not None
+        return solve_numbers(numbers, self._scene.vocabulary, {}) is not None
 
-    def _ways(self, nodes: tuple[int, ...]) -> Mapping[Symbol, tuple[int, Steps]]:
+    def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
         """For all that can be read the plainest way to get there."""
         if nodes in self._plain:
             return self._plain[nodes]
         if len(self._plain) > MOST_NODES:
             raise UndecidedError("too many different states of the world have to be told apart")
         level = self._level(nodes)
-        found: dict[Symbol, tuple[int, Steps]] = {}
+        found: dict[JointLetter, tuple[int, Steps]] = {}
         if level is None:
             found[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
@@ -142,7 +147,7 @@ class Alphabet:
         self._plain[nodes] = found
         return found
 
-    def _best(self, candidates: list[tuple[int, int, Steps, Symbol]]) -> JointState | None:
+    def _best(self, candidates: list[tuple[int, int, Steps, JointLetter]]) -> JointState | None:
         while candidates:
             _, _, steps, classes = heappop(candidates)
             digits = []
@@ -153,8 +158,8 @@ class Alphabet:
                 (one.count, one.counted[which])
                 for one, which in zip(self._counts, classes, strict=True)
             )
-            found = situation(self._scene, digits, counted)
-            if found is not None and company_for(found, self._scene) is not None:
+            found = synthesize_state(self._scene, digits, counted)
+            if found is not None and fewest_counted_objects(found, self._scene) is not None:
                 return found
         return None
 

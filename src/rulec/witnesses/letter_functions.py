@@ -41,7 +41,7 @@ class LetterFunction:
     letters: tuple[int, ...]
 
 
-def machine_column(
+def monitor_function(
     machine: MealyMonitor, names: Mapping[str, str], scene: ObjectUniverse
 ) -> LetterFunction:
     """A rule's machine for a binding of its variables."""
@@ -65,7 +65,7 @@ def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
     return Count(term.variable, term.type, renamed(term.body, names))
 
 
-def fact_column(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
+def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
     """Class 1 where the formula of one state holds, else 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
     return LetterFunction(
@@ -85,7 +85,7 @@ class CountFunction:
     counted: tuple[int, ...]
 
 
-def count_column(count: Count, scene: ObjectUniverse) -> CountFunction:
+def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
     """The column of a count. Raises UndecidedError for a count in which others stand."""
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")

@@ -24,7 +24,7 @@ from rulec.logic.formula import (
 )
 from rulec.rulebook.model import ExampleState
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.fourier_motzkin import Bounded, solve
+from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
 Facts = dict[tuple[str, tuple[str, ...]], bool | str | float]
 """What a state says, while it is being made up."""
@@ -135,7 +135,7 @@ class Witnesses:
         quantities = [term for term in terms if isinstance(term, Quantity)]
         system = [one for read, digit in numbers for one in bounds_of(read, digit)]
         system += [
-            Bounded({count: Fraction(-1)}, Fraction(-self._at_least(count, facts)))
+            LinearBound({count: Fraction(-1)}, Fraction(-self._at_least(count, facts)))
             for count in counts
         ]
         preferred: dict[Term, Fraction] = {
@@ -145,7 +145,7 @@ class Witnesses:
             and not isinstance(default, str)
         }
         # Most quantities are nothing below zero, though nobody has said so.
-        natural = [Bounded({term: Fraction(-1)}, Fraction(0)) for term in quantities]
+        natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
         order: list[Term] = [*quantities, *counts]
         whole: frozenset[Term] = frozenset(counts)
         return solve([*system, *natural], order, preferred, whole) or solve(
@@ -165,16 +165,16 @@ def _distance(one: tuple[int, ...], other: tuple[int, ...]) -> int:
     return sum(a != b for a, b in zip(one, other, strict=True))
 
 
-def bounds_of(read: NumberRead, digit: int) -> Iterator[Bounded]:
+def bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
     """What a digit says of the sum that is read."""
     terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
     if digit > 0:
         passed = read.thresholds[digit - 1]
         below = {term: -coefficient for term, coefficient in terms.items()}
-        yield Bounded(below, -passed.limit, strict=not passed.inclusive)
+        yield LinearBound(below, -passed.limit, strict=not passed.inclusive)
     if digit < len(read.thresholds):
         ahead = read.thresholds[digit]
-        yield Bounded(terms, ahead.limit, strict=ahead.inclusive)
+        yield LinearBound(terms, ahead.limit, strict=ahead.inclusive)
 
 
 def value_in_state(formula: Formula, names: Mapping[str, str], facts: ExampleState) -> bool | None:

@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.witnesses.joint_alphabet import Symbol
+from rulec.witnesses.joint_alphabet import JointLetter
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_STATES = 50_000
 MOST_STEPS = 3_000_000
 """What a search may look at: joint states, and steps from one to another."""
 
-Node = tuple[int, ...]
+ProductState = tuple[int, ...]
 
 
-def shortest(
-    machines: Sequence[MealyMonitor], wanted: Sequence[bool], symbols: Sequence[Symbol]
-) -> tuple[Symbol, ...] | None:
+def shortest_word(
+    machines: Sequence[MealyMonitor], wanted: Sequence[bool], symbols: Sequence[JointLetter]
+) -> tuple[JointLetter, ...] | None:
     """A shortest word, not empty, with these verdicts, in breadth-first order; None if none has.
 
     Raises UndecidedError where there is too much to search.
     """
-    start: Node = (0,) * len(machines)
-    came: dict[Node, tuple[Node, Symbol] | None] = {start: None}
+    start: ProductState = (0,) * len(machines)
+    came: dict[ProductState, tuple[ProductState, JointLetter] | None] = {start: None}
     waiting = [start]
     lost = [
         one.accepting_sink if verdict is False else one.rejecting_sink
@@ -56,8 +56,10 @@ def _pairs(
     return zip(machines, wanted, strict=True)
 
 
-def _way(node: Node, came: dict[Node, tuple[Node, Symbol] | None]) -> tuple[Symbol, ...]:
-    word: list[Symbol] = []
+def _way(
+    node: ProductState, came: dict[ProductState, tuple[ProductState, JointLetter] | None]
+) -> tuple[JointLetter, ...]:
+    word: list[JointLetter] = []
     step = came[node]
     while step is not None:
         node, symbol = step

@@ -12,16 +12,16 @@ from rulec.automata.thresholds import exact
 from rulec.logic.formula import Count, Quantity, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
-from rulec.witnesses.fourier_motzkin import Bounded, solve
+from rulec.witnesses.fourier_motzkin import LinearBound, solve
 from rulec.witnesses.letter_witness import bounds_of
 from rulec.witnesses.object_universe import ObjectUniverse
 
-Key = tuple[str, tuple[str, ...]]
+Subject = tuple[str, tuple[str, ...]]
 """A declaration and the objects that it is asked about."""
 
 Value = bool | str | float
 
-Sides = tuple[tuple[NumberRead, int], ...]
+NumberDigits = tuple[tuple[NumberRead, int], ...]
 """Sums, and how many of its thresholds each passes."""
 
 
@@ -32,14 +32,14 @@ class JointState:
     ``sides`` are the sums that decide, ``counted`` is how many of the scene's own objects count.
     """
 
-    values: Mapping[Key, Value]
-    sides: Sides
+    values: Mapping[Subject, Value]
+    sides: NumberDigits
     counted: tuple[tuple[Count, int], ...]
 
-    def value(self, key: Key, vocabulary: Vocabulary) -> Value:
+    def value(self, key: Subject, vocabulary: Vocabulary) -> Value:
         """What decides, or the usual value."""
         found = self.values.get(key)
-        return usual(vocabulary.declarations[key[0]]) if found is None else found
+        return default_value(vocabulary.declarations[key[0]]) if found is None else found
 
     def number(self, term: Quantity, vocabulary: Vocabulary) -> Fraction:
         """The value of a quantity."""
@@ -48,17 +48,17 @@ class JointState:
         return exact(value)
 
 
-def situation(
+def synthesize_state(
     scene: ObjectUniverse,
     digits: Sequence[tuple[Read | NumberRead, int]],
     counted: tuple[tuple[Count, int], ...],
 ) -> JointState | None:
     """A state in which the reads come out as these digits; None if there is none."""
     sides = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
-    numbers = numbers_for(sides, scene.vocabulary, dict(counted)) if sides else {}
+    numbers = solve_numbers(sides, scene.vocabulary, dict(counted)) if sides else {}
     if numbers is None:
         return None
-    values: dict[Key, Value] = {
+    values: dict[Subject, Value] = {
         (read.name, read.variables): value_of(read, digit, scene.vocabulary)
         for read, digit in digits
         if isinstance(read, Read)
@@ -69,7 +69,7 @@ def situation(
     return JointState(values, sides, counted)
 
 
-def numbers_for(
+def solve_numbers(
     sides: Sequence[tuple[NumberRead, int]],
     vocabulary: Vocabulary,
     least: Mapping[Count, int],
@@ -79,14 +79,16 @@ def numbers_for(
     counts = [term for term in terms if isinstance(term, Count)]
     quantities = [term for term in terms if isinstance(term, Quantity)]
     system = [one for read, digit in sides for one in bounds_of(read, digit)]
-    system += [Bounded({count: Fraction(-1)}, Fraction(-least.get(count, 0))) for count in counts]
+    system += [
+        LinearBound({count: Fraction(-1)}, Fraction(-least.get(count, 0))) for count in counts
+    ]
     preferred: dict[Term, Fraction] = {}
     for term in quantities:
         default = vocabulary.declarations[term.name].default
         if isinstance(default, int | float):
             preferred[term] = exact(default)
     # Most quantities are nothing below zero, though nobody has said so.
-    natural = [Bounded({term: Fraction(-1)}, Fraction(0)) for term in quantities]
+    natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
     order: list[Term] = [*quantities, *counts]
     whole: frozenset[Term] = frozenset(counts)
     found = solve([*system, *natural], order, preferred, whole)
@@ -105,7 +107,7 @@ def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
     return next(value for value in declaration.values if value not in read.values)
 
 
-def usual(declaration: Declaration) -> Value:
+def default_value(declaration: Declaration) -> Value:
     """The value of what nobody asks about."""
     if declaration.default is not None:
         return declaration.default
@@ -114,7 +116,7 @@ def usual(declaration: Declaration) -> Value:
     return 0.0 if isinstance(declaration, DeclaredQuantity) else False
 
 
-def usual_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
+def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
     """The digit of what a state need not mention; None if there is none."""
     if isinstance(read, Read):
         default = vocabulary.declarations[read.name].default
@@ -131,7 +133,7 @@ def usual_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
 
 def keys_of(
     vocabulary: Vocabulary, objects: Mapping[str, str]
-) -> Iterator[tuple[Key, Declaration]]:
+) -> Iterator[tuple[Subject, Declaration]]:
     """All that a state could say of these objects, an object and itself included."""
     for name, declaration in vocabulary.declarations.items():
         fitting = [

@@ -11,13 +11,13 @@ from typing import Any
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.witnesses.counted_objects import company_for, company_of
+from rulec.witnesses.counted_objects import counted_objects_of_types, fewest_counted_objects
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
-from rulec.witnesses.state_synthesis import JointState, Key, Value, keys_of, usual
+from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, keys_of
 from rulec.witnesses.undecided import UndecidedError
 
 
-def staged(
+def synthesize_trace(
     situations: Sequence[JointState],
     scene: ObjectUniverse,
     step_s: Fraction,
@@ -27,12 +27,12 @@ def staged(
 
     Raises UndecidedError if the objects that are there to be counted are in the way.
     """
-    types = _types([company_for(one, scene) or () for one in situations])
+    types = _types([fewest_counted_objects(one, scene) or () for one in situations])
     names = _names(types, scene.objects)
     everyone = {**scene.objects, **dict(zip(names, types, strict=True))}
-    states: list[dict[Key, Value]] = []
+    states: list[dict[Subject, Value]] = []
     for one in situations:
-        company = company_of(one, scene, types)
+        company = counted_objects_of_types(one, scene, types)
         if company is None:
             raise UndecidedError("objects to be counted in one state are in the way in another")
         values = dict(one.values)
@@ -90,7 +90,7 @@ def _fills(scene: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str,
 
 
 def _written(
-    values: Mapping[Key, Value],
+    values: Mapping[Subject, Value],
     scene: ObjectUniverse,
     everyone: Mapping[str, str],
     fill: Mapping[str, Value],
@@ -102,7 +102,7 @@ def _written(
         if value is None and name in scene.unsaid:
             continue
         if value is None:
-            value = fill.get(name, usual(declaration))
+            value = fill.get(name, default_value(declaration))
         if value == declaration.default and type(value) is type(declaration.default):
             continue
         inside = state
@@ -113,7 +113,7 @@ def _written(
     return state
 
 
-def alone(
+def single_rule_rulebook(
     rulebook: CompiledRulebook, rule: CompiledRule, scene: ObjectUniverse
 ) -> CompiledRulebook:
     """A rulebook of one rule, for traces in the words of a scene."""

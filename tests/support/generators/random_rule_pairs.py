@@ -6,7 +6,7 @@ from itertools import permutations, product
 
 from hypothesis import strategies as st
 
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -101,7 +101,7 @@ def sides(formulas, variables=(), semantics=("stutter", "stutter"), axioms=()):
         book = Rulebook(f"book{number}", VOCABULARY, (rule,), semantics=how, axioms=axioms)
         compiled = compile_here(book)
         header = replace(compiled, rules=())
-        found.append(Side(header, axioms, compiled.rules[0], number))
+        found.append(AnalyzedRule(header, axioms, compiled.rules[0], number))
     return found
 
 

@@ -1,1 +1,1 @@
-"""TODO analysis/audit."""
+"""Audit what a rulebook rests on: sources, examples, gaps."""

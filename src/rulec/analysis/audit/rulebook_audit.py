@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
-from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance
-from rulec.analysis.vocabulary_use import words_used
+from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
+from rulec.analysis.vocabulary_use import used_declarations
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.syntax import tree
@@ -21,7 +21,7 @@ from rulec.syntax.printer import print_in_force
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class AuditFinding:
     """Something to know about a rule, an article, a topic, a parameter or a word, by its name."""
 
     kind: str
@@ -30,7 +30,7 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True)
-class Article:
+class CitedArticle:
     """A provision as rules cite it, and the rules that do.
 
     ``book`` is the rulebook whose law it is in: that of the chain which cites it.
@@ -42,7 +42,7 @@ class Article:
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class AuditCounts:
     """How much there is of everything; rules are those in force."""
 
     rules: int = 0
@@ -66,21 +66,21 @@ class Audit:
     law: str
     as_of: str
     at: str
-    counts: Counts
-    articles: tuple[Article, ...]
-    findings: tuple[Finding, ...]
+    counts: AuditCounts
+    articles: tuple[CitedArticle, ...]
+    findings: tuple[AuditFinding, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
+class AuditChanges:
     """What an audit finds that an older one did not, and the other way around."""
 
-    appeared: tuple[Finding, ...] = ()
-    vanished: tuple[Finding, ...] = ()
+    appeared: tuple[AuditFinding, ...] = ()
+    vanished: tuple[AuditFinding, ...] = ()
 
 
 def audit(
-    rulebook: Rulebook, inherited: Inheritance, failing: Sequence[tuple[str, str]] = ()
+    rulebook: Rulebook, inherited: BookLineage, failing: Sequence[tuple[str, str]] = ()
 ) -> Audit:
     """The audit of a rulebook.
 
@@ -90,15 +90,15 @@ def audit(
         failing: the examples that fail, if they were run: rule and label or number.
     """
     articles = articles_of(rulebook.rules, inherited)
-    used = words_used(rulebook)
+    used = used_declarations(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
     findings = [
         *(one for rule in rulebook.rules for one in _of_rule(rule)),
-        *(Finding("failing", rule, f"example {name}") for rule, name in failing),
+        *(AuditFinding("failing", rule, f"example {name}") for rule, name in failing),
         *_soft_only(articles, rulebook),
         *_history(inherited, rulebook.at),
         *(one for item in inherited.provisions for one in _of_provision(item)),
-        *(Finding("unused", name) for name in words if name not in used),
+        *(AuditFinding("unused", name) for name in words if name not in used),
     ]
     order = list(KINDS)
     return Audit(
@@ -113,17 +113,17 @@ def audit(
     )
 
 
-def changes(now: Audit, before: Audit) -> Changes:
+def audit_changes(now: Audit, before: Audit) -> AuditChanges:
     """What has come and gone between two audits; notes do not count."""
     known = {(one.kind, one.name) for one in before.findings}
     still = {(one.kind, one.name) for one in now.findings}
-    return Changes(
+    return AuditChanges(
         tuple(one for one in now.findings if (one.kind, one.name) not in known),
         tuple(one for one in before.findings if (one.kind, one.name) not in still),
     )
 
 
-def compared(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, Changes]:
+def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, AuditChanges]:
     """Rulebook -> what has changed, against its own older audit or the only one that there is.
 
     To a rulebook that has no older audit everything is new.
@@ -132,12 +132,12 @@ def compared(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, Chang
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
     pairs = ((one, by_name.get(one.rulebook, only)) for one in audits)
     return {
-        now.rulebook: Changes(now.findings) if before is None else changes(now, before)
+        now.rulebook: AuditChanges(now.findings) if before is None else audit_changes(now, before)
         for now, before in pairs
     }
 
 
-def articles_of(rules: Sequence[Rule], inherited: Inheritance) -> tuple[Article, ...]:
+def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArticle, ...]:
     """The provisions that rules cite: the rulebook's own law first, then that of each base.
 
     Numbers in them are in the order of numbers.
@@ -149,7 +149,7 @@ def articles_of(rules: Sequence[Rule], inherited: Inheritance) -> tuple[Article,
         if rule.cite:
             found.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
     ordered = sorted(found, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
-    return tuple(Article(*one, tuple(found[one])) for one in ordered)
+    return tuple(CitedArticle(*one, tuple(found[one])) for one in ordered)
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
@@ -158,10 +158,10 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
     return [(one.isdigit(), int(one), "") if one.isdigit() else (False, 0, one) for one in parts]
 
 
-def _counts(rulebook: Rulebook, articles: Sequence[Article], n_used: int) -> Counts:
+def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -> AuditCounts:
     rules = rulebook.rules
     n_hard = sum(rule.strength == "hard" for rule in rules)
-    return Counts(
+    return AuditCounts(
         len(rules),
         n_hard,
         len(rules) - n_hard,
@@ -185,44 +185,44 @@ def _lacks(rule: Rule) -> str:
     return f"no example that it {' or '.join(missing)}" if missing else ""
 
 
-def _of_rule(rule: Rule) -> Iterator[Finding]:
+def _of_rule(rule: Rule) -> Iterator[AuditFinding]:
     if not rule.cite:
-        yield Finding("uncited", rule.name, rule.says)
+        yield AuditFinding("uncited", rule.name, rule.says)
     if _lacks(rule):
-        yield Finding("untested", rule.name, _lacks(rule))
+        yield AuditFinding("untested", rule.name, _lacks(rule))
     if rule.certainty != "verified":
-        yield Finding(rule.certainty or "unstated", rule.name, rule.source)
+        yield AuditFinding(rule.certainty or "unstated", rule.name, rule.source)
     if rule.in_force_from or rule.in_force_until:
         dates = tree.InForce(rule.in_force_from, rule.in_force_until)
-        yield Finding("dated", rule.name, print_in_force(dates))
+        yield AuditFinding("dated", rule.name, print_in_force(dates))
 
 
-def _soft_only(articles: Sequence[Article], rulebook: Rulebook) -> Iterator[Finding]:
+def _soft_only(articles: Sequence[CitedArticle], rulebook: Rulebook) -> Iterator[AuditFinding]:
     hard = {rule.name for rule in rulebook.rules if rule.strength == "hard"}
     for article in articles:
         if hard.isdisjoint(article.rules):
-            yield Finding("soft-only", article.cite, ", ".join(article.rules))
+            yield AuditFinding("soft-only", article.cite, ", ".join(article.rules))
 
 
-def _history(inherited: Inheritance, at: str) -> Iterator[Finding]:
+def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
     for one in inherited.rules:
         last = one.last
         if last.deed in ("dropped", "silent"):
-            yield Finding(last.deed, one.name, last.because)
+            yield AuditFinding(last.deed, one.name, last.because)
         if one.rule is None:
             continue
         softened = [
             step for step in one.steps if step.deed == "softened" and HARDNESS in step.clauses
         ]
         if softened and one.rule.strength == "soft":
-            yield Finding("softened", one.name, softened[-1].because)
+            yield AuditFinding("softened", one.name, softened[-1].because)
         if one.rule.in_force is not None and not in_force(one.rule.in_force, at):
-            yield Finding("out-of-force", one.name, print_in_force(one.rule.in_force))
+            yield AuditFinding("out-of-force", one.name, print_in_force(one.rule.in_force))
 
 
-def _of_provision(item: ConstantHistory) -> Iterator[Finding]:
+def _of_provision(item: ConstantHistory) -> Iterator[AuditFinding]:
     """Of a parameter the value that counts, if it counts for a time only."""
     for one in item.settings:
         if one.current and (one.since or one.until):
             dates = print_in_force(tree.InForce(one.since, one.until))
-            yield Finding("dated", item.name, f"{one.text} {dates}")
+            yield AuditFinding("dated", item.name, f"{one.text} {dates}")

@@ -1,1 +1,1 @@
-"""TODO analysis/diff."""
+"""Compare rules and rulebooks by what they forbid."""

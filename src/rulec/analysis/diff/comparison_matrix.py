@@ -9,12 +9,12 @@ from fractions import Fraction
 from itertools import permutations
 from string import ascii_uppercase
 
-from rulec.analysis.diff.rule_comparison import Relation, compare
-from rulec.analysis.diff.rulebook_comparison import chosen
-from rulec.analysis.shared_compilation import Distinct, Side, at_one_step
+from rulec.analysis.diff.rule_comparison import RuleRelation, compare
+from rulec.analysis.diff.rulebook_comparison import rules_matching
+from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
 from rulec.rulebook.model import Remark, Rule, Rulebook
 
-TURNED: Mapping[Relation, Relation] = {
+CONVERSE: Mapping[RuleRelation, RuleRelation] = {
     "equal": "equal",
     "stricter": "laxer",
     "laxer": "stricter",
@@ -25,7 +25,7 @@ TURNED: Mapping[Relation, Relation] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Shared:
+class SharedRule:
     """A rule as all rulebooks that have it say it.
 
     ``laws`` has for each rulebook that has the rule which law it is, ``rules`` the rule itself;
@@ -36,7 +36,7 @@ class Shared:
     name: str
     laws: Mapping[str, int]
     rules: Mapping[str, Rule]
-    relations: Mapping[tuple[int, int], Relation]
+    relations: Mapping[tuple[int, int], RuleRelation]
     remarks: Mapping[str, Remark]
 
     def letter(self, book: str) -> str:
@@ -47,7 +47,7 @@ class Shared:
         turns, rest = divmod(law, len(ascii_uppercase))
         return ascii_uppercase[rest] + (str(turns) if turns else "")
 
-    def relation(self, first: str, second: str) -> Relation | None:
+    def relation(self, first: str, second: str) -> RuleRelation | None:
         """What the first rulebook's rule is to the second one's; None if one of them has none."""
         if first not in self.laws or second not in self.laws:
             return None
@@ -55,14 +55,14 @@ class Shared:
 
 
 @dataclass(frozen=True, slots=True)
-class Matrix:
+class ComparisonMatrix:
     """Rulebooks, and all of their rules in the order in which they first come up."""
 
     books: tuple[Rulebook, ...]
-    rules: tuple[Shared, ...]
+    rules: tuple[SharedRule, ...]
 
     @property
-    def shared(self) -> tuple[Shared, ...]:
+    def shared(self) -> tuple[SharedRule, ...]:
         """The rules that two or more of the rulebooks have."""
         return tuple(rule for rule in self.rules if len(rule.laws) > 1)
 
@@ -93,17 +93,17 @@ class Matrix:
         return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
 
 
-def matrix(
+def comparison_matrix(
     books: Sequence[Rulebook],
     patterns: Sequence[str] = (),
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
-) -> Matrix:
+) -> ComparisonMatrix:
     """Compare every two of the rulebooks, rule by rule; the arguments are as for ``difference``.
 
     ``tell`` is told how much is done of ``steps``. Raises RulecError.
     """
-    ours = [chosen(book, patterns) for book in books]
+    ours = [rules_matching(book, patterns) for book in books]
     names = list(dict.fromkeys(name for rules in ours for name in rules))
     has = Counter(name for rules in ours for name in rules)
     stepped: list[dict[str, Rule]] = [{} for _ in books]
@@ -113,7 +113,7 @@ def matrix(
         for number, rule in zip(having, rules, strict=True):
             if has[name] > 1:
                 stepped[number][name] = rule
-    sides = Distinct(tell).sides(books, stepped)
+    sides = SharedCompiler(tell).sides(books, stepped)
     found = []
     for number, name in enumerate(names, 1):
         of_each = {
@@ -123,7 +123,7 @@ def matrix(
         # What only one of them has is its own law, whatever it is.
         laws = laws or {book.name: 0 for book, one in zip(books, ours, strict=True) if name in one}
         found.append(
-            Shared(
+            SharedRule(
                 name,
                 laws,
                 {
@@ -141,21 +141,21 @@ def matrix(
             )
         )
         tell(len(books) + number)
-    return Matrix(tuple(books), tuple(found))
+    return ComparisonMatrix(tuple(books), tuple(found))
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
     """How much there is to do, at most."""
-    return len(books) + len({name for book in books for name in chosen(book, patterns)})
+    return len(books) + len({name for book in books for name in rules_matching(book, patterns)})
 
 
 def _classified(
-    sides: Mapping[str, Side],
-) -> tuple[dict[str, int], dict[tuple[int, int], Relation]]:
+    sides: Mapping[str, AnalyzedRule],
+) -> tuple[dict[str, int], dict[tuple[int, int], RuleRelation]]:
     """Which law each rulebook's rule is, and how the laws stand to each other."""
     known: dict[int, int] = {}
-    representatives: list[Side] = []
-    relations: dict[tuple[int, int], Relation] = {}
+    representatives: list[AnalyzedRule] = []
+    relations: dict[tuple[int, int], RuleRelation] = {}
     laws: dict[str, int] = {}
     for book, side in sides.items():
         if side.law not in known:
@@ -165,7 +165,9 @@ def _classified(
 
 
 def _law(
-    side: Side, representatives: list[Side], relations: dict[tuple[int, int], Relation]
+    side: AnalyzedRule,
+    representatives: list[AnalyzedRule],
+    relations: dict[tuple[int, int], RuleRelation],
 ) -> int:
     """The law among those known that is the same, or a new one, compared to all of them."""
     found = {}
@@ -178,7 +180,7 @@ def _law(
     relations[own, own] = "equal"
     for number, relation in found.items():
         relations[own, number] = relation
-        relations[number, own] = TURNED[relation]
+        relations[number, own] = CONVERSE[relation]
     return own
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from rulec.analysis.counterexample import counterexample
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.thresholds import exact
 from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Unary, UnaryOperator
 from rulec.monitoring.state_view import value_in
@@ -27,7 +27,9 @@ MOST_SEARCHES = 12
 """So many times it is looked for another reason."""
 
 
-def reasons(one: Side, other: Side, first: Trace, most: int) -> tuple[Trace, ...]:
+def diverse_witnesses(
+    one: AnalyzedRule, other: AnalyzedRule, first: Trace, most: int
+) -> tuple[Trace, ...]:
     """Traces that the first rule forbids and the second one allows, each for another reason.
 
     Args:
@@ -38,7 +40,7 @@ def reasons(one: Side, other: Side, first: Trace, most: int) -> tuple[Trace, ...
     """
     vocabulary = one.rulebook.vocabulary
     found = [first]
-    shown = [unusual(first, vocabulary)]
+    shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
     asked: set[frozenset[str]] = set()
     while waiting and len(found) < most and len(asked) < MOST_SEARCHES:
@@ -51,14 +53,14 @@ def reasons(one: Side, other: Side, first: Trace, most: int) -> tuple[Trace, ...
             trace = _without(usual, one, other)
             if trace is None:
                 continue
-            known = unusual(trace, vocabulary)
+            known = non_default_names(trace, vocabulary)
             found.append(trace)
             shown.append(known)
         waiting.extend(usual | {name} for name in sorted(known))
     return tuple(found)
 
 
-def unusual(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
+def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     """The declarations with a default that the trace says something else of in some state."""
     return frozenset(
         name
@@ -71,7 +73,7 @@ def unusual(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     )
 
 
-def _without(names: frozenset[str], one: Side, other: Side) -> Trace | None:
+def _without(names: frozenset[str], one: AnalyzedRule, other: AnalyzedRule) -> Trace | None:
     try:
         return counterexample(one, [other], tuple(_as_usual(names, one.rulebook.vocabulary)))
     except UndecidedError:

@@ -8,14 +8,14 @@ from itertools import permutations
 from typing import Literal
 
 from rulec.analysis.counterexample import counterexample
-from rulec.analysis.diff.diverse_witnesses import reasons
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.diff.diverse_witnesses import diverse_witnesses
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.rulebook.model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.undecided import UndecidedError
 
-Relation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
+RuleRelation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
 """What the first rule is to the second one: stricter forbids all that the other does, and more."""
 
 
@@ -30,15 +30,15 @@ class RuleComparison:
     of more. ``undecided`` says why a question was left open.
     """
 
-    relation: Relation
+    relation: RuleRelation
     first_forbids: tuple[Trace, ...] = ()
     second_forbids: tuple[Trace, ...] = ()
     undecided: str = ""
     common: tuple[str, ...] = ()
-    on_common: Relation | None = None
+    on_common: RuleRelation | None = None
 
 
-def compare(one: Side, other: Side, most: int = 1) -> RuleComparison:
+def compare(one: AnalyzedRule, other: AnalyzedRule, most: int = 1) -> RuleComparison:
     """Compare two rules, both compiled for the same step if they have bounds in seconds.
 
     Either way ``most`` traces are looked for, each for a reason of its own.
@@ -53,19 +53,19 @@ def compare(one: Side, other: Side, most: int = 1) -> RuleComparison:
     return replace(found, common=common, on_common=_compare(narrow, narrower, 1).relation)
 
 
-def _compare(one: Side, other: Side, most: int) -> RuleComparison:
+def _compare(one: AnalyzedRule, other: AnalyzedRule, most: int) -> RuleComparison:
     try:
         first, second = counterexample(one, [other]), counterexample(other, [one])
     except UndecidedError as problem:
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
         relation_of(first, second),
-        () if first is None else reasons(one, other, first, most),
-        () if second is None else reasons(other, one, second, most),
+        () if first is None else diverse_witnesses(one, other, first, most),
+        () if second is None else diverse_witnesses(other, one, second, most),
     )
 
 
-def relation_of(first_forbids: object, second_forbids: object) -> Relation:
+def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
     """What the first rule is to the second, given what just one of them forbids, or None."""
     if first_forbids is None:
         return "equal" if second_forbids is None else "laxer"
@@ -94,7 +94,7 @@ def common_types(
     return None
 
 
-def _narrowed(side: Side, common: tuple[str, ...]) -> Side:
+def _narrowed(side: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
     """The rule for objects of these types alone."""
     variables = side.rule.variables
     for order in permutations(common):

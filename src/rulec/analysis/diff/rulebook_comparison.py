@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
 
-from rulec.analysis.counterexample import read_by
-from rulec.analysis.diff.rule_comparison import Relation, RuleComparison, compare
-from rulec.analysis.diff.shared_vocabulary import shared_words
-from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance, ProvisionKind
-from rulec.analysis.shared_compilation import Distinct, at_one_step
+from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
+from rulec.analysis.diff.shared_vocabulary import shared_vocabulary
+from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
+from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook
@@ -36,7 +36,7 @@ class RulePair:
         return self.first.name
 
     @property
-    def relation(self) -> Relation:
+    def relation(self) -> RuleRelation:
         """What the first one is to the second one."""
         return self.comparison.relation
 
@@ -65,7 +65,7 @@ class OneSided:
 class SettingPair:
     """An option or a parameter of both, with two values, as written and in force on the day."""
 
-    kind: ProvisionKind
+    kind: ConstantKind
     name: str
     first: str
     second: str
@@ -105,8 +105,8 @@ class RulebookDiff:
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
         """What one rulebook's rule forbids and the other's allows: both names, and the states."""
-        words = shared_words(self.first.vocabulary, self.second.vocabulary)
-        names = read_by(pair.machines[0]) | read_by(pair.machines[1])
+        words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
+        names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
         one, other = self.first.name, self.second.name
         for traces, forbids, allows in (
             (pair.comparison.first_forbids, one, other),
@@ -116,7 +116,7 @@ class RulebookDiff:
                 yield forbids, allows, trace_table(trace, names, words.vocabulary)
 
 
-def setting_pairs(one: Inheritance, other: Inheritance) -> tuple[SettingPair, ...]:
+def setting_pairs(one: BookLineage, other: BookLineage) -> tuple[SettingPair, ...]:
     """The options and parameters that both have with different values."""
     theirs = {each.name: each for each in other.provisions if each.kind != "definition"}
     found = []
@@ -132,7 +132,7 @@ def _value(provision: ConstantHistory) -> str:
     return next((one.text for one in provision.settings if one.current), "")
 
 
-def difference(
+def diff_rulebooks(
     first: Rulebook,
     second: Rulebook,
     patterns: Sequence[str] = (),
@@ -155,10 +155,10 @@ def difference(
     Raises:
         RulecError: if a rule cannot be compiled.
     """
-    ours, theirs = (chosen(book, patterns) for book in (first, second))
+    ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     shared = [name for name in ours if name in theirs]
     pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
-    sides = Distinct().sides(
+    sides = SharedCompiler().sides(
         (first, second),
         [{name: pairs[name][which] for name in shared} for which in (0, 1)],
     )
@@ -183,7 +183,7 @@ def difference(
     )
 
 
-def chosen(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
+def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
     """The rules of a rulebook by name; with patterns, those that one of them matches."""
     return {
         rule.name: rule

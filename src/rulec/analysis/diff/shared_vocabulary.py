@@ -9,7 +9,7 @@ from rulec.witnesses.undecided import UndecidedError
 
 
 @dataclass(frozen=True, slots=True)
-class SharedWords:
+class SharedVocabulary:
     """The words of both; the declarations that one lacks; names for what is not alike in both."""
 
     vocabulary: Vocabulary
@@ -17,7 +17,7 @@ class SharedWords:
     unlike: frozenset[str]
 
 
-def shared_words(one: Vocabulary, other: Vocabulary) -> SharedWords:
+def shared_vocabulary(one: Vocabulary, other: Vocabulary) -> SharedVocabulary:
     """The words of two vocabularies together.
 
     Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
@@ -37,4 +37,4 @@ def shared_words(one: Vocabulary, other: Vocabulary) -> SharedWords:
             declarations[name] = replace(known, default=None)
     not_shared = frozenset(one.declarations.keys() ^ other.declarations.keys())
     words = Vocabulary(one.name, types, declarations)
-    return SharedWords(words, not_shared, frozenset(unlike))
+    return SharedVocabulary(words, not_shared, frozenset(unlike))

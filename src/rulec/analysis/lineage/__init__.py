@@ -1,1 +1,1 @@
-"""TODO analysis/lineage."""
+"""Trace each rule and constant through the books that it was inherited from."""

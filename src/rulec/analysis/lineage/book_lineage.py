@@ -11,12 +11,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 
 from rulec.analysis.lineage.rule_lineage import (
+    BookHeader,
+    BookLineage,
     ConstantHistory,
-    Inheritance,
-    Member,
+    ConstantValue,
+    LineageStep,
     RuleHistory,
-    Setting,
-    Step,
 )
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.names.doc_comments import description
@@ -27,7 +27,7 @@ from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
 
 
-def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
+def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
     """What a chain of rulebooks without mistakes did with each rule and provision.
 
     Args:
@@ -36,12 +36,12 @@ def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
     """
     told = _Tale()
     for level, file in enumerate(chain):
-        book = member_of(file).name
+        book = book_header(file).name
         for item in file.items:
             told.take(item, book, level)
     used = _used(told)
-    return Inheritance(
-        tuple(map(member_of, chain)),
+    return BookLineage(
+        tuple(map(book_header, chain)),
         tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
         tuple(
             replace(_provision(name, one, at), used=name in used)
@@ -50,12 +50,12 @@ def inheritance(chain: Sequence[tree.File], at: str) -> Inheritance:
     )
 
 
-def read_with_inheritance(
+def read_with_lineage(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> tuple[Loaded, Inheritance]:
+) -> tuple[Loaded, BookLineage]:
     """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
     loaded = read_rulebook(reference, search_path, at)
-    return loaded, inheritance(loaded.books, loaded.rulebook.at)
+    return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
 
 
 def _used(told: _Tale) -> set[str]:
@@ -69,9 +69,9 @@ def _used(told: _Tale) -> set[str]:
     return found
 
 
-def member_of(file: tree.File) -> Member:
+def book_header(file: tree.File) -> BookHeader:
     """What a rulebook says of itself."""
-    return Member(
+    return BookHeader(
         file.name.text if file.name else "",
         file.title.text.value if file.title else "",
         file.law.text.value if file.law else "",
@@ -88,18 +88,18 @@ _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 class _Tale:
     """What has happened so far; of a provision with the book and its number in the chain."""
 
-    rules: dict[str, list[Step]] = field(default_factory=dict)
+    rules: dict[str, list[LineageStep]] = field(default_factory=dict)
     provisions: dict[str, list[tuple[_Given, str, int]]] = field(default_factory=dict)
 
     def take(self, item: tree.Item, book: str, level: int) -> None:
         match item:
             case tree.RuleItem(override=False):
-                self._note(item.name, Step(book, "declared", item))
+                self._note(item.name, LineageStep(book, "declared", item))
             case tree.RuleItem():
                 before = self._rule(item.name)
                 after = merged(before, item)
                 changed = tuple(changed_clauses(before, after))
-                self._note(item.name, Step(book, "overridden", after, changed))
+                self._note(item.name, LineageStep(book, "overridden", after, changed))
             case tree.SoftenItem(name, level_name, weight, because):
                 before = self._rule(name)
                 after = replace(
@@ -110,17 +110,17 @@ class _Tale:
                 )
                 changed = tuple(changed_clauses(before, after))
                 why = because.value if because else ""
-                self._note(name, Step(book, "softened", after, changed, why))
+                self._note(name, LineageStep(book, "softened", after, changed, why))
             case tree.DropItem(name, because):
-                self._note(name, Step(book, "dropped", None, (), because.value))
+                self._note(name, LineageStep(book, "dropped", None, (), because.value))
             case tree.SilentItem(name, because):
-                self._note(name, Step(book, "silent", None, (), because.value))
+                self._note(name, LineageStep(book, "silent", None, (), because.value))
             case tree.OptionItem() | tree.ParamItem() | tree.SetItem() | tree.DefineItem():
                 self.provisions.setdefault(item.name.text, []).append((item, book, level))
             case _:
                 return
 
-    def _note(self, name: tree.Name, step: Step) -> None:
+    def _note(self, name: tree.Name, step: LineageStep) -> None:
         self.rules.setdefault(name.text, []).append(step)
 
     def _rule(self, name: tree.Name) -> tree.RuleItem:
@@ -161,7 +161,7 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
     first = given[0][0]
     current = _current(given, at)
     settings = tuple(
-        Setting(book, _text(item), *_dates(item), index == current, description(item.span))
+        ConstantValue(book, _text(item), *_dates(item), index == current, description(item.span))
         for index, (item, book, _) in enumerate(given)
     )
     match first:

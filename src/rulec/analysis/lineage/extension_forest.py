@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.analysis.lineage.rule_lineage import Member
+from rulec.analysis.lineage.rule_lineage import BookHeader
 
 
 @dataclass(frozen=True, slots=True)
 class ExtensionTree:
     """A rulebook and those that extend it directly, in alphabetical order."""
 
-    book: Member
+    book: BookHeader
     children: tuple[ExtensionTree, ...] = ()
 
 
-def forest(members: Iterable[Member]) -> tuple[ExtensionTree, ...]:
+def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]:
     """Every rulebook once, by its name; the roots extend none, or one that is not among them.
 
     Rulebooks that go round in a circle hang below the first of them by name.
@@ -40,7 +40,7 @@ def forest(members: Iterable[Member]) -> tuple[ExtensionTree, ...]:
 
 def _branch(
     name: str,
-    by_name: Mapping[str, Member],
+    by_name: Mapping[str, BookHeader],
     children: Mapping[str, Sequence[str]],
     placed: set[str],
 ) -> ExtensionTree:

@@ -7,13 +7,13 @@ from typing import Literal
 
 from rulec.syntax import tree
 
-Deed = Literal["declared", "overridden", "softened", "dropped", "silent"]
+LineageAction = Literal["declared", "overridden", "softened", "dropped", "silent"]
 
-ProvisionKind = Literal["option", "parameter", "definition"]
+ConstantKind = Literal["option", "parameter", "definition"]
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class BookHeader:
     """A rulebook of a family: what it is, the base name of its file, and what it builds upon."""
 
     name: str
@@ -25,7 +25,7 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class LineageStep:
     """What one book did with a rule.
 
     ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
@@ -33,7 +33,7 @@ class Step:
     """
 
     book: str
-    deed: Deed
+    deed: LineageAction
     rule: tree.RuleItem | None
     clauses: tuple[str, ...] = ()
     because: str = ""
@@ -44,10 +44,10 @@ class RuleHistory:
     """A rule, or a topic that a book is silent on, and what was done with it in order."""
 
     name: str
-    steps: tuple[Step, ...]
+    steps: tuple[LineageStep, ...]
 
     @property
-    def last(self) -> Step:
+    def last(self) -> LineageStep:
         """What was done with it last."""
         return self.steps[-1]
 
@@ -69,7 +69,7 @@ class RuleHistory:
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class ConstantValue:
     """A value or meaning that a book gave, as written; ``current`` if it is the one that counts.
 
     ``note`` is the comment beside it.
@@ -91,18 +91,18 @@ class ConstantHistory:
     of it, or something does that a rule speaks of.
     """
 
-    kind: ProvisionKind
+    kind: ConstantKind
     name: str
     head: str
-    settings: tuple[Setting, ...]
+    settings: tuple[ConstantValue, ...]
     used: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Inheritance:
+class BookLineage:
     """A chain of rulebooks, the most general first, and what became of everything in it."""
 
-    books: tuple[Member, ...]
+    books: tuple[BookHeader, ...]
     rules: tuple[RuleHistory, ...]
     provisions: tuple[ConstantHistory, ...]
 

@@ -1,1 +1,1 @@
-"""TODO analysis/lint."""
+"""Find vacuous, redundant and conflicting rules."""

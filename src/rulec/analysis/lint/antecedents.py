@@ -9,14 +9,14 @@ from typing import Literal
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.rulebook.model import Rule
 
-TriggerKind = Literal["implies", "phase", "when", "unless"]
+AntecedentKind = Literal["implies", "phase", "when", "unless"]
 
 
 @dataclass(frozen=True, slots=True)
 class Antecedent:
     """A part of a rule that matters only if it holds at some time."""
 
-    kind: TriggerKind
+    kind: AntecedentKind
     formula: Formula
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from rulec.analysis.lint.conflict_search import Conflict, conflict, share_words
-from rulec.analysis.lint.finding_notes import shown, undecided
-from rulec.analysis.lint.redundancy import walkable
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.lint.conflict_search import Conflict, are_related, conflict
+from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
+from rulec.analysis.lint.redundancy import small_premises
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Rule
@@ -16,26 +16,26 @@ from rulec.witnesses.undecided import UndecidedError
 
 
 def conflicts(
-    names: Sequence[str], sides: dict[str, Side], rules: dict[str, Rule]
+    names: Sequence[str], sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
     found: list[frozenset[str]] = []
     for pair in combinations(names, 2):
-        if not share_words(sides[pair[0]], sides[pair[1]]):
+        if not are_related(sides[pair[0]], sides[pair[1]]):
             continue
         try:
             clash = conflict([sides[name] for name in pair])
         except UndecidedError as problem:
             what = f"it can always be kept together with `{pair[0]}`"
-            yield undecided(rules[pair[1]], what, problem)
+            yield undecided_diagnostic(rules[pair[1]], what, problem)
             continue
         if clash is not None:
             found.append(frozenset(pair))
             yield _cannot_be_kept(pair, clash, sides, rules)
     for name in names:
-        related = [sides[one] for one in names if share_words(sides[name], sides[one])]
+        related = [sides[one] for one in names if are_related(sides[name], sides[one])]
         others = [one for one in related if one.rule.name != name]
-        group = [sides[name], *walkable(sides[name], others)]
+        group = [sides[name], *small_premises(sides[name], others)]
         clash = None if _holds_one(found, group) else _clash(group)
         if clash is not None:
             smaller = _smallest(group)
@@ -44,12 +44,12 @@ def conflicts(
             yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
 
 
-def _holds_one(found: Sequence[frozenset[str]], group: Sequence[Side]) -> bool:
+def _holds_one(found: Sequence[frozenset[str]], group: Sequence[AnalyzedRule]) -> bool:
     names = {one.rule.name for one in group}
     return any(one <= names for one in found)
 
 
-def _clash(group: Sequence[Side]) -> Conflict | None:
+def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
     """A conflict in a group, as far as it is small enough to look at."""
     if len(group) < 3:
         return None
@@ -59,7 +59,7 @@ def _clash(group: Sequence[Side]) -> Conflict | None:
         return None
 
 
-def _smallest(group: Sequence[Side]) -> Sequence[Side]:
+def _smallest(group: Sequence[AnalyzedRule]) -> Sequence[AnalyzedRule]:
     """The group without those that its conflict does not need."""
     for one in group:
         fewer = [other for other in group if other is not one]
@@ -69,12 +69,12 @@ def _smallest(group: Sequence[Side]) -> Sequence[Side]:
 
 
 def _cannot_be_kept(
-    names: Sequence[str], clash: Conflict, sides: dict[str, Side], rules: dict[str, Rule]
+    names: Sequence[str], clash: Conflict, sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
 ) -> Diagnostic:
     *firsts, last = names
     whole = [sides[name] for name in names]
     when = "at all" if clash.trace is None else "any more"
-    notes = () if clash.trace is None else shown("after the trace", clash.trace, whole)
+    notes = () if clash.trace is None else trace_note("after the trace", clash.trace, whole)
     both = "both" if len(names) == 2 else "all"
     return Diagnostic(
         "R0804",

@@ -6,19 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rulec.analysis.counterexample import read_by
-from rulec.analysis.shared_compilation import Side
+from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
 from rulec.rulebook.model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.joint_alphabet import Alphabet, Symbol
-from rulec.witnesses.letter_functions import machine_column
+from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
+from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, Node
-from rulec.witnesses.trace_synthesis import alone, staged
+from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, ProductState
+from rulec.witnesses.trace_synthesis import single_rule_rulebook, synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -33,12 +33,12 @@ class Conflict:
 class _Step:
     """The steps of a node that lead to one target and satisfy the same rules if the trace ends."""
 
-    target: Node
+    target: ProductState
     satisfied: frozenset[int]
-    symbol: Symbol
+    symbol: JointLetter
 
 
-def conflict(sides: Sequence[Side]) -> Conflict | None:
+def conflict(sides: Sequence[AnalyzedRule]) -> Conflict | None:
     """A shortest trace after which the rules cannot all be kept any more, if there is one.
 
     Its objects are as few as the rules can speak of, each of one for its variables. The rules are
@@ -54,8 +54,8 @@ def conflict(sides: Sequence[Side]) -> Conflict | None:
         for number, side in enumerate(sides)
         for binding in scene.bindings(side.rule.variables)
     ]
-    columns = [machine_column(machine, binding, scene) for _, machine, binding in bound]
-    alphabet = Alphabet(scene, columns)
+    columns = [monitor_function(machine, binding, scene) for _, machine, binding in bound]
+    alphabet = JointAlphabet(scene, columns)
     if not alphabet.symbols:
         return None
     owners = [number for number, _, _ in bound]
@@ -81,23 +81,23 @@ def conflict(sides: Sequence[Side]) -> Conflict | None:
     if not word:
         return Conflict(None)
     steps = [one.rule.step_s for one in sides if one.rule.step_s is not None]
-    judged = [alone(side.rulebook, side.rule, scene) for side in sides]
+    judged = [single_rule_rulebook(side.rulebook, side.rule, scene) for side in sides]
 
     def is_open(trace: Trace) -> bool:
         found = [one for book in judged for one in verify(trace, book).violations]
         return all(one.step is None for one in found)
 
     situations = [alphabet.situations[symbol] for symbol in word]
-    return Conflict(staged(situations, scene, (*steps, Fraction(1))[0], is_open))
+    return Conflict(synthesize_trace(situations, scene, (*steps, Fraction(1))[0], is_open))
 
 
-def share_words(one: Side, other: Side) -> bool:
+def are_related(one: AnalyzedRule, other: AnalyzedRule) -> bool:
     """Do two rules read something in common, or something that facts connect?"""
-    reached = set(read_by(one.rule))
+    reached = set(declarations_read(one.rule))
     groups = [set(names_in(fact.formula)) for fact in one.axioms]
     while joined := [group for group in groups if group & reached and not group <= reached]:
         reached.update(*joined)
-    return bool(reached & read_by(other.rule))
+    return bool(reached & declarations_read(other.rule))
 
 
 def common_objects(
@@ -127,19 +127,19 @@ def _fits(kind: str, variable: Variable, vocabulary: Vocabulary) -> bool:
     return vocabulary.is_subtype(kind, variable.type) or vocabulary.is_subtype(variable.type, kind)
 
 
-Graph = Mapping[Node, Sequence[_Step]]
+Graph = Mapping[ProductState, Sequence[_Step]]
 
 
 def _explored(
-    machines: Sequence[MealyMonitor], owners: Sequence[int], symbols: Sequence[Symbol]
+    machines: Sequence[MealyMonitor], owners: Sequence[int], symbols: Sequence[JointLetter]
 ) -> Graph:
     """The joint states that can be reached, in breadth-first order; a rejecting sink ends it."""
-    start: Node = (0,) * len(machines)
-    graph: dict[Node, list[_Step]] = {}
+    start: ProductState = (0,) * len(machines)
+    graph: dict[ProductState, list[_Step]] = {}
     waiting = [start]
     seen = {start}
     for node in waiting:
-        steps: dict[tuple[Node, frozenset[int]], _Step] = {}
+        steps: dict[tuple[ProductState, frozenset[int]], _Step] = {}
         lost = any(a == one.rejecting_sink for a, one in zip(node, machines, strict=True))
         for symbol in () if lost else symbols:
             unsatisfied = {
@@ -163,17 +163,17 @@ def _explored(
 
 
 def _alone(
-    machines: Sequence[MealyMonitor], places: Sequence[int], symbols: Sequence[Symbol]
-) -> frozenset[Node]:
+    machines: Sequence[MealyMonitor], places: Sequence[int], symbols: Sequence[JointLetter]
+) -> frozenset[ProductState]:
     """The states of one rule's machines from which it can still be kept."""
     own = list(dict.fromkeys(tuple(symbol[place] for place in places) for symbol in symbols))
     graph = _explored(machines, [0] * len(machines), own)
     return _hopeful(graph, frozenset([0]))
 
 
-def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[Node]:
+def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
     """The states from which some way on, of one step or more, satisfies everyone."""
-    before: dict[Node, list[Node]] = {}
+    before: dict[ProductState, list[ProductState]] = {}
     for node, steps in graph.items():
         for step in steps:
             before.setdefault(step.target, []).append(node)
@@ -191,14 +191,14 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[Node]:
 
 def _shortest(
     graph: Graph,
-    together: frozenset[Node],
-    alone_ok: Sequence[frozenset[Node]],
+    together: frozenset[ProductState],
+    alone_ok: Sequence[frozenset[ProductState]],
     places: Sequence[Sequence[int]],
     everyone: frozenset[int],
-) -> tuple[Symbol, ...] | None:
+) -> tuple[JointLetter, ...] | None:
     """A shortest word, empty perhaps, after which each rule could be kept but not all."""
 
-    def each_could(node: Node, satisfied: frozenset[int]) -> bool:
+    def each_could(node: ProductState, satisfied: frozenset[int]) -> bool:
         return all(
             number in satisfied or tuple(node[place] for place in own) in hopeful
             for number, (own, hopeful) in enumerate(zip(places, alone_ok, strict=True))
@@ -207,7 +207,7 @@ def _shortest(
     start = next(iter(graph))
     if start not in together:
         return () if each_could(start, frozenset()) else None
-    came: dict[Node, tuple[Symbol, ...]] = {start: ()}
+    came: dict[ProductState, tuple[JointLetter, ...]] = {start: ()}
     waiting = [start]
     for node in waiting:
         for step in graph[node]:

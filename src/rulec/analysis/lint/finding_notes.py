@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.analysis.shared_compilation import Side
-from rulec.analysis.trace_literals import in_words_of
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.trace_literals import trace_literal
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Rule
@@ -13,13 +13,13 @@ from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
 
 
-def shown(what: str, trace: Trace, sides: Sequence[Side]) -> tuple[str, ...]:
+def trace_note(what: str, trace: Trace, sides: Sequence[AnalyzedRule]) -> tuple[str, ...]:
     """The note on a trace, in the words of these rules."""
     rules = [one.rule for one in sides]
-    return (f"{what}: {in_words_of(trace, rules, sides[0].rulebook.vocabulary)}",)
+    return (f"{what}: {trace_literal(trace, rules, sides[0].rulebook.vocabulary)}",)
 
 
-def undecided(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
+def undecided_diagnostic(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
     """The warning (R0807) that a question about a rule was left open."""
     return Diagnostic(
         "R0807",

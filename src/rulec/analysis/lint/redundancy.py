@@ -6,24 +6,24 @@ from collections.abc import Sequence
 from math import prod
 
 from rulec.analysis.counterexample import counterexample
-from rulec.analysis.lint.conflict_search import share_words
-from rulec.analysis.shared_compilation import Side
-from rulec.witnesses.joint_alphabet import Alphabet
-from rulec.witnesses.letter_functions import machine_column
+from rulec.analysis.lint.conflict_search import are_related
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.witnesses.joint_alphabet import JointAlphabet
+from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import shortest
+from rulec.witnesses.shortest_word import shortest_word
 
 MOST_PREMISES = 6
 MOST_JOINT_STATES = 5_000
 """Others are taken together as long as their automata have no more states than these."""
 
 
-def can_be_violated(side: Side) -> bool:
+def can_be_violated(side: AnalyzedRule) -> bool:
     """Is there a trace that violates the rule? Raises UndecidedError."""
     return counterexample(side, []) is not None
 
 
-def can_be_kept(side: Side) -> bool:
+def can_be_kept(side: AnalyzedRule) -> bool:
     """Is there a trace, with objects for the rule to speak of, that keeps it?
 
     Raises UndecidedError.
@@ -31,23 +31,23 @@ def can_be_kept(side: Side) -> bool:
     objects = {variable.name: variable.type for variable in side.rule.variables}
     scene = ObjectUniverse(objects, side.rulebook.vocabulary, side.axioms)
     bindings = scene.bindings(side.rule.variables)
-    columns = [machine_column(side.rule.machine, binding, scene) for binding in bindings]
+    columns = [monitor_function(side.rule.machine, binding, scene) for binding in bindings]
     machines = [side.rule.machine] * len(bindings)
-    symbols = Alphabet(scene, columns).symbols
-    return shortest(machines, [True] * len(bindings), symbols) is not None
+    symbols = JointAlphabet(scene, columns).symbols
+    return shortest_word(machines, [True] * len(bindings), symbols) is not None
 
 
-def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
+def implied_by(side: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
     """One of the others, or few of them together, that forbid all that a rule forbids; else none.
 
     The others are taken together as far as their automata stay small; so more of them together may
     imply it without being found. Raises UndecidedError.
     """
-    related = [other for other in others if share_words(side, other)]
+    related = [other for other in others if are_related(side, other)]
     for other in related:
         if counterexample(side, [other]) is None:
             return (other,)
-    premises = walkable(side, related)
+    premises = small_premises(side, related)
     if len(premises) < 2 or counterexample(side, premises) is not None:
         return ()
     for other in premises:
@@ -57,10 +57,10 @@ def implied_by(side: Side, others: Sequence[Side]) -> tuple[Side, ...]:
     return tuple(premises)
 
 
-def walkable(side: Side, related: Sequence[Side]) -> list[Side]:
+def small_premises(side: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:
     """Those of the others whose automata stay small together with that of the rule."""
     types = sorted(variable.type for variable in side.rule.variables)
-    chosen: list[Side] = []
+    chosen: list[AnalyzedRule] = []
     for other in sorted(related, key=lambda one: len(one.rule.machine.successors)):
         if sorted(variable.type for variable in other.rule.variables) not in (types, []):
             continue

@@ -8,9 +8,9 @@ from dataclasses import replace
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
-from rulec.analysis.lint.finding_notes import shown, undecided
+from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
-from rulec.analysis.shared_compilation import Distinct, Side
+from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
@@ -18,7 +18,7 @@ from rulec.rulebook.model import Rule, Rulebook
 from rulec.witnesses.undecided import UndecidedError
 
 
-def findings(
+def rulebook_findings(
     book: Rulebook,
     bases: Sequence[Rulebook],
     tell: Callable[[float], object] = lambda _: None,
@@ -43,7 +43,7 @@ def findings(
     }
     asked = {name: occurrence(*one, name) for name, one in whens.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
-    found = Distinct().sides([book, *bases], [{**by_name, **asked}, *inherited])
+    found = SharedCompiler().sides([book, *bases], [{**by_name, **asked}, *inherited])
     own = {name: found[0][name] for name in by_name}
     occurring = {name: (*one, found[0][name]) for name, one in whens.items()}
     diagnostics: list[Diagnostic] = []
@@ -66,7 +66,7 @@ def findings(
     return tuple(diagnostics)
 
 
-def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, Side]]) -> Iterator[Diagnostic]:
+def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> Iterator[Diagnostic]:
     what = {
         "implies": "what stands before `implies`",
         "phase": "the first phase",
@@ -77,7 +77,7 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, Side]]) -> Iterator[
         try:
             occurs = can_be_kept(side)
         except UndecidedError as problem:
-            yield undecided(rule, f"{what[trigger.kind]} can ever hold", problem)
+            yield undecided_diagnostic(rule, f"{what[trigger.kind]} can ever hold", problem)
             continue
         if not occurs:
             yield Diagnostic(
@@ -90,7 +90,7 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, Side]]) -> Iterator[
             )
 
 
-def _alone(rule: Rule, side: Side) -> Iterator[Diagnostic]:
+def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
     try:
         if not can_be_violated(side):
             if has_constant(rule.formula):
@@ -110,11 +110,11 @@ def _alone(rule: Rule, side: Side) -> Iterator[Diagnostic]:
                 help="every trace violates it; say what it is to allow",
             )
     except UndecidedError as problem:
-        yield undecided(rule, "it can be kept and violated", problem)
+        yield undecided_diagnostic(rule, "it can be kept and violated", problem)
 
 
 def _needless(
-    names: Sequence[str], rules: dict[str, Rule], sides: dict[str, Side]
+    names: Sequence[str], rules: dict[str, Rule], sides: dict[str, AnalyzedRule]
 ) -> Iterator[Diagnostic]:
     """Rules that add nothing to the others that are left when they are all left out."""
     left = list(names)
@@ -127,7 +127,7 @@ def _needless(
 
 
 def _implied(
-    rule: Rule, names: Sequence[str], rules: dict[str, Rule], sides: dict[str, Side]
+    rule: Rule, names: Sequence[str], rules: dict[str, Rule], sides: dict[str, AnalyzedRule]
 ) -> Iterator[Diagnostic]:
     """A rule that adds nothing to others that are as hard."""
     others = [
@@ -136,7 +136,7 @@ def _implied(
     try:
         premises = implied_by(sides[rule.name], others)
     except UndecidedError as problem:
-        yield undecided(rule, "others imply it", problem)
+        yield undecided_diagnostic(rule, "others imply it", problem)
         return
     if premises:
         listed = [one.rule.name for one in premises]
@@ -164,11 +164,13 @@ def _ours(found: Diagnostic, extends: Span | None) -> Diagnostic:
     return replace(found, place=extends.place, labels=(rule, *found.labels))
 
 
-def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[Diagnostic]:
+def _weaker(
+    rule: Rule, own: AnalyzedRule, inherited: AnalyzedRule, base: Rulebook
+) -> Iterator[Diagnostic]:
     found = compare(own, inherited)
     if found.undecided:
         problem = UndecidedError(found.undecided)
-        yield undecided(rule, f"it is as strict as in `{base.name}`", problem)
+        yield undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
     if not found.second_forbids and not softer:
@@ -179,7 +181,7 @@ def _weaker(rule: Rule, own: Side, inherited: Side, base: Rulebook) -> Iterator[
     notes = [
         note
         for trace in found.second_forbids
-        for note in shown(f"`{base.name}` forbids", trace, (own, inherited))
+        for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
     yield Diagnostic(
         "R0806",

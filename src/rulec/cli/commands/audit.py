@@ -61,14 +61,14 @@ def command(
 
     Exit status: 0 done, 1 --fail-on says so, 2 a rulebook could not be read.
     """
-    from rulec.analysis.audit.rulebook_audit import compared
+    from rulec.analysis.audit.rulebook_audit import compare_audits
     from rulec.report.rulebooks.audit_report import render
     from rulec.report.text.console import page_width, print_result
 
     only_sources(rulebooks, "be audited")
     older = None if compare is None else _older(compare, run, at)
     audits = [done for one in rulebooks if (done := _audit_or_say(one, run, at)) is not None]
-    against = {} if older is None else compared(audits, older)
+    against = {} if older is None else compare_audits(audits, older)
     if audits or output_format == "json":
         print_result(render(audits, against, output_format, page_width()))
     if len(audits) < len(rulebooks):

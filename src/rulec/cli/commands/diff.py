@@ -133,7 +133,7 @@ def _all(
     output: str | None,
     at: str,
 ) -> int:
-    from rulec.analysis.diff.comparison_matrix import matrix, steps
+    from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
     from rulec.report.rulebooks.matrix_report import render
     from rulec.report.text.console import print_aside, progress, put_result
 
@@ -144,7 +144,7 @@ def _all(
         print_aside("there are no two rulebooks to compare")
         return ExitStatus.NOT_ANSWERED
     with progress("comparing", steps(books, patterns)) as tell:
-        found = matrix(books, patterns, step_s, tell)
+        found = comparison_matrix(books, patterns, step_s, tell)
     if alone:
         print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
     put_result(render(found, output_format), output)

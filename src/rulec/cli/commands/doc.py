@@ -36,7 +36,7 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
     It has every rule with its provision, in plain English, as a formula and by its examples; what
     was changed of inherited rules and what was left out; values, definitions, words and an index.
     """
-    from rulec.analysis.lineage.book_lineage import read_with_inheritance
+    from rulec.analysis.lineage.book_lineage import read_with_lineage
     from rulec.report.rulebooks.book_document import CONTENTS, as_markdown, title_of
     from rulec.report.text.console import print_diagnostics, put_result
     from rulec.report.text.html_page import as_html
@@ -49,7 +49,7 @@ def command(rulebook: str, output: str | None, output_format: str | None, at: st
                 f"{output} would be HTML: write FILE.html, which a browser prints and saves as PDF"
             )
         output_format = SUFFIXES.get(Path(output or "").suffix, "html")
-    loaded, inherited = read_with_inheritance(rulebook, search_path(), at)
+    loaded, inherited = read_with_lineage(rulebook, search_path(), at)
     print_diagnostics(loaded.warnings)
     text = as_markdown(loaded, inherited)
     if output_format == "html":

@@ -134,13 +134,13 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
     """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
-    from rulec.analysis.lineage.book_lineage import read_with_inheritance
+    from rulec.analysis.lineage.book_lineage import read_with_lineage
     from rulec.settings import search_path
     from rulec.syntax.printer import print_in_force
 
     if Path(reference).suffix == ".json":
         return ""
-    _, inherited = read_with_inheritance(reference, search_path(), book.at)
+    _, inherited = read_with_lineage(reference, search_path(), book.at)
     last = next((one.steps[-1] for one in inherited.rules if one.name == name), None)
     if last is None:
         return ""

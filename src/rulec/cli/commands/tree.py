@@ -11,7 +11,7 @@ from rulec.cli.options.shared_options import at_option, json_option, only_source
 from rulec.cli.options.shell_completion import complete_rulebooks
 
 if TYPE_CHECKING:
-    from rulec.analysis.lineage.rule_lineage import Inheritance, Member
+    from rulec.analysis.lineage.rule_lineage import BookHeader, BookLineage
 
 
 @click.command()
@@ -30,7 +30,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     It is given by its name or the path of its source. Of several RULEBOOKs, or without any of all
     that there are, it shows which one extends which.
     """
-    from rulec.analysis.lineage.extension_forest import forest
+    from rulec.analysis.lineage.extension_forest import extension_forest
     from rulec.report.rulebooks import lineage_tree
     from rulec.report.text.console import page_width, print_result, wants_color
 
@@ -46,26 +46,26 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     else:
         if pattern is not None:
             raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
-        branches = forest(_members(rulebooks, at))
+        branches = extension_forest(_members(rulebooks, at))
         shown = lineage_tree.forest_as_json(branches)
         if not json_output:
             shown = lineage_tree.forest_as_text(branches, width, color=color)
     print_result(shown)
 
 
-def _inheritance(rulebook: str, at: str) -> Inheritance:
-    from rulec.analysis.lineage.book_lineage import read_with_inheritance
+def _inheritance(rulebook: str, at: str) -> BookLineage:
+    from rulec.analysis.lineage.book_lineage import read_with_lineage
     from rulec.settings import search_path
 
-    return read_with_inheritance(rulebook, search_path(), at)[1]
+    return read_with_lineage(rulebook, search_path(), at)[1]
 
 
-def _members(rulebooks: tuple[str, ...], at: str) -> list[Member]:
+def _members(rulebooks: tuple[str, ...], at: str) -> list[BookHeader]:
     """The rulebooks and all that they extend; without any, all that can be asked for by name."""
-    from rulec.analysis.lineage.book_lineage import member_of
+    from rulec.analysis.lineage.book_lineage import book_header
     from rulec.rulebook.files.catalogue import rulebook_trees
     from rulec.settings import search_path
 
     if not rulebooks:
-        return [member_of(one) for one in rulebook_trees(search_path())]
+        return [book_header(one) for one in rulebook_trees(search_path())]
     return [book for one in rulebooks for book in _inheritance(one, at).books]

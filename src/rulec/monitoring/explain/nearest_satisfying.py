@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.logic.formula import Count
-from rulec.witnesses.fourier_motzkin import Bounded, solve
+from rulec.witnesses.fourier_motzkin import LinearBound, solve
 from rulec.witnesses.letter_witness import bounds_of
 
 Letter = tuple[int, ...]
@@ -170,7 +170,7 @@ class _Alphabet:
             reads = [one for one in self._reads if isinstance(one, NumberRead)]
             terms = list(dict.fromkeys(term for one in reads for _, term in one.terms))
             counts = [term for term in terms if isinstance(term, Count)]
-            system = [Bounded({count: Fraction(-1)}, Fraction(0)) for count in counts]
+            system = [LinearBound({count: Fraction(-1)}, Fraction(0)) for count in counts]
             for one, digit in zip(reads, digits, strict=True):
                 system += bounds_of(one, digit)
             self._can_be[digits] = solve(system, terms, {}, frozenset(counts)) is not None

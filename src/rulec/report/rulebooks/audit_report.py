@@ -11,12 +11,12 @@ from textwrap import fill, wrap
 import click
 
 from rulec.analysis.audit.audit_kinds import KINDS
-from rulec.analysis.audit.rulebook_audit import Audit, Changes, Finding
+from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
 
-Compared = Mapping[str, Changes]
+Compared = Mapping[str, AuditChanges]
 """Rulebook -> what has changed since an older audit of it."""
 
 
@@ -52,7 +52,7 @@ def law_of(audit: Audit) -> str:
     return f"{audit.law}{since}" if audit.law else "no law is named"
 
 
-def _as_text(audit: Audit, compared: Changes | None, width: int) -> str:
+def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     title = f": {audit.title}" if audit.title else ""
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
     blocks = [
@@ -71,7 +71,7 @@ def _as_text(audit: Audit, compared: Changes | None, width: int) -> str:
     return "\n\n".join(blocks)
 
 
-def _lines(found: Sequence[Finding], width: int) -> str:
+def _lines(found: Sequence[AuditFinding], width: int) -> str:
     if not any(one.note for one in found):
         names = ", ".join(visible(one.name) for one in found)
         return fill(names, width, initial_indent="  ", subsequent_indent="  ")
@@ -89,7 +89,7 @@ def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
     return "\n".join(lines)
 
 
-def _changes_as_text(compared: Changes) -> str:
+def _changes_as_text(compared: AuditChanges) -> str:
     lines = [
         f"{sign} {one.kind}: {visible(one.name)}"
         for sign, found in (("+", compared.appeared), ("-", compared.vanished))
@@ -99,7 +99,7 @@ def _changes_as_text(compared: Changes) -> str:
     return f"{title}: + is new, - is gone\n" + "\n".join(f"  {one}" for one in lines or ["nothing"])
 
 
-def _as_markdown(audit: Audit, compared: Changes | None) -> str:
+def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
     title = f": {escaped(audit.title)}" if audit.title else ""
     blocks = [
         f"# Audit of {code(audit.rulebook)}{title}",
@@ -130,7 +130,7 @@ def _as_markdown(audit: Audit, compared: Changes | None) -> str:
     return "\n\n".join(blocks)
 
 
-def _changes_as_markdown(compared: Changes) -> str:
+def _changes_as_markdown(compared: AuditChanges) -> str:
     rows = [
         [word, one.kind, escaped(one.name)]
         for word, found in (("new", compared.appeared), ("gone", compared.vanished))

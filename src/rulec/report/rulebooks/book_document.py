@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from rulec.analysis.audit.rulebook_audit import articles_of
-from rulec.analysis.lineage.rule_lineage import Inheritance
+from rulec.analysis.lineage.rule_lineage import BookLineage
 from rulec.report.rulebooks.book_rule import rule_heading, rule_section
 from rulec.report.rulebooks.book_sections import (
     definitions_section,
@@ -38,7 +38,7 @@ def title_of(rulebook: Rulebook) -> str:
     return rulebook.title or rulebook.name
 
 
-def as_markdown(loaded: Loaded, inherited: Inheritance) -> str:
+def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
     """The whole document."""
     rulebook = loaded.rulebook
     top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook), Heading(2, CONTENTS)]
@@ -70,7 +70,7 @@ def _top(rulebook: Rulebook) -> Iterator[Block]:
     yield table(["about", "this rulebook"], rows)
 
 
-def _body(loaded: Loaded, inherited: Inheritance) -> Iterator[Block]:
+def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
     rulebook = loaded.rulebook
     yield Heading(2, "Rules")
     yield (
@@ -96,7 +96,7 @@ def _contents(headings: Sequence[Heading], places: Mapping[int, str]) -> str:
 
 
 def _index(
-    rulebook: Rulebook, inherited: Inheritance, heading: Heading, places: Mapping[str, str]
+    rulebook: Rulebook, inherited: BookLineage, heading: Heading, places: Mapping[str, str]
 ) -> Iterator[Block]:
     yield heading
     by_name = {one.name: one for one in rulebook.rules}

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 from textwrap import wrap
 
-from rulec.analysis.lineage.rule_lineage import Inheritance, RuleHistory
+from rulec.analysis.lineage.rule_lineage import BookLineage, RuleHistory
 from rulec.logic.bounds import speaks_of_seconds
 from rulec.logic.english.atom_phrases import amount, listed, number_text, spoken
 from rulec.logic.english.sentence import Phrase
@@ -40,7 +40,7 @@ def rule_heading(rule: Rule) -> str:
     return f"{rule.name} ({rule.cite})" if rule.cite else rule.name
 
 
-def rule_section(rule: Rule, inherited: Inheritance, vocabulary: Vocabulary) -> Iterator[Block]:
+def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> Iterator[Block]:
     """All about a rule of the rulebook at the end of a chain."""
     book = inherited.book
     (history,) = [one for one in inherited.rules if one.name == rule.name]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rulec.analysis.lineage.rule_lineage import ConstantHistory, Inheritance
-from rulec.analysis.vocabulary_use import words_used
+from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
+from rulec.analysis.vocabulary_use import used_declarations
 from rulec.logic.english.atom_phrases import listed, spoken
 from rulec.logic.printing import in_words
 from rulec.report.rulebooks.book_rule import WIDTH
@@ -20,7 +20,7 @@ from rulec.syntax.printer import print_in_force
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 
-def values_section(inherited: Inheritance, at: str) -> Iterator[Block]:
+def values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
     """Options and parameters that rules speak of, with all their values."""
     found = [one for one in inherited.provisions if one.kind != "definition" and one.used]
     if not found:
@@ -45,7 +45,7 @@ def _values(one: ConstantHistory) -> Iterator[list[str]]:
         ]
 
 
-def definitions_section(inherited: Inheritance) -> Iterator[Block]:
+def definitions_section(inherited: BookLineage) -> Iterator[Block]:
     """Definitions that rules speak of, as they are in the end, and what they were before."""
     found = [one for one in inherited.provisions if one.kind == "definition" and one.used]
     if not found:
@@ -68,7 +68,7 @@ def _definition(head: str, text: str) -> list[str]:
     return [f"define {head} =", *(f"  {line}" for line in formula_lines(text, WIDTH - 2))]
 
 
-def left_out_section(inherited: Inheritance, at: str) -> Iterator[Block]:
+def left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
     """What is not in the rulebook, and why."""
     rows = list(_left_out(inherited, at))
     if rows:
@@ -76,7 +76,7 @@ def left_out_section(inherited: Inheritance, at: str) -> Iterator[Block]:
         yield table(["rule or topic", "what happened", "why"], rows)
 
 
-def _left_out(inherited: Inheritance, at: str) -> Iterator[list[str]]:
+def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
     for one in inherited.rules:
         last = one.last
         if last.deed == "dropped":
@@ -92,7 +92,7 @@ def _left_out(inherited: Inheritance, at: str) -> Iterator[list[str]]:
 def words_section(loaded: Loaded) -> Iterator[Block]:
     """The words of the vocabulary that the rules use, and what always holds."""
     rulebook = loaded.rulebook
-    used = words_used(rulebook)
+    used = used_declarations(rulebook)
     found = [one for name, one in rulebook.vocabulary.declarations.items() if name in used]
     if found:
         described = _descriptions(loaded)

@@ -8,7 +8,7 @@ from textwrap import wrap
 
 import click
 
-from rulec.analysis.diff.rule_comparison import Relation
+from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_table import TraceTable
 from rulec.report.findings.source_excerpt import visible
@@ -16,7 +16,7 @@ from rulec.report.verdicts.trace_table_text import as_lines
 
 WIDTH = 100
 
-COLOURS: dict[Relation, str] = {
+COLOURS: dict[RuleRelation, str] = {
     "equal": "green",
     "stricter": "red",
     "laxer": "blue",

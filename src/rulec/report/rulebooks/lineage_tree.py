@@ -15,12 +15,12 @@ from rich.tree import Tree
 
 from rulec.analysis.lineage.extension_forest import ExtensionTree
 from rulec.analysis.lineage.rule_lineage import (
+    BookHeader,
+    BookLineage,
     ConstantHistory,
-    Inheritance,
-    Member,
+    ConstantValue,
+    LineageStep,
     RuleHistory,
-    Setting,
-    Step,
 )
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.rulebooks.rule_provenance import provenance
@@ -36,15 +36,15 @@ _DEEDS = {
 }
 
 
-def chosen(inherited: Inheritance, pattern: str | None) -> Inheritance:
+def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
     """Only the rules whose name a pattern matches, and no provisions; all without a pattern."""
     if pattern is None:
         return inherited
     rules = tuple(one for one in inherited.rules if fnmatchcase(one.name, pattern))
-    return Inheritance(inherited.books, rules, ())
+    return BookLineage(inherited.books, rules, ())
 
 
-def as_text(inherited: Inheritance, width: int, *, color: bool) -> str:
+def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
     """The chain, the most general rulebook first, then its rules and provisions."""
     chain: Tree | None = None
     below: Tree | None = None
@@ -92,7 +92,7 @@ def _drawn(shown: Tree, width: int, *, color: bool) -> str:
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines())
 
 
-def _book(book: Member, *, missing: bool = False) -> Text:
+def _book(book: BookHeader, *, missing: bool = False) -> Text:
     label = Text(visible(book.name), "bold")
     if book.title:
         label.append(f"  {visible(book.title)}", "not bold")
@@ -117,7 +117,7 @@ def _rule(one: RuleHistory, book: str, rules: Tree) -> None:
         here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
 
 
-def _detail(step: Step) -> str:
+def _detail(step: LineageStep) -> str:
     changed = f": {', '.join(step.clauses)}" if step.clauses else ""
     return visible(f"{changed}{f', because {step.because}' if step.because else ''}")
 
@@ -136,17 +136,17 @@ def _provision(one: ConstantHistory, book: str, provisions: Tree) -> None:
             here.add(Text(visible(f"{each.text}{_when(each)}  {_origin(each, book)}"), "dim"))
 
 
-def _origin(setting: Setting, book: str) -> str:
+def _origin(setting: ConstantValue, book: str) -> str:
     return "own" if setting.book == book else f"from {setting.book}"
 
 
-def _when(setting: Setting) -> str:
+def _when(setting: ConstantValue) -> str:
     if not setting.since and not setting.until:
         return ""
     return f" {print_in_force(tree.InForce(setting.since, setting.until))}"
 
 
-def as_json(inherited: Inheritance) -> str:
+def as_json(inherited: BookLineage) -> str:
     """The same as data."""
     return json.dumps(
         {
@@ -180,7 +180,7 @@ def forest_as_json(branches: Sequence[ExtensionTree]) -> str:
     )
 
 
-def _members(branches: Sequence[ExtensionTree]) -> Iterator[Member]:
+def _members(branches: Sequence[ExtensionTree]) -> Iterator[BookHeader]:
     for one in branches:
         yield one.book
         yield from _members(one.children)

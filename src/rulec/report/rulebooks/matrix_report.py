@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from rulec.analysis.diff.comparison_matrix import Matrix, Shared, pairs
+from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.rulebooks.diff_csv import table as csv_table
 from rulec.report.rulebooks.diff_text import WIDTH
@@ -35,7 +35,7 @@ PAIRS = (
 TITLE = "Rulebooks compared"
 
 
-def render(found: Matrix, output_format: str) -> str:
+def render(found: ComparisonMatrix, output_format: str) -> str:
     """The matrix in one of the formats of differences."""
     match output_format:
         case "json":
@@ -52,7 +52,7 @@ def render(found: Matrix, output_format: str) -> str:
             return _as_text(found)
 
 
-def _as_text(found: Matrix) -> str:
+def _as_text(found: ComparisonMatrix) -> str:
     names = [book.name for book in found.books]
     by_rule = [["", *names], *([rule.name, *_letters(rule, names)] for rule in found.shared)]
     by_pair = [
@@ -79,18 +79,18 @@ def _columns(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join([click.style(lines[0], bold=True), *lines[1:]])
 
 
-def _letters(rule: Shared, names: Sequence[str]) -> list[str]:
+def _letters(rule: SharedRule, names: Sequence[str]) -> list[str]:
     return [_letter(rule, name) for name in names]
 
 
-def _letter(rule: Shared, book: str) -> str:
+def _letter(rule: SharedRule, book: str) -> str:
     if book not in rule.laws:
         return SILENT if book in rule.remarks else ABSENT
     letter = rule.letter(book)
     return letter if rule.rules[book].strength == "hard" else letter.lower()
 
 
-def _cell(found: Matrix, one: str, other: str) -> str:
+def _cell(found: ComparisonMatrix, one: str, other: str) -> str:
     if one == other:
         return ""
     counted = found.counts(one, other)
@@ -98,7 +98,7 @@ def _cell(found: Matrix, one: str, other: str) -> str:
     return " ".join(parts) or ABSENT
 
 
-def _summary(found: Matrix) -> str:
+def _summary(found: ComparisonMatrix) -> str:
     counted = Counter(len(set(rule.laws.values())) == 1 for rule in found.shared)
     return (
         f"{len(found.books):,} rulebooks, {len(found.shared):,} rules that two or more of them "
@@ -106,7 +106,7 @@ def _summary(found: Matrix) -> str:
     )
 
 
-def _as_markdown(found: Matrix) -> str:
+def _as_markdown(found: ComparisonMatrix) -> str:
     names = [book.name for book in found.books]
     head = ["", *map(code, names)]
     return "\n\n".join(
@@ -132,7 +132,7 @@ def _as_markdown(found: Matrix) -> str:
     )
 
 
-def _as_csv(found: Matrix) -> str:
+def _as_csv(found: ComparisonMatrix) -> str:
     rows = [
         (rule.name, one, other, rule.relation(one, other) or "")
         for rule in found.shared
@@ -142,7 +142,7 @@ def _as_csv(found: Matrix) -> str:
     return csv_table([("rule", "first", "second", "relation"), *rows])
 
 
-def _as_json(found: Matrix) -> str:
+def _as_json(found: ComparisonMatrix) -> str:
     document = {
         "books": [{"name": book.name, "title": book.title, "at": book.at} for book in found.books],
         "rules": [_rule(rule, [book.name for book in found.books]) for rule in found.rules],
@@ -154,7 +154,7 @@ def _as_json(found: Matrix) -> str:
     return json.dumps(document, ensure_ascii=False, indent=2)
 
 
-def _rule(rule: Shared, names: Sequence[str]) -> dict[str, Any]:
+def _rule(rule: SharedRule, names: Sequence[str]) -> dict[str, Any]:
     return {
         "rule": rule.name,
         "books": [
@@ -169,6 +169,6 @@ def _rule(rule: Shared, names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _counts(found: Matrix, one: str, other: str) -> dict[str, int]:
+def _counts(found: ComparisonMatrix, one: str, other: str) -> dict[str, int]:
     counted = found.counts(one, other)
     return {kind: counted[kind] for kind in (*SIGNS, "only", "silent")}

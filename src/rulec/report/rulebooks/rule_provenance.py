@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.analysis.lineage.rule_lineage import RuleHistory, Step
+from rulec.analysis.lineage.rule_lineage import LineageStep, RuleHistory
 
 
 def provenance(one: RuleHistory, book: str) -> str:
@@ -26,5 +26,5 @@ def provenance(one: RuleHistory, book: str) -> str:
             return f"silent{'' if here else f', as {last.book} is'}{because}"
 
 
-def _clauses(step: Step) -> str:
+def _clauses(step: LineageStep) -> str:
     return ", ".join(step.clauses) if step.clauses else "nothing changes"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from rulec.book_tests.edge_coverage import RuleCoverage, percent
-from rulec.book_tests.example_runs import ExampleRun, Outcome
+from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
 from rulec.report.findings.diagnostics_json import place_as_data
@@ -33,7 +33,7 @@ def as_json(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
     return json.dumps(document, ensure_ascii=False, indent=2)
 
 
-def _outcome(rulebook: str, one: Outcome) -> dict[str, Any]:
+def _outcome(rulebook: str, one: ExampleOutcome) -> dict[str, Any]:
     return {
         "rulebook": rulebook,
         "rule": one.rule.name,

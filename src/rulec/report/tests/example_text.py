@@ -8,8 +8,8 @@ from dataclasses import replace
 import click
 
 from rulec.automata.thresholds import exact
-from rulec.book_tests.edge_coverage import MissingEdge, RuleCoverage, percent
-from rulec.book_tests.example_runs import ExampleRun, Outcome, surprise
+from rulec.book_tests.edge_coverage import RuleCoverage, UncoveredEdge, percent
+from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
 from rulec.diagnostics import Diagnostic
 from rulec.logic.constant_folding import folded
 from rulec.logic.formula import Atom, Constant
@@ -44,9 +44,9 @@ def as_text(
     return "\n".join([*lines, _summary(runs)])
 
 
-def failure(one: Outcome, rulebook: str) -> Diagnostic:
+def failure(one: ExampleOutcome, rulebook: str) -> Diagnostic:
     """The error about an example that fails in a rulebook, which may have inherited it."""
-    problem = replace(surprise(one), severity="error")
+    problem = replace(example_warning(one), severity="error")
     rule = one.rule
     if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
         why = "the rule's condition is false as options are set"
@@ -81,7 +81,7 @@ def shortcomings(
     return found
 
 
-def _line(one: Outcome, rulebook: str) -> str:
+def _line(one: ExampleOutcome, rulebook: str) -> str:
     verdict = (
         click.style("pass", fg="green") if one.passed else click.style("FAIL", fg="red", bold=True)
     )
@@ -119,7 +119,7 @@ def as_percent(number: float) -> str:
     return f"{min(number, 99.9) if number < 100 else 100:.1f} %"
 
 
-def missing_example(edge: MissingEdge, vocabulary: Vocabulary) -> str:
+def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
     """The example that would take an edge, as it would be written in the rule.
 
     What has its default is not said, unless it is a number. What cannot be written as facts stands

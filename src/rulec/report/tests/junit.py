@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 
 from rulec.book_tests.edge_coverage import RuleCoverage, percent
-from rulec.book_tests.example_runs import ExampleRun, Outcome
+from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.tests.example_text import coverage_lines, failure
@@ -44,7 +44,7 @@ def _counts(runs: Sequence[ExampleRun]) -> dict[str, str]:
     return {"tests": str(len(outcomes)), "failures": str(failures), "errors": "0", "skipped": "0"}
 
 
-def _case(suite: ElementTree.Element, rulebook: str, one: Outcome) -> None:
+def _case(suite: ElementTree.Element, rulebook: str, one: ExampleOutcome) -> None:
     attributes = {"classname": f"{rulebook}.{one.rule.name}", "name": one.name}
     place = at(one.example.span)
     if place is not None:
