@@ -159,8 +159,12 @@ def navigation_graph(
         adjacency,
         extent,
         times.step,
-        {name: one.obstacle for name, one in places.predicted_of.items() if not one.number},
-        {name: one for name, one in places.predicted_of.items() if one.number},
+        {
+            name: predicted.obstacle
+            for name, predicted in places.predicted_of.items()
+            if not predicted.number
+        },
+        {name: predicted for name, predicted in places.predicted_of.items() if predicted.number},
         places.present,
         layers,
         successors,

@@ -43,7 +43,7 @@ class PredictedPath:
 
 def everybody(graph: NavigationGraph) -> dict[str, Predicted]:
     """Whoever is on the road by some prediction, by the graph's names."""
-    likeliest = {name: Predicted(one, one.id, 0) for name, one in graph.objects.items()}
+    likeliest = {name: Predicted(object_, object_.id, 0) for name, object_ in graph.objects.items()}
     return {**likeliest, **graph.alternatives}
 
 
@@ -51,12 +51,16 @@ def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath
     """A path, given by its cells' indices, as all predictions have it."""
     cells = [layer.cells[i] for layer, i in zip(graph.layers, path, strict=True)]
     weights = _told_apart(graph, cells)
-    who = {name: one for name, one in everybody(graph).items() if one.number in weights[one.of]}
+    who = {
+        name: predicted
+        for name, predicted in everybody(graph).items()
+        if predicted.number in weights[predicted.of]
+    }
     last = len(path) - 1
     step = ((0,),)
     traces = TraceGraph(
         step_s=graph.step_s,
-        objects={name: one.obstacle.type for name, one in who.items()},
+        objects={name: predicted.obstacle.type for name, predicted in who.items()},
         present={name: graph.present[name] for name in who if graph.present[name] != (0, last)},
         states=tuple(
             _states(graph, p, [i], who, {name: name for name in who}) for p, i in enumerate(path)
@@ -79,16 +83,16 @@ def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict
     for p, (layer, cell) in enumerate(zip(graph.layers, cells, strict=True)):
         for name, code in zip((*layer.objects, *layer.alternatives), cell.code, strict=True):
             said.setdefault((who[name].of, who[name].number), {})[p] = code
-    found: dict[str, dict[int, Fraction]] = {}
+    result: dict[str, dict[int, Fraction]] = {}
     for obstacle in graph.scenario.obstacles:
-        own = found[obstacle.id] = {0: obstacle.weight}
-        for number, one in enumerate(obstacle.alternatives, start=1):
+        own = result[obstacle.id] = {0: obstacle.weight}
+        for number, alternative in enumerate(obstacle.alternatives, start=1):
             alike = (
                 k for k in own if said.get((obstacle.id, k)) == said.get((obstacle.id, number))
             )
             known = next(alike, number)
-            own[known] = own.get(known, Fraction(0)) + one.weight
-    return found
+            own[known] = own.get(known, Fraction(0)) + alternative.weight
+    return result
 
 
 def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
@@ -106,7 +110,7 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
     last = len(graph.layers) - 1
     return replace(
         _thinned(graph.trace_graph(), free),
-        objects={named[name]: one.obstacle.type for name, one in who.items()},
+        objects={named[name]: predicted.obstacle.type for name, predicted in who.items()},
         present={
             named[name]: graph.present[name] for name in who if graph.present[name] != (0, last)
         },
@@ -117,14 +121,21 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
 def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
     """Who is on the road in a world, by the names that they have there."""
     who, named = _in_world(graph, world)
-    return {named[name]: one.obstacle for name, one in who.items()}
+    return {named[name]: predicted.obstacle for name, predicted in who.items()}
 
 
 def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
     """Who is on the road by the graph's names, and the names that they have in the world."""
     everyone = everybody(graph)
-    who = {name: one for name, one in everyone.items() if world.get(one.of, 0) == one.number}
-    return who, {name: one.of if name == one.obstacle.id else name for name, one in who.items()}
+    who = {
+        name: predicted
+        for name, predicted in everyone.items()
+        if world.get(predicted.of, 0) == predicted.number
+    }
+    return who, {
+        name: predicted.of if name == predicted.obstacle.id else name
+        for name, predicted in who.items()
+    }
 
 
 def _hit_in(layer: Layer, cell: Cell, who: Collection[str]) -> set[str]:
@@ -151,7 +162,7 @@ def _states(
     states = []
     for cell in (layer.cells[i] for i in cells):
         told = [(named[name], cell.code[i]) for i, name in here if cell.code[i] != HIT]
-        code = bytes([one for _, one in told])
+        code = bytes([number for _, number in told])
         states.append({**relations(cell, [name for name, _ in told], code), **signals})
     return tuple(states)
 

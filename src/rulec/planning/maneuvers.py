@@ -140,15 +140,15 @@ class Maneuvers:
         return node_transformers(self.paths, [*self.hard.instances, *soft])
 
     def _ranked(
-        self, place: int, penalty: Penalty, found: Maneuver, members: int
+        self, place: int, penalty: Penalty, maneuver: Maneuver, members: int
     ) -> RankedManeuver:
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
         return RankedManeuver(
             place,
             {rank: weight for rank, weight in weights if weight},
             members,
-            found,
-            violations(self._every.instances, found.nodes),
+            maneuver,
+            violations(self._every.instances, maneuver.nodes),
         )
 
     def _pruning(self, rule: CompiledRule, every: Product | None, alone: Product | None) -> Pruning:
@@ -160,7 +160,7 @@ class Maneuvers:
             every.accepted if every else 0,
             None if rule.strength == "soft" else alone.accepted if alone else 0,
             example,
-            tuple([one for one in lost if one.rule == rule.name]),
+            tuple([violation for violation in lost if violation.rule == rule.name]),
         )
 
 

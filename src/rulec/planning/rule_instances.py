@@ -68,4 +68,6 @@ def applied(
         return instances(paths, rules, graph.step, strengths, past)
     except RulecError as error:
         place = SourceLocation(graph.scenario.name)
-        raise RulecError([replace(one, place=place) for one in error.diagnostics]) from None
+        raise RulecError(
+            [replace(diagnostic, place=place) for diagnostic in error.diagnostics]
+        ) from None

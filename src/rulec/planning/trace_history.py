@@ -54,7 +54,10 @@ def past_of(
             raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
     past = monitor.past(there)
     return replace(
-        past, violations=tuple(one for one in past.violations if one.strength in strengths)
+        past,
+        violations=tuple(
+            violation for violation in past.violations if violation.strength in strengths
+        ),
     )
 
 
@@ -72,11 +75,11 @@ def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Tr
     Raises:
         RulecError: that, or R0511 if there are several.
     """
-    found = list(islice(items, 2))
-    for one in found:
-        if isinstance(one, RulecError):
-            raise one
-    if len(found) > 1:
+    result = list(islice(items, 2))
+    for rulec_error in result:
+        if isinstance(rulec_error, RulecError):
+            raise rulec_error
+    if len(result) > 1:
         raise RulecError(
             Diagnostic(
                 "R0511",
@@ -85,7 +88,7 @@ def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Tr
                 help="give a file with one trace",
             )
         )
-    (trace,) = found
+    (trace,) = result
     assert isinstance(trace, Trace)
     return trace
 

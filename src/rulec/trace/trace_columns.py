@@ -57,25 +57,25 @@ class Layout:
     def places(self, trace: int, first: int = 0, last: int | None = None) -> NDArray[np.int64]:
         """Where the states of a trace stand, from one to another, or to its end."""
         end = int(self.lengths[trace]) if last is None else last + 1
-        found: NDArray[np.int64] = self.starts[first:end] + trace
-        return found
+        result: NDArray[np.int64] = self.starts[first:end] + trace
+        return result
 
     def traces_at(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
         """The traces whose states stand at these places."""
         steps = np.searchsorted(self.starts, places, side="right") - 1
-        found: NDArray[np.int64] = places - self.starts[steps]
-        return found
+        result: NDArray[np.int64] = places - self.starts[steps]
+        return result
 
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
     """The layout of traces of these lengths. ValueError unless they descend and end above 0."""
-    found = np.asarray(lengths, dtype=np.int64)
-    if found.ndim != 1 or (len(found) and found[-1] < 1) or (np.diff(found) > 0).any():
+    result = np.asarray(lengths, dtype=np.int64)
+    if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():
         raise ValueError("lengths of traces descend, and each is at least 1")
-    longest = int(found[0]) if len(found) else 0
+    longest = int(result[0]) if len(result) else 0
     # At step t those are active that are longer than t.
-    active = len(found) - np.searchsorted(found[::-1], np.arange(longest), side="right")
-    return Layout(found, np.concatenate([[0], np.cumsum(active)]).astype(np.int64))
+    active = len(result) - np.searchsorted(result[::-1], np.arange(longest), side="right")
+    return Layout(result, np.concatenate([[0], np.cumsum(active)]).astype(np.int64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -35,24 +35,24 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
     from rulec.report.text.console import print_diagnostics, print_result, wants_color
 
     only_sources(rulebooks, "be analyzed")
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     unread: list[Diagnostic] = []
-    for answer in (_findings(one, at) for one in dict.fromkeys(rulebooks)):
+    for answer in (_findings(rulebook, at) for rulebook in dict.fromkeys(rulebooks)):
         if isinstance(answer, RulecError):
             unread += answer.diagnostics
         else:
-            found += answer
-    found = list(dict.fromkeys(found))
-    text = render(found, output_format, color=wants_color(sys.stdout), complete=not unread)
+            diagnostics += answer
+    diagnostics = list(dict.fromkeys(diagnostics))
+    text = render(diagnostics, output_format, color=wants_color(sys.stdout), complete=not unread)
     if text:
         print_result(text)
     elif output_format == "full" and not unread:
         number = len(rulebooks)
         print_result(f"{number:,} {'rulebook' if number == 1 else 'rulebooks'}, nothing found")
     print_diagnostics(unread)
-    if unread or any(one.code == "R0807" for one in found):
+    if unread or any(diagnostic.code == "R0807" for diagnostic in diagnostics):
         return ExitStatus.NOT_ANSWERED
-    fatal = any(fail_on in ("warning", one.severity) for one in found)
+    fatal = any(fail_on in ("warning", diagnostic.severity) for diagnostic in diagnostics)
     return ExitStatus.FOUND if fatal else ExitStatus.OK
 
 

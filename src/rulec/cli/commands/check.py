@@ -51,5 +51,5 @@ def command(
     print_diagnostics(done.unread)
     if done.unread:
         return ExitStatus.NOT_ANSWERED
-    found = any(fail_on in ("warning", one.severity) for one in done.findings)
-    return ExitStatus.FOUND if found else ExitStatus.OK
+    result = any(fail_on in ("warning", finding.severity) for finding in done.findings)
+    return ExitStatus.FOUND if result else ExitStatus.OK

@@ -78,12 +78,12 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     from rulec.report.pictures.picture_titles import scene_title
     from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 
-    graph, found, maneuver = _judged(**options)
+    graph, maneuvers, maneuver = _judged(**options)
     last = len(graph.layers) - 1
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
     chosen = sorted(set(layers)) or range(last + 1)
-    title = scene_title(graph, found, maneuver, options["number"] or 1)
+    title = scene_title(graph, maneuvers, maneuver, options["number"] or 1)
     pictures = scene_pictures(graph, chosen, maneuver)
     write(Drawing(title, pictures, scene_legend(graph, maneuver)), output, form)
 
@@ -105,12 +105,12 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     from rulec.report.pictures.graph_picture import graph_picture
     from rulec.report.pictures.picture_titles import graph_title
 
-    cells, found, maneuver = _judged(**options)
-    hard = found.hard if found else node_transformers(cells.trace_graph(), ())
-    product = found.product if found else explore(hard)
+    cells, maneuvers, maneuver = _judged(**options)
+    hard = maneuvers.hard if maneuvers else node_transformers(cells.trace_graph(), ())
+    product = maneuvers.product if maneuvers else explore(hard)
     ways = accepted_edges(hard, product)
-    picture = graph_picture(cells, ways, maneuver, judged=found is not None)
-    title = graph_title(cells, found, product.accepted)
+    picture = graph_picture(cells, ways, maneuver, judged=maneuvers is not None)
+    title = graph_title(cells, maneuvers, product.accepted)
     write(Drawing(title, [picture]), output, form)
 
 
@@ -135,13 +135,14 @@ def _judged(
         return navigation_graph(scene, **options), None, None
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     scene = load_scenario(scenario, chosen(options))
-    found = find_maneuvers(scene, rules, **options)
+    maneuvers = find_maneuvers(scene, rules, **options)
     wanted = number or 1
     maneuver = None
-    if wanted <= min(found.satisfying, sys.maxsize):
-        maneuver = next(islice(cheapest(found.product), wanted - 1, None))
+    if wanted <= min(maneuvers.satisfying, sys.maxsize):
+        maneuver = next(islice(cheapest(maneuvers.product), wanted - 1, None))
     if maneuver is None and number is not None:
         raise click.UsageError(
-            f"There is no maneuver {number}: {shown_count(found.satisfying)} satisfy the rulebook."
+            f"There is no maneuver {number}: "
+            f"{shown_count(maneuvers.satisfying)} satisfy the rulebook."
         )
-    return found.graph, found, maneuver
+    return maneuvers.graph, maneuvers, maneuver

@@ -82,12 +82,12 @@ def _trace(file: str, wanted: str | None) -> Trace:
     from rulec.trace.formats.trace_files import read_traces
 
     names: list[str] = []
-    for one in read_traces(file):
-        if isinstance(one, RulecError):
-            raise one
-        if wanted in (None, one.id):
-            return one
-        names.append(one.id)
+    for trace_ in read_traces(file):
+        if isinstance(trace_, RulecError):
+            raise trace_
+        if wanted in (None, trace_.id):
+            return trace_
+        names.append(trace_.id)
     some = ", ".join(f"`{name}`" for name in names[:5]) + (", …" if len(names) > 5 else "")
     raise click.UsageError(f"`{file}` has no trace `{wanted}`; it has {some}.")
 
@@ -103,6 +103,6 @@ def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRuleboo
     )
     if not kept:
         raise click.UsageError(
-            f"{rules.name} has no rule like {' or '.join(f'`{one}`' for one in patterns)}."
+            f"{rules.name} has no rule like {' or '.join(f'`{pattern}`' for pattern in patterns)}."
         )
     return replace(rules, rules=kept)

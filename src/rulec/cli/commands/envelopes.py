@@ -62,14 +62,14 @@ def command(
 
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     scene = load_scenario(scenario, chosen(options))
-    found = find_maneuvers(scene, rules, **options)
-    cheapest = found.cheapest(number)
+    maneuvers = find_maneuvers(scene, rules, **options)
+    cheapest = maneuvers.cheapest(number)
     form = form or format_of(str(output))
     if str(output) == "-":
-        write_envelopes(found.graph, cheapest, sys.stdout.buffer, "standard output", form)
+        write_envelopes(maneuvers.graph, cheapest, sys.stdout.buffer, "standard output", form)
     else:
         with written_whole(output) as stream:
-            write_envelopes(found.graph, cheapest, stream, str(output), form)
-        written = f"{len(cheapest):,} of {shown_count(found.satisfying)} satisfying maneuvers"
+            write_envelopes(maneuvers.graph, cheapest, stream, str(output), form)
+        written = f"{len(cheapest):,} of {shown_count(maneuvers.satisfying)} satisfying maneuvers"
         print_result(f"wrote {written} to {output}")
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

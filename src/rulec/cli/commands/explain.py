@@ -41,4 +41,4 @@ def command(code: str | None, every: bool, output_format: str) -> None:
         case "markdown":
             print_result(f"# {codes[0]}: {CODES[codes[0]]}\n\n{code_pages.as_markdown(codes[0])}")
         case _:
-            print_result("\n\n\n".join(code_pages.as_text(one) for one in codes))
+            print_result("\n\n\n".join(code_pages.as_text(code) for code in codes))

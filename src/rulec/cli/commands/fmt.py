@@ -45,7 +45,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
         _show(changed, check=check, diff=diff)
     else:
         unwritten = replace_files(changed)
-        named = {one.place.file for one in unwritten if one.place is not None}
+        named = {diagnostic.place.file for diagnostic in unwritten if diagnostic.place is not None}
         changed = [file for file in changed if file.name not in named]
         refused = (*refused, *unwritten)
     print_diagnostics(refused)

@@ -23,7 +23,7 @@ def command(kind: str | None, json_output: bool) -> None:
     from rulec.report.text.console import print_result
 
     kinds = KINDS[:-1] if kind is None else (kind,)
-    listed = {one: _listed(one) for one in kinds}
+    listed = {kind: _listed(kind) for kind in kinds}
     print_result(listing.as_json(listed) if json_output else listing.as_text(listed))
 
 
@@ -35,15 +35,15 @@ def _listed(kind: str) -> list[Listed]:
             from rulec.rulebook.files.catalogue import list_rulebooks
             from rulec.settings import search_path
 
-            found = list_rulebooks(search_path())
-            return [Listed(one.name, one.title, str(one.path)) for one in found]
+            entries = list_rulebooks(search_path())
+            return [Listed(entry.name, entry.title, str(entry.path)) for entry in entries]
         case "vocabularies":
             from rulec.rulebook.files.catalogue import list_vocabularies
             from rulec.settings import search_path
 
             return [
-                Listed(one.name, one.title, str(one.path))
-                for one in list_vocabularies(search_path())
+                Listed(vocabulary.name, vocabulary.title, str(vocabulary.path))
+                for vocabulary in list_vocabularies(search_path())
             ]
         case "scenarios":
             from rulec.resources import scenarios_folder

@@ -73,16 +73,16 @@ def command(
         monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
     complaints, refused = Complaints(), False
     with saved_at_the_end(monitor, save):
-        for one in read_live(sys.stdin.buffer, "standard input"):
-            found = answer(monitor, one)
-            if isinstance(found, RulecError):
+        for live in read_live(sys.stdin.buffer, "standard input"):
+            result = answer(monitor, live)
+            if isinstance(result, RulecError):
                 refused = True
-                complaints.add(found)
+                complaints.add(result)
                 if json_output:
-                    print_result(monitor_lines.refused_as_json(found))
+                    print_result(monitor_lines.refused_as_json(result))
             else:
                 print_result(
-                    monitor_lines.as_json(found) if json_output else monitor_lines.as_text(found)
+                    monitor_lines.as_json(result) if json_output else monitor_lines.as_text(result)
                 )
         complaints.close()
     if refused:

@@ -78,7 +78,7 @@ def command(
     from rulec.report.tests.example_text import shortcomings
     from rulec.report.text.console import print_aside, print_result, wants_color
 
-    compiled = next((one for one in rulebooks if one.endswith(".json")), None)
+    compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
     if compiled is not None:
         raise click.UsageError(f"`{compiled}` is compiled and has no examples; give its source")
     runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
@@ -91,7 +91,7 @@ def command(
         print_aside(f"rulec: {sentence}")
     if len(runs) < len(rulebooks):
         return ExitStatus.NOT_ANSWERED
-    failed = any(not one.passed for run in runs for one in run.outcomes)
+    failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
     return ExitStatus.FOUND if failed or short else ExitStatus.OK
 
 

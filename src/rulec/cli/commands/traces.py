@@ -96,14 +96,14 @@ def command(
         )
     wanted = total if limit is None else min(limit, total)
     with progress(f"writing {output}", wanted) as tell:
-        found = _told(all_traces(graph, name, wanted), tell)
+        traces = _told(all_traces(graph, name, wanted), tell)
         form = form or format_of(str(output))
         kinds = kinds_in(chain.from_iterable(graph.states))
         if str(output) == "-":
-            write_traces(found, sys.stdout.buffer, "standard output", form, kinds)
+            write_traces(traces, sys.stdout.buffer, "standard output", form, kinds)
             return
         with written_whole(output) as stream:
-            write_traces(found, stream, str(output), form, kinds)
+            write_traces(traces, stream, str(output), form, kinds)
     print_result(f"wrote {wanted:,} of {shown_count(total)} traces to {output}")
 
 
@@ -140,7 +140,7 @@ def _write_drives(
         book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
-    found = selected_drives(
+    result = selected_drives(
         read_recording(file, options["net"]),
         wanted(egos, about, vocabulary),
         str(file),
@@ -151,18 +151,18 @@ def _write_drives(
 
     def traces() -> Iterator[Trace]:
         nonlocal count
-        for number, ego in enumerate(found.egos, 1):
+        for number, ego in enumerate(result.egos, 1):
             tell(number)
-            for one in found.of(ego):
-                if isinstance(one, Drive) and (limit is None or count < limit):
+            for drive in result.of(ego):
+                if isinstance(drive, Drive) and (limit is None or count < limit):
                     count += 1
-                    yield one.trace
+                    yield drive.trace
 
-    kinds = found.drives.kinds()
+    kinds = result.drives.kinds()
     if not kinds:
         message = "nobody in this recording drives on a lane"
         raise RulecError(Diagnostic("R0612", message, SourceLocation(str(file))))
-    with progress(f"writing {output}", len(found.egos)) as tell:
+    with progress(f"writing {output}", len(result.egos)) as tell:
         form = form or format_of(str(output))
         if str(output) == "-":
             write_traces(traces(), sys.stdout.buffer, "standard output", form, kinds)

@@ -67,7 +67,7 @@ def only_sources(rulebooks: Iterable[str], done: str) -> None:
     Raises:
         click.UsageError: one of these is compiled.
     """
-    compiled = next((one for one in rulebooks if one.endswith(".json")), None)
+    compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
     if compiled is not None:
         raise click.UsageError(f"`{compiled}` is compiled and cannot {done}; give its source")
 

@@ -19,26 +19,26 @@ AdjacencyName = Literal["touch", "edge", "forward"]
 
 def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...], ...]:
     """For every cell the cells that a step leads to, in ascending order, itself left out."""
-    found: list[set[int]] = [set() for _ in plane.cells]
+    beside: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
         for behind, ahead in pairwise(row.runs):
             if behind.s_max == ahead.s_min:
-                found[behind.cell].add(ahead.cell)
+                beside[behind.cell].add(ahead.cell)
                 if adjacency != "forward":
-                    found[ahead.cell].add(behind.cell)
+                    beside[ahead.cell].add(behind.cell)
     for right, left in pairwise(plane.rows):
-        _sideways(right, left, adjacency == "touch", found)
-    return tuple(tuple(sorted(cells - {i})) for i, cells in enumerate(found))
+        _sideways(right, left, adjacency == "touch", beside)
+    return tuple(tuple(sorted(cells - {i})) for i, cells in enumerate(beside))
 
 
-def _sideways(right: Row, left: Row, corners: bool, found: list[set[int]]) -> None:
+def _sideways(right: Row, left: Row, corners: bool, beside: list[set[int]]) -> None:
     start = 0
     for run in right.runs:
         while start < len(left.runs) and left.runs[start].s_max < run.s_min:
             start += 1
-        for other in left.runs[start:]:
-            if other.s_min > run.s_max:
+        for opposite in left.runs[start:]:
+            if opposite.s_min > run.s_max:
                 break
-            if corners or (other.s_min < run.s_max and run.s_min < other.s_max):
-                found[run.cell].add(other.cell)
-                found[other.cell].add(run.cell)
+            if corners or (opposite.s_min < run.s_max and run.s_min < opposite.s_max):
+                beside[run.cell].add(opposite.cell)
+                beside[opposite.cell].add(run.cell)

@@ -19,11 +19,11 @@ def continuations(before: Plane, instant: Plane, after: Plane) -> Links:
     return tuple(frozenset().union(*(onward[i] for i in cells)) for cells in seen)
 
 
-def overlaps(plane: Plane, other: Plane) -> Links:
-    """For each cell of ``plane`` the cells of ``other`` with which it shares some area."""
-    found: list[set[int]] = [set() for _ in plane.cells]
+def overlaps(plane: Plane, later: Plane) -> Links:
+    """For each cell of ``plane`` the cells of ``later`` with which it shares some area."""
+    numberses: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
-        for across in other.rows:
+        for across in later.rows:
             if row.d_min >= across.d_max or across.d_min >= row.d_max:
                 continue
             start = 0
@@ -34,14 +34,14 @@ def overlaps(plane: Plane, other: Plane) -> Links:
                     candidate = across.runs[index]
                     if candidate.s_min >= run.s_max:
                         break
-                    found[run.cell].add(candidate.cell)
-    return tuple(frozenset(cells) for cells in found)
+                    numberses[run.cell].add(candidate.cell)
+    return tuple(frozenset(cells) for cells in numberses)
 
 
 def inverse(links: Links, size: int) -> Links:
     """The links the other way, for ``size`` cells."""
-    found: list[set[int]] = [set() for _ in range(size)]
+    numberses: list[set[int]] = [set() for _ in range(size)]
     for i, cells in enumerate(links):
         for j in cells:
-            found[j].add(i)
-    return tuple(frozenset(cells) for cells in found)
+            numberses[j].add(i)
+    return tuple(frozenset(cells) for cells in numberses)

@@ -45,7 +45,7 @@ def scene(
 ) -> Occupancy:
     """Where everything is, in every layer and at every instant between two."""
     everybody = predicted(scenario)
-    obstacles = [one.obstacle for one in everybody]
+    obstacles = [predicted_.obstacle for predicted_ in everybody]
     likeliest = len(scenario.obstacles)
     starts = [timing.start(p) for p in range(timing.layers + 1)]
     layers = list(pairwise(starts))
@@ -63,7 +63,7 @@ def scene(
     road = roadway(scenario.road, free, s, d)
 
     def regions(interval: tuple[float, float], looking: tuple[float, float]) -> tuple[Region, ...]:
-        found = (
+        generator = (
             region_of(
                 obstacles[i],
                 i,
@@ -78,7 +78,7 @@ def scene(
         )
         return tuple(
             region if region.obstacle < likeliest else entered(region)
-            for region in found
+            for region in generator
             if region is not None
         )
 
@@ -91,8 +91,8 @@ def scene(
     return Occupancy(
         road,
         layer_regions,
-        tuple(tuple(one for one in here if index_of[one] < likeliest) for here in names),
-        tuple(tuple(one for one in here if index_of[one] >= likeliest) for here in names),
+        tuple(tuple(name for name in here if index_of[name] < likeliest) for here in names),
+        tuple(tuple(name for name in here if index_of[name] >= likeliest) for here in names),
         instants,
         {name: everybody[i] for name, i in index_of.items()},
         present,

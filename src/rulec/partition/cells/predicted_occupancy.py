@@ -30,19 +30,23 @@ class Predicted:
 
 def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
     """All obstacles as it is likeliest, in their order, then as each other prediction has them."""
-    found = [Predicted(obstacle, obstacle.id, 0) for obstacle in scenario.obstacles]
+    predicteds = [Predicted(obstacle, obstacle.id, 0) for obstacle in scenario.obstacles]
     taken = {obstacle.id for obstacle in scenario.obstacles}
     for obstacle in scenario.obstacles:
-        for number, one in enumerate(obstacle.alternatives, start=1):
+        for number, alternative in enumerate(obstacle.alternatives, start=1):
             name = f"{obstacle.id}~{number}"
             while name in taken:
                 name += "~"
             taken.add(name)
             moving = replace(
-                obstacle, id=name, motion=one.motion, weight=one.weight, alternatives=()
+                obstacle,
+                id=name,
+                motion=alternative.motion,
+                weight=alternative.weight,
+                alternatives=(),
             )
-            found.append(Predicted(moving, obstacle.id, number))
-    return tuple(found)
+            predicteds.append(Predicted(moving, obstacle.id, number))
+    return tuple(predicteds)
 
 
 def entered(region: Region) -> Region:

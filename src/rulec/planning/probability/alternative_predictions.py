@@ -28,22 +28,24 @@ class AlternativeCounts:
     satisfying: int
 
 
-def alternative_counts(found: Maneuvers) -> list[AlternativeCounts]:
+def alternative_counts(maneuvers: Maneuvers) -> list[AlternativeCounts]:
     """The counts for every prediction that is not an obstacle's likeliest: exact."""
     return [
-        AlternativeCounts(obstacle.id, number, one.weight, *_counts(found, obstacle.id, number))
-        for obstacle in found.graph.scenario.obstacles
-        for number, one in enumerate(obstacle.alternatives, start=1)
+        AlternativeCounts(
+            obstacle.id, number, alternative.weight, *_counts(maneuvers, obstacle.id, number)
+        )
+        for obstacle in maneuvers.graph.scenario.obstacles
+        for number, alternative in enumerate(obstacle.alternatives, start=1)
     ]
 
 
-def _counts(found: Maneuvers, obstacle: str, number: int) -> tuple[int, int]:
-    graph, rules = found.graph, found.rules
+def _counts(maneuvers: Maneuvers, obstacle: str, number: int) -> tuple[int, int]:
+    graph, rules = maneuvers.graph, maneuvers.rules
     world = {obstacle: number}
     traces = world_graph(graph, world)
     if traces is None:
         return 0, 0
     paths = in_words(graph, traces, named_in(graph, world), rules.vocabulary)
-    past = past_for(graph, paths, rules, HARD, found.after)
+    past = past_for(graph, paths, rules, HARD, maneuvers.after)
     hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))
     return count_paths(paths), explore(hard).accepted

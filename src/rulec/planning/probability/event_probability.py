@@ -45,13 +45,13 @@ def _entangled(
     events: frozenset[Event], weights: Weights, known: dict[frozenset[Event], Fraction]
 ) -> Fraction:
     counted = Counter(obstacle for event in events for obstacle, _ in event)
-    obstacle = min(counted, key=lambda one: (-counted[one], one))
+    obstacle = min(counted, key=lambda candidate: (-counted[candidate], candidate))
     result = Fraction(0)
     for number, weight in weights[obstacle].items():
         left = frozenset(
             event - {(obstacle, number)}
             for event in events
-            if all(one != obstacle or what == number for one, what in event)
+            if all(name != obstacle or what == number for name, what in event)
         )
         result += weight * _none_of(left, weights, known)
     return result
@@ -63,7 +63,7 @@ def _independent(events: frozenset[Event]) -> Iterator[frozenset[Event]]:
     while left:
         group = {left.pop()}
         about = {obstacle for event in group for obstacle, _ in event}
-        while joining := {event for event in left if any(one in about for one, _ in event)}:
+        while joining := {event for event in left if any(name in about for name, _ in event)}:
             left -= joining
             group |= joining
             about |= {obstacle for event in joining for obstacle, _ in event}

@@ -38,16 +38,16 @@ class PredictionClasses:
 
         Those of a group count alike in every state, for a rule that is about other objects.
         """
-        found: dict[object, list[int]] = {}
+        result: dict[object, list[int]] = {}
         for number in self._path.weights[obstacle]:
             names = [
                 name
-                for name, one in self._path.predicted.items()
-                if (one.of, one.number) == (obstacle, number)
+                for name, predicted in self._path.predicted.items()
+                if (predicted.of, predicted.number) == (obstacle, number)
             ]
             if self._path.hit.isdisjoint(names):
-                found.setdefault(self._counted(names, number, binding), []).append(number)
-        return list(found.values())
+                result.setdefault(self._counted(names, number, binding), []).append(number)
+        return list(result.values())
 
     def _counted(self, names: list[str], number: int, binding: Binding) -> object:
         """How often it counts, term by term and state by state."""
@@ -65,7 +65,13 @@ class PredictionClasses:
     def _bound(self, term: Count, binding: Binding) -> tuple[tuple[str, str], ...]:
         """The other objects that a term speaks of."""
         free = dict.fromkeys(variables_of(term.body))
-        return tuple([(one, binding.objects[one]) for one in free if one != term.variable])
+        return tuple(
+            [
+                (variable, binding.objects[variable])
+                for variable in free
+                if variable != term.variable
+            ]
+        )
 
     def _is_counted(
         self, term: Count, layer: int, name: str, bound: tuple[tuple[str, str], ...]
@@ -88,7 +94,7 @@ def counted_types(formula: Formula) -> Iterator[str]:
 
 
 def _terms(formula: Formula) -> Iterator[Count]:
-    for one in atoms_of(formula):
-        for _, term in one.terms if isinstance(one, Comparison) else ():
+    for atom in atoms_of(formula):
+        for _, term in atom.terms if isinstance(atom, Comparison) else ():
             if isinstance(term, Count):
                 yield term

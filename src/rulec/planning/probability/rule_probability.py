@@ -50,13 +50,13 @@ class RuleProbabilities:
     rules: tuple[RuleProbability, ...]
 
 
-def rule_probabilities(found: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
+def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
     """The probabilities of one of the maneuvers: exact. Raises RulecError as ``best`` does."""
-    path = predicted_path(found.graph, maneuver.nodes)
-    judge = ViolationEvents(found, path)
+    path = predicted_path(maneuvers.graph, maneuver.nodes)
+    judge = ViolationEvents(maneuvers, path)
     hard: set[Event] | None = set(judge.hits)
     rules = []
-    for rule in found.rules.rules:
+    for rule in maneuvers.rules.rules:
         lost = judge.events(rule)
         rules.append(_of_rule(rule, lost, path.weights))
         if rule.strength == "hard":

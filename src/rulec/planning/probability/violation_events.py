@@ -28,13 +28,15 @@ Lost = dict[tuple[str, ...], set[Event]]
 class ViolationEvents:
     """What is lost on one path."""
 
-    def __init__(self, found: Maneuvers, path: PredictedPath) -> None:
-        self._book = found.rules
+    def __init__(self, maneuvers: Maneuvers, path: PredictedPath) -> None:
+        self._book = maneuvers.rules
         self._path = path
-        obstacles = {name: one.obstacle for name, one in path.predicted.items()}
-        self._words = in_words(found.graph, path.traces, obstacles, found.rules.vocabulary)
+        obstacles = {name: predicted.obstacle for name, predicted in path.predicted.items()}
+        self._words = in_words(maneuvers.graph, path.traces, obstacles, maneuvers.rules.vocabulary)
         self._states = [state for (state,) in self._words.states]
-        self._past = past_for(found.graph, found.paths, found.rules, (*HARD, *SOFT), found.after)
+        self._past = past_for(
+            maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after
+        )
         self._everybody = self._columns(self._words.objects)
 
     @property
@@ -92,7 +94,7 @@ class ViolationEvents:
                             for of, group in zip(others, chosen, strict=True)
                             if len(others[of]) > 1
                         ]
-                        events |= {event.union(one) for one in product(*open_ones)}
+                        events |= {event.union(combination) for combination in product(*open_ones)}
             if events:
                 lost.setdefault(self._of(names), set()).update(events)
         return lost
@@ -101,17 +103,21 @@ class ViolationEvents:
         """Is it of a type that the rule is about, or counts?"""
         kind = self._words.objects[name]
         types = {*(variable.type for variable in rule.variables), *counted_types(rule.formula)}
-        return any(self._book.vocabulary.is_subtype(kind, one) for one in types)
+        return any(self._book.vocabulary.is_subtype(kind, type_) for type_ in types)
 
     def _is_in(self, world: Mapping[str, int], name: str) -> bool:
         """Is it there in a world, which need not say what everybody does?"""
-        one = self._path.predicted[name]
-        return world.get(one.of, one.number) == one.number
+        predicted = self._path.predicted[name]
+        return world.get(predicted.of, predicted.number) == predicted.number
 
     def _event(self, names: Collection[str]) -> Event:
         """That these do as they are predicted to; what is certain does not count."""
         who = [self._path.predicted[name] for name in names]
-        return frozenset((one.of, one.number) for one in who if len(self._path.weights[one.of]) > 1)
+        return frozenset(
+            (predicted.of, predicted.number)
+            for predicted in who
+            if len(self._path.weights[predicted.of]) > 1
+        )
 
     def _of(self, names: Iterable[str]) -> tuple[str, ...]:
         return tuple([self._path.predicted[name].of for name in names])
@@ -129,10 +135,12 @@ class ViolationEvents:
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Those whose objects are as predictions have them that can come true together."""
         vocabulary, objects = self._book.vocabulary, self._words.objects
-        for one in bindings(rule, vocabulary, objects, self._words.present, len(self._states)):
-            who = [self._path.predicted[name] for name in one.objects.values()]
-            if len({each.of for each in who}) == len({(each.of, each.number) for each in who}):
-                yield one
+        for binding in bindings(rule, vocabulary, objects, self._words.present, len(self._states)):
+            who = [self._path.predicted[name] for name in binding.objects.values()]
+            if len({predicted.of for predicted in who}) == len(
+                {(predicted.of, predicted.number) for predicted in who}
+            ):
+                yield binding
 
     def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
         """Is it kept for these objects? Not if one of them hits ego."""

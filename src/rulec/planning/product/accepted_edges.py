@@ -43,13 +43,13 @@ def _accepted(
     nodes = [frozenset(node for node, _ in ahead)]
     edges = []
     for steps in reversed(product.steps):
-        found = [
+        result = [
             (origin, target)
             for origin, onward in steps.items()
             for target, _ in onward
             if target in ahead
         ]
-        edges.append(frozenset((origin[0], target[0]) for origin, target in found))
-        ahead = {origin for origin, _ in found}
+        edges.append(frozenset((origin[0], target[0]) for origin, target in result))
+        ahead = {origin for origin, _ in result}
         nodes.append(frozenset(node for node, _ in ahead))
     return tuple(reversed(nodes)), tuple(reversed(edges))

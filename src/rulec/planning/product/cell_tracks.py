@@ -30,8 +30,8 @@ def cell_tracks(graph: TraceGraph) -> Places:
         for node, (targets, times) in enumerate(zip(onward, margins, strict=True)):
             for target, margin in zip(targets, times, strict=True):
                 if margin is None and graph.states[layer][node] == graph.states[layer + 1][target]:
-                    one, other = root(rows[layer][node]), root(rows[layer + 1][target])
-                    parents[max(one, other)] = min(one, other)
+                    first, second = root(rows[layer][node]), root(rows[layer + 1][target])
+                    parents[max(first, second)] = min(first, second)
     numbers: dict[int, int] = {}
     return tuple(
         tuple([numbers.setdefault(root(node), len(numbers)) for node in row]) for row in rows

@@ -87,7 +87,7 @@ def instances(
     for layer, read in enumerate(columns):
         where = f"a cell of layer {layer}".format
         check_counting_axioms(rulebook, len(graph.states[layer]), read.moment, where, None)
-    found: list[Instance] = []
+    result: list[Instance] = []
     for rule in rules:
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
@@ -100,24 +100,24 @@ def instances(
             if not (stays and about in past.settled):
                 start = past.states.get(about, 0) if stays else 0
                 alike.setdefault((binding.first, start, letters), []).append(binding)
-        found += [
+        result += [
             Instance(rule, tuple(bound), letters, start)
             for (_, start, letters), bound in alike.items()
         ]
-    return found
+    return result
 
 
 def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
     """What a path, given by its nodes' indices, violates, and from which layer on it is lost."""
-    found = []
-    for one in rules:
-        path = nodes[one.first : one.last + 1]
-        word = [row[node] for row, node in zip(one.letters, path, strict=True)]
-        accepted, lost = run(one.rule.machine, word, one.start)
+    result = []
+    for rule in rules:
+        path = nodes[rule.first : rule.last + 1]
+        word = [row[node] for row, node in zip(rule.letters, path, strict=True)]
+        accepted, lost = run(rule.rule.machine, word, rule.start)
         if not accepted:
-            layer = None if lost is None else one.first + lost
-            found += [
-                Violation(one.rule.name, one.rule.strength, binding.objects, layer)
-                for binding in one.bindings
+            layer = None if lost is None else rule.first + lost
+            result += [
+                Violation(rule.rule.name, rule.rule.strength, binding.objects, layer)
+                for binding in rule.bindings
             ]
-    return tuple(found)
+    return tuple(result)

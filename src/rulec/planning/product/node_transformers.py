@@ -50,7 +50,7 @@ class NodeTransformers:
     @property
     def waiting(self) -> tuple[int, ...]:
         """The states of the machines before the first node."""
-        return tuple([one.start for one in self.instances])
+        return tuple([instance.start for instance in self.instances])
 
     def of(self, chosen: Sequence[int]) -> NodeTransformers:
         """The effects on some of the instances alone, by index."""
@@ -73,7 +73,7 @@ def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeT
     """What every node on a way from the graph's start to a goal does to every instance."""
     on_the_way = on_the_way_in(graph)
     steps = steps_in(graph, on_the_way)
-    found = [
+    result = [
         (instance, layers)
         for instance in instances
         if _can_be_lost(instance) and (layers := _merged(instance, steps, on_the_way)) is not None
@@ -81,14 +81,14 @@ def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeT
     nodes = []
     known: dict[tuple[int, ...], tuple[tuple[Effect, ...], ...]] = {}
     for p, alive in enumerate(on_the_way):
-        rows = [layers[p] for _, layers in found]
+        rows = [layers[p] for _, layers in result]
         key = (id(alive), *map(id, rows))
         if key not in known:
             known[key] = tuple(
                 [tuple([row[i] for row in rows]) if there else () for i, there in enumerate(alive)]
             )
         nodes.append(known[key])
-    bound = tuple([instance for instance, _ in found])
+    bound = tuple([instance for instance, _ in result])
     return NodeTransformers(graph, bound, tuple(on_the_way), steps, tuple(nodes))
 
 
@@ -130,8 +130,8 @@ def _merged(
         rows = steps[layer] if layer < len(steps) else ()
         key = (symbols, id(raw), id(rows), id(later), id(alive))
         if key not in known:
-            found = merging.layer(symbols, raw, rows, later, alive)
-            known[key] = same.setdefault(found, found)
+            numberses = merging.layer(symbols, raw, rows, later, alive)
+            known[key] = same.setdefault(numberses, numberses)
         later = known[key]
         layers.append(later)
     layers.reverse()
@@ -176,17 +176,17 @@ class _Merging:
         alive: Sequence[bool],
     ) -> tuple[Effect, ...]:
         """The effects of a layer's nodes, given those of the next layer's; none in the last."""
-        found: list[Effect] = []
+        effects: list[Effect] = []
         for node, symbol in enumerate(symbols):
             if not alive[node]:
-                found.append(())
+                effects.append(())
                 continue
             futures = frozenset([later[target] for target, _ in rows[node]]) if rows else None
             key = (id(raw), symbol, futures)
             if key not in self._known:
                 self._known[key] = _in_view_of(futures, raw[symbol])
-            found.append(self._known[key])
-        return tuple(found)
+            effects.append(self._known[key])
+        return tuple(effects)
 
 
 def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:

@@ -16,15 +16,15 @@ def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
     for successors in graph.successors:
         from_start.append({target for node in from_start[-1] for target in successors[node]})
     ahead = set(graph.goals)
-    found = []
+    result = []
     for layer in reversed(range(len(graph.states))):
         if layer < len(graph.successors):
             rows = graph.successors[layer]
             ahead = {node for node in from_start[layer] if not ahead.isdisjoint(rows[node])}
         ahead &= from_start[layer]
-        found.append(tuple([node in ahead for node in range(len(graph.states[layer]))]))
-    same = {layer: layer for layer in found}
-    return [same[layer] for layer in reversed(found)]
+        result.append(tuple([node in ahead for node in range(len(graph.states[layer]))]))
+    same = {layer: layer for layer in result}
+    return [same[layer] for layer in reversed(result)]
 
 
 def steps_in(
@@ -32,7 +32,7 @@ def steps_in(
 ) -> tuple[tuple[tuple[Step, ...], ...], ...]:
     """The followers of every node of every layer but the last, with their costs."""
     same: dict[object, tuple[tuple[Step, ...], ...]] = {}
-    found = []
+    result = []
     for layer, (rows, costs) in enumerate(zip(graph.successors, graph.weights, strict=True)):
         ahead = on_the_way[layer + 1]
         steps = tuple(
@@ -41,5 +41,5 @@ def steps_in(
                 for row, cost in zip(rows, costs, strict=True)
             ]
         )
-        found.append(same.setdefault(steps, steps))
-    return tuple(found)
+        result.append(same.setdefault(steps, steps))
+    return tuple(result)

@@ -76,7 +76,7 @@ def count_classes(effects: NodeTransformers, places: Places) -> HomotopyClasses:
             ends = here & dwell.ends
             counts[not ends.isdisjoint(accepted), not ends <= accepted] += words
             for entered in dwell.left(here).values():
-                first = min(dwell.layers[one] for one in entered)
+                first = min(dwell.layers[entry] for entry in entered)
                 there = dwell.stayed(entered)
                 ways[first][there] = ways[first].get(there, 0) + words
         ways[layer] = {}
@@ -95,7 +95,7 @@ def variants(product: Product, places: Places) -> Iterator[Variant]:
 
     def offer(word: tuple[int, ...], entered: _Ways) -> None:
         ways = _stayed(dwell, to_come, entered)
-        bound = min(way.cost + to_come[one] for one, way in ways.items())
+        bound = min(way.cost + to_come[node] for node, way in ways.items())
         heappush(queue, (bound, word, False, ways))
 
     for start in dwell.starts:
@@ -106,12 +106,12 @@ def variants(product: Product, places: Places) -> Iterator[Variant]:
         if complete:
             yield _variant(product, dwell, word, ways)
             continue
-        ends = {one: way for one, way in ways.items() if one in dwell.ends}
+        ends = {node: way for node, way in ways.items() if node in dwell.ends}
         if ends:
             heappush(queue, (min(way.cost for way in ends.values()), word, True, ends))
         entered: dict[int, _Ways] = {}
-        for one, way in ways.items():
-            for target, cost in dwell.leaves[one]:
+        for node, way in ways.items():
+            for target, cost in dwell.leaves[node]:
                 if target in to_come:
                     _join(entered.setdefault(dwell.place[target], {}), target, cost, way)
         for place, those in entered.items():
@@ -138,14 +138,14 @@ def _both_verdicts(
 def _costs_to_come(dwell: PlaceProduct) -> dict[int, int]:
     """The least cost from every product node that leads to an end."""
     costs = dict.fromkeys(dwell.ends, 0)
-    for one in reversed(range(len(dwell.nodes))):
+    for node in reversed(range(len(dwell.nodes))):
         rest = [
             cost + costs[target]
-            for target, cost in (*dwell.stays[one], *dwell.leaves[one])
+            for target, cost in (*dwell.stays[node], *dwell.leaves[node])
             if target in costs
         ]
         if rest:
-            costs[one] = min(rest)
+            costs[node] = min(rest)
     return costs
 
 
@@ -153,9 +153,9 @@ def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
     """Go on to a product node: the cheapest way is remembered, all are counted."""
     best = _Way(target, way, way.cost + cost, way.members)
     if target in ways:
-        other = ways[target]
-        cheaper = other if other.cost <= best.cost else best
-        best = replace(cheaper, members=best.members + other.members)
+        known = ways[target]
+        cheaper = known if known.cost <= best.cost else best
+        best = replace(cheaper, members=best.members + known.members)
     ways[target] = best
 
 
@@ -166,12 +166,12 @@ def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> 
     heapify(waiting)
     while waiting:
         # Numbers ascend with layers, so all ways to this one are known.
-        one = heappop(waiting)
-        for target, cost in dwell.stays[one]:
+        node = heappop(waiting)
+        for target, cost in dwell.stays[node]:
             if target in to_come:
                 if target not in ways:
                     heappush(waiting, target)
-                _join(ways, target, cost, ways[one])
+                _join(ways, target, cost, ways[node])
     return ways
 
 

@@ -28,19 +28,19 @@ Place = tuple[int, int, Joint]
 
 def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
     """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
-    found: list[Penalty] = []
+    penalties: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
     def worth(place: Place, penalty: Penalty) -> bool:
         """A penalty no higher than that of another way here stays so, whatever comes."""
         others = passed.setdefault(place, [])
-        if any(ranks.at_most(one, penalty) for one in (*found, *others)):
+        if any(ranks.at_most(numbers, penalty) for numbers in (*penalties, *others)):
             return False
         others.append(penalty)
         return True
 
     for penalty in _ascending(effects, ranks, worth):
-        found.append(penalty)
+        penalties.append(penalty)
         yield penalty
 
 
@@ -60,7 +60,11 @@ def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int
     places: dict[Penalty, int] = {}
     for penalty in _ascending(effects, ranks, worth):
         if penalty not in places:
-            lower = [place for one, place in places.items() if ranks.at_most(one, penalty)]
+            lower = [
+                place
+                for lower_penalty, place in places.items()
+                if ranks.at_most(lower_penalty, penalty)
+            ]
             places[penalty] = 1 + max(lower, default=0)
             yield places[penalty], penalty
 
@@ -75,9 +79,9 @@ def with_penalty(effects: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
         total = tuple(map(add, paid, due)) if due else paid
         return None if any(map(gt, total, wanted)) else (after, total)
 
-    found = explore(effects, enter, (effects.waiting, (0,) * len(ranks.ranks)))
-    ends = frozenset([end for end in found.ends if end[1][1] == wanted])
-    return replace(found, ends=ends)
+    product = explore(effects, enter, (effects.waiting, (0,) * len(ranks.ranks)))
+    ends = frozenset([end for end in product.ends if end[1][1] == wanted])
+    return replace(product, ends=ends)
 
 
 def _ascending(
@@ -126,8 +130,8 @@ def _fees(
 ) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
     """What the machines' states become at a node, and what is to be paid there, () for nothing."""
     prices = [
-        (ranks.of(one.rule), ranks.weight(one.rule) * len(one.bindings))
-        for one in effects.instances
+        (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
+        for instance in effects.instances
     ]
 
     def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:

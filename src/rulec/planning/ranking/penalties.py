@@ -50,16 +50,16 @@ class PenaltyOrder:
         """What each violated binding of the rule adds to its rank."""
         return int(rule.weight / self.unit)
 
-    def at_most(self, one: Penalty, other: Penalty) -> bool:
-        """Is one penalty as low as another, or lower?
+    def at_most(self, left: Penalty, right: Penalty) -> bool:
+        """Is left penalty as low as another, or lower?
 
-        It is if above every rank in which it is higher there is one in which it is lower. Adding
-        the same to both changes nothing, adding to one makes it no lower.
+        It is if above every rank in which it is higher there is left in which it is lower. Adding
+        the same to both changes nothing, adding to left makes it no lower.
         """
         return all(
-            any(one[higher] < other[higher] for higher in self.above[index])
-            for index in range(len(one))
-            if one[index] > other[index]
+            any(left[higher] < right[higher] for higher in self.above[index])
+            for index in range(len(left))
+            if left[index] > right[index]
         )
 
     def weights(self, penalty: Penalty) -> tuple[Fraction, ...]:
@@ -74,33 +74,37 @@ def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:
     first: a rank stands behind all above it, and among others as the rulebook names the levels.
     """
     order = rulebook.priorities
-    found = []
+    penalty_ranks = []
     for strength in ("hard", "soft"):
         used = {rule.level for rule in rulebook.rules if rule.strength == strength}
         waiting = [level for level in (*rulebook.levels, "") if level in used]
         while waiting:
-            top = next(one for one in waiting if not _any_above(one, waiting, order))
+            top = next(level for level in waiting if not _any_above(level, waiting, order))
             equal = [
-                one
-                for one in waiting
-                if one == top or ((one, top) in order and (top, one) in order)
+                level
+                for level in waiting
+                if level == top or ((level, top) in order and (top, level) in order)
             ]
-            found.append(PenaltyRank(strength, tuple(equal)))
-            waiting = [one for one in waiting if one not in equal]
+            penalty_ranks.append(PenaltyRank(strength, tuple(equal)))
+            waiting = [level for level in waiting if level not in equal]
     above = tuple(
-        frozenset(index for index, other in enumerate(found) if _is_above(other, rank, order))
-        for rank in found
+        frozenset(
+            index
+            for index, penalty_rank in enumerate(penalty_ranks)
+            if _is_above(penalty_rank, rank, order)
+        )
+        for rank in penalty_ranks
     )
     weights = [rule.weight.denominator for rule in rulebook.rules]
-    return PenaltyOrder(tuple(found), above, Fraction(1, lcm(*weights)))
+    return PenaltyOrder(tuple(penalty_ranks), above, Fraction(1, lcm(*weights)))
 
 
-def _is_above(one: PenaltyRank, other: PenaltyRank, order: frozenset[tuple[str, str]]) -> bool:
-    if one.strength != other.strength:
-        return one.strength == "hard"
-    (higher, *_), (lower, *_) = one.levels, other.levels
+def _is_above(left: PenaltyRank, right: PenaltyRank, order: frozenset[tuple[str, str]]) -> bool:
+    if left.strength != right.strength:
+        return left.strength == "hard"
+    (higher, *_), (lower, *_) = left.levels, right.levels
     return (higher, lower) in order and (lower, higher) not in order
 
 
 def _any_above(level: str, others: Sequence[str], order: frozenset[tuple[str, str]]) -> bool:
-    return any((one, level) in order and (level, one) not in order for one in others)
+    return any((higher, level) in order and (level, higher) not in order for higher in others)

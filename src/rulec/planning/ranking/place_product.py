@@ -65,13 +65,13 @@ def place_product(product: Product, places: Places) -> PlaceProduct:
         tuple(place),
         tuple(
             [
-                tuple([one for one in row if place[one[0]] == here])
+                tuple([step for step in row if place[step[0]] == here])
                 for row, here in zip(steps, place, strict=True)
             ]
         ),
         tuple(
             [
-                tuple([one for one in row if place[one[0]] != here])
+                tuple([step for step in row if place[step[0]] != here])
                 for row, here in zip(steps, place, strict=True)
             ]
         ),

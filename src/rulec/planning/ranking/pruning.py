@@ -19,12 +19,12 @@ Blaming = tuple[Joint, int]
 def violating(effects: NodeTransformers) -> dict[str, Product]:
     """For every rule that some path violates the product in which these are accepted."""
     rules = _rules(effects)
-    found = {}
+    result = {}
     for number, rule in enumerate(dict.fromkeys(rules)):
         indices = [i for i, name in enumerate(rules) if name == rule]
         product = _blaming(effects.of(indices), [number] * len(indices))
-        found[rule] = _blamed(product, number)
-    return {rule: product for rule, product in found.items() if product.ends}
+        result[rule] = _blamed(product, number)
+    return {rule: product for rule, product in result.items() if product.ends}
 
 
 def violating_alone(effects: NodeTransformers) -> dict[str, Product]:
@@ -32,12 +32,12 @@ def violating_alone(effects: NodeTransformers) -> dict[str, Product]:
     rules = _rules(effects)
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
     product = _blaming(effects, [numbers[rule] for rule in rules])
-    found = {rule: _blamed(product, number) for rule, number in numbers.items()}
-    return {rule: product for rule, product in found.items() if product.ends}
+    result = {rule: _blamed(product, number) for rule, number in numbers.items()}
+    return {rule: product for rule, product in result.items() if product.ends}
 
 
 def _rules(effects: NodeTransformers) -> list[str]:
-    return [one.rule.name for one in effects.instances]
+    return [instance.rule.name for instance in effects.instances]
 
 
 def _blaming(effects: NodeTransformers, of: Sequence[int]) -> Product:

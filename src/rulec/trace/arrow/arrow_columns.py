@@ -21,19 +21,19 @@ _FEW = 1 << 10
 
 def columns_of(piece: Any, table: Table) -> Mapping[str, Column]:
     """The columns of a piece (a record batch). Raises OddTableError."""
-    found: dict[str, Column] = {}
+    columns: dict[str, Column] = {}
     for name, array in zip(table.columns, piece.columns, strict=True):
         if types.is_dictionary(array.type):
             array = array.dictionary_decode()  # whose values need not be distinct
         if name in NAMES:
-            found[name] = coded(array)
+            columns[name] = coded(array)
         elif table.has_texts:
-            found[name] = _read(coded(array), table.value)
+            columns[name] = _read(coded(array), table.value)
         elif types.is_integer(array.type) or types.is_floating(array.type):
-            found[name] = _numbers(array)
+            columns[name] = _numbers(array)
         else:
-            found[name] = coded(array)
-    return found
+            columns[name] = coded(array)
+    return columns
 
 
 def coded(array: Any) -> Coded:

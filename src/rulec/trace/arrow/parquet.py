@@ -81,10 +81,10 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
     if not size:
         return problem(f"{what}: it is empty", SourceLocation(file), _AGAIN)
     if beginning != _MARK:
-        found = packed(beginning)
-        if found is not None:
+        result = packed(beginning)
+        if result is not None:
             return problem(
-                f"this is no Parquet, but {found.noun}", SourceLocation(file), found.help
+                f"this is no Parquet, but {result.noun}", SourceLocation(file), result.help
             )
         way_out = "if it is in another format, name that with `--format`"
         return problem(f"{what}: it does not begin with `PAR1`", SourceLocation(file), way_out)

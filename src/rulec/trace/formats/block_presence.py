@@ -75,7 +75,7 @@ def outlined(block: Block) -> BlockPresence:
         raise OddTableError
     rows = np.flatnonzero(is_about)
     keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
-    found, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
+    result, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first_row)
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
@@ -99,7 +99,7 @@ def outlined(block: Block) -> BlockPresence:
         trace,
         step,
         item,
-        _others(others, items, trace, (found, rank), starts_of_objects),
+        _others(others, items, trace, (result, rank), starts_of_objects),
         [names.values[code] for code in names.codes[starts[:-1]].tolist()],
         length,
         _step_s(block.columns.get(STEP_S), trace, starts),
@@ -111,9 +111,9 @@ def outlined(block: Block) -> BlockPresence:
 
 
 def _names(column: Column) -> Coded:
-    if not isinstance(column, Coded) or not {type(one) for one in column.values} <= {str, int}:
+    if not isinstance(column, Coded) or not {type(value) for value in column.values} <= {str, int}:
         raise OddTableError
-    return Coded(column.codes, [str(one) for one in column.values])
+    return Coded(column.codes, [str(value) for value in column.values])
 
 
 def _steps(column: Column) -> Rows:
@@ -121,7 +121,7 @@ def _steps(column: Column) -> Rows:
         raise OddTableError
     table = [whole(value) for value in column.values]
     most = len(column.codes)
-    if (column.codes < 0).any() or not all(one is not None and one < most for one in table):
+    if (column.codes < 0).any() or not all(entry is not None and entry < most for entry in table):
         raise OddTableError
     return np.array(table, dtype=np.int64).take(column.codes)
 
@@ -134,10 +134,10 @@ def _others(
     starts: NDArray[np.int64],
 ) -> Rows:
     """The places of second objects, which have rows of their own in the same trace."""
-    found = np.full(len(trace), NOBODY)
+    result = np.full(len(trace), NOBODY)
     rows = np.flatnonzero(others.given)
     if not len(rows):
-        return found
+        return result
     places = {name: place for place, name in enumerate(items.values)}
     codes = np.array([places.get(name, -1) for name in others.values]).take(others.codes[rows])
     keys, rank = known
@@ -145,8 +145,8 @@ def _others(
     at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
     if (codes < 0).any() or (keys[at] != wanted).any():
         raise OddTableError
-    found[rows] = rank[at] - starts[trace[rows]]
-    return found
+    result[rows] = rank[at] - starts[trace[rows]]
+    return result
 
 
 def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -162,7 +162,7 @@ def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> ND
         if not {type(value) for value in column.values} <= {int, float}:
             raise OddTableError
         seconds = np.array(column.values, dtype=np.float64).take(column.codes)
-    found = seconds[starts[:-1]]
-    if not ((found > 0) & np.isfinite(found)).all() or (seconds != found[trace]).any():
+    result = seconds[starts[:-1]]
+    if not ((result > 0) & np.isfinite(result)).all() or (seconds != result[trace]).any():
         raise OddTableError
-    return found
+    return result

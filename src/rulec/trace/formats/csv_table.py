@@ -53,9 +53,9 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
         stream.seek(-len(beginning), io.SEEK_CUR)
     else:
         beginning = cast("io.BufferedReader", stream).peek()
-    found = foreign(beginning)
-    if found is not None:
-        return problem(f"this is no CSV, but {found.noun}", SourceLocation(file), found.help)
+    result = foreign(beginning)
+    if result is not None:
+        return problem(f"this is no CSV, but {result.noun}", SourceLocation(file), result.help)
     if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         return problem("this is no CSV, but JSON", SourceLocation(file), "add `--format jsonl`")
     return None

@@ -26,7 +26,7 @@ _TEXT = frozenset(b"\t\n\r\f")
 
 def packed(beginning: bytes) -> Foreign | None:
     """What a file with this beginning is, if it is not plain but a well-known container."""
-    return next((one for mark, one in _BEGINNINGS.items() if beginning.startswith(mark)), None)
+    return next((kind for mark, kind in _BEGINNINGS.items() if beginning.startswith(mark)), None)
 
 
 def foreign(beginning: bytes) -> Foreign | None:
@@ -34,9 +34,9 @@ def foreign(beginning: bytes) -> Foreign | None:
 
     The beginning is some bytes, or the first line.
     """
-    found = packed(beginning)
-    if found is not None:
-        return found
+    result = packed(beginning)
+    if result is not None:
+        return result
     some = beginning[:1000]
     if _is_utf16(some):
         return Foreign("text in UTF-16", "save it in UTF-8")

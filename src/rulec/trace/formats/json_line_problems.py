@@ -65,10 +65,10 @@ class Kind:
         return self.bad(f"{what}: {words}", place, help_text)
 
 
-def _spelling(found: bytes) -> str:
-    if found.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
+def _spelling(text: bytes) -> str:
+    if text.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
         return "JSON has no `NaN` and no infinity: a value has to be a number"
-    if found.startswith((b"'", b"True", b"False", b"None")):
+    if text.startswith((b"'", b"True", b"False", b"None")):
         return "in JSON texts stand in double quotes, and it is `true`, `false`, `null`"
     return ""
 
@@ -94,14 +94,14 @@ def middle_of(line: bytes) -> str:
     called = b""
     begun: int | None = None
     """Where the text that it is in has begun."""
-    for found in _MARK.finditer(line) if len(line) <= _MOST_SEARCHED else ():
-        mark = found[0]
+    for match_ in _MARK.finditer(line) if len(line) <= _MOST_SEARCHED else ():
+        mark = match_[0]
         if mark == b'"' and begun is None:
-            begun = found.end()
+            begun = match_.end()
         elif mark == b'"' and begun is not None:
             if open_ and open_[-1] is None:
-                open_[-1] = line[begun : found.start()]
-                said = _CALLED.match(line, found.end())
+                open_[-1] = line[begun : match_.start()]
+                said = _CALLED.match(line, match_.end())
                 if open_ == [b"id"] and said is not None:
                     called = said[1].strip(b'"')
             begun = None

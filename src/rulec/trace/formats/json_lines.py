@@ -66,7 +66,7 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
         For every line a Trace, or the RulecError (R0501) that says why it is none; for a stream
         without any trace one RulecError (R0501).
     """
-    number = found = 0
+    number = result = 0
     read_state = _StateReader()
     torn: _Torn | None = None
     for lines in lines_as_they_come(stream, LONGEST_LINE_BYTES):
@@ -82,23 +82,23 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
                     return
             if line.isspace() or not line:
                 continue
-            one = _trace(line, place, read_state)
+            trace = _trace(line, place, read_state)
             if torn is not None:
-                if isinstance(one, RulecError) and not line.startswith(b"{"):
+                if isinstance(trace, RulecError) and not line.startswith(b"{"):
                     torn.goes_on = True
                     continue
                 chunk.append(torn.error(at_the_end=False))
                 torn = None
-            if isinstance(one, RulecError) and is_beginning(line):
+            if isinstance(trace, RulecError) and is_beginning(line):
                 torn = _Torn(line, place)
             else:
-                chunk.append(one)
-        found += len(chunk)
+                chunk.append(trace)
+        result += len(chunk)
         if chunk:
             yield chunk
     if torn is not None:
         yield [torn.error(at_the_end=True)]
-    elif not found:
+    elif not result:
         yield [_TRACE.bad("there is no trace in this file: it is empty", SourceLocation(file))]
 
 
@@ -124,10 +124,10 @@ class _Torn:
 
 def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
     """Why a file with this first line has no traces in it at all, if that is so."""
-    found = foreign(first)
-    if found is not None:
+    result = foreign(first)
+    if result is not None:
         return _TRACE.bad(
-            f"these are no traces, but {found.noun}", SourceLocation(place.file), found.help
+            f"these are no traces, but {result.noun}", SourceLocation(place.file), result.help
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
         return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")

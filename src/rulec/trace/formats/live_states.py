@@ -56,10 +56,10 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             number += 1
             if number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
-                found = foreign(line)
-                if found is not None:
-                    message = f"these are no states, but {found.noun}"
-                    yield _STATE.bad(message, SourceLocation(file), found.help)
+                result = foreign(line)
+                if result is not None:
+                    message = f"these are no states, but {result.noun}"
+                    yield _STATE.bad(message, SourceLocation(file), result.help)
                     return
             if line.strip():
                 yield _read(line, SourceLocation(file, number))

@@ -70,7 +70,7 @@ class Block(Sequence["Trace | RulecError"]):
     def __getitem__(self, place: slice) -> list[Trace | RulecError]: ...
     def __getitem__(self, place: int | slice) -> Trace | RulecError | list[Trace | RulecError]:
         if isinstance(place, slice):
-            return [self[one] for one in range(len(self))[place]]
+            return [self[index] for index in range(len(self))[place]]
         place = range(len(self))[place]
         (trace,) = self._read(int(self.starts[place]), int(self.starts[place + 1]))
         return trace
@@ -83,8 +83,8 @@ class Block(Sequence["Trace | RulecError"]):
         column, row = self.columns.get(STEP_S), self.starts[place]
         if column is None or not column.given[row]:
             return 1.0
-        found = column.numbers if isinstance(column, Numbers) else column.values
-        return float(found[row if isinstance(column, Numbers) else column.codes[row]])
+        result = column.numbers if isinstance(column, Numbers) else column.values
+        return float(result[row if isinstance(column, Numbers) else column.codes[row]])
 
     def _read(self, start: int, stop: int) -> Iterator[Trace | RulecError]:
         return traces_in(self.rows(start, stop), self.table, self.file)

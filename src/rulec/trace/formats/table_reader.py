@@ -154,11 +154,11 @@ class _Building:
     def _add(self, number: int, cells: Sequence[Any]) -> None:
         table = self.table
         if len(cells) != len(table.columns):
-            found = f"{len(cells)} cells; there are {len(table.columns)} columns"
+            result = f"{len(cells)} cells; there are {len(table.columns)} columns"
             few = "there is a cell for every column; has the file been cut short?"
             many = "a text with a comma in it stands in quotes"
             help_text = few if len(cells) < len(table.columns) else many
-            raise self._problem(f"this row has {found}", number, help_text)
+            raise self._problem(f"this row has {result}", number, help_text)
         if is_empty(self.name):
             raise self._problem("this row does not say of which trace it is", number)
         self._go_to(cells[table.at[STEP]], number)
@@ -168,12 +168,12 @@ class _Building:
         self.now.append((number, cells))
 
     def _go_to(self, step: Any, number: int) -> None:
-        found = whole(step)
+        result = whole(step)
         current = len(self.states) if self.now else -1
-        if found == current + 1:
+        if result == current + 1:
             if self.now:
                 self._end_state()
-        elif found is None or found != current:
+        elif result is None or result != current:
             wanted = "0" if current < 0 else f"{current} or {current + 1}"
             message = f"the step is {_shown(step)}; here it is {wanted}"
             help_text = "the rows of a trace stand together, in the order of its steps, from 0 on"
@@ -212,9 +212,11 @@ class _Building:
 
     def _end_state(self) -> None:
         columns = [
-            self.table.at[one] for one in (OBJECT, OTHER, *self.table.names) if one in self.table.at
+            self.table.at[name]
+            for name in (OBJECT, OTHER, *self.table.names)
+            if name in self.table.at
         ]
-        key = tuple([tuple([cells[one] for one in columns]) for _, cells in self.now])
+        key = tuple([tuple([cells[column] for column in columns]) for _, cells in self.now])
         state = self.known.get(key)
         if state is None:
             state = self._state()
@@ -228,8 +230,8 @@ class _Building:
         table = self.table
         state: dict[str, Any] = {}
         for number, cells in self.now:
-            items = [table.cell(cells, one) for one in (OBJECT, OTHER)]
-            path = [str(one) for one in items if not is_empty(one)]
+            items = [table.cell(cells, column) for column in (OBJECT, OTHER)]
+            path = [str(item) for item in items if not is_empty(item)]
             for name in table.names:
                 cell = table.cell(cells, name)
                 if is_empty(cell):

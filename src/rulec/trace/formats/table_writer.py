@@ -17,8 +17,8 @@ def kinds_in(states: Iterable[State]) -> dict[str, type]:
     kinds: dict[str, type] = {}
     for state in states:
         for name, value in state.items():
-            for one in _leaves(value):
-                kinds.setdefault(name, float if type(one) is int else type(one))
+            for leave in _leaves(value):
+                kinds.setdefault(name, float if type(leave) is int else type(leave))
     return kinds
 
 
