@@ -21,7 +21,7 @@ def continuations(before: Plane, instant: Plane, after: Plane) -> Links:
 
 def overlaps(plane: Plane, later: Plane) -> Links:
     """For each cell of ``plane`` the cells of ``later`` with which it shares some area."""
-    numberses: list[set[int]] = [set() for _ in plane.cells]
+    links: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
         for across in later.rows:
             if row.d_min >= across.d_max or across.d_min >= row.d_max:
@@ -34,14 +34,14 @@ def overlaps(plane: Plane, later: Plane) -> Links:
                     candidate = across.runs[index]
                     if candidate.s_min >= run.s_max:
                         break
-                    numberses[run.cell].add(candidate.cell)
-    return tuple(frozenset(cells) for cells in numberses)
+                    links[run.cell].add(candidate.cell)
+    return tuple(frozenset(cells) for cells in links)
 
 
 def inverse(links: Links, size: int) -> Links:
     """The links the other way, for ``size`` cells."""
-    numberses: list[set[int]] = [set() for _ in range(size)]
+    links: list[set[int]] = [set() for _ in range(size)]
     for i, cells in enumerate(links):
         for j in cells:
-            numberses[j].add(i)
-    return tuple(frozenset(cells) for cells in numberses)
+            links[j].add(i)
+    return tuple(frozenset(cells) for cells in links)

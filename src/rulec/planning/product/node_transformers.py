@@ -130,8 +130,8 @@ def _merged(
         rows = steps[layer] if layer < len(steps) else ()
         key = (symbols, id(raw), id(rows), id(later), id(alive))
         if key not in known:
-            numberses = merging.layer(symbols, raw, rows, later, alive)
-            known[key] = same.setdefault(numberses, numberses)
+            transformers = merging.layer(symbols, raw, rows, later, alive)
+            known[key] = same.setdefault(transformers, transformers)
         later = known[key]
         layers.append(later)
     layers.reverse()
