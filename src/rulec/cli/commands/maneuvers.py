@@ -97,24 +97,26 @@ def command(
     rules = machines(rulebook, search_path(), print_diagnostics, at)
     past = None if after is None else read_past(after)
     scene = load_scenario(scenario, chosen(options))
-    found = find_maneuvers(scene, rules, after=past, **options)
-    listed = None if n_listed is None else found.cheapest(n_listed)
-    best = None if found.satisfying or n_ranked is not None else _best(found)
-    ranked = None if n_ranked is None else found.ranked(n_ranked)
+    maneuvers = find_maneuvers(scene, rules, after=past, **options)
+    listed = None if n_listed is None else maneuvers.cheapest(n_listed)
+    best = None if maneuvers.satisfying or n_ranked is not None else _best(maneuvers)
+    ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
     shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
-    uncertain = any(one.alternatives for one in scene.obstacles)
+    uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)
     answers = report.ManeuverAnswers(
         listed=listed,
         best=best,
         ranked=ranked,
-        chances={one.nodes: rule_probabilities(found, one) for one in shown} if uncertain else {},
-        worlds=alternative_counts(found) if worlds else None,
-        prunings=found.prunings() if why else None,
-        classes=None if n_classes is None else (found.classes(), found.variants(n_classes)),
+        chances={one.nodes: rule_probabilities(maneuvers, one) for one in shown}
+        if uncertain
+        else {},
+        worlds=alternative_counts(maneuvers) if worlds else None,
+        prunings=maneuvers.prunings() if why else None,
+        classes=None if n_classes is None else (maneuvers.classes(), maneuvers.variants(n_classes)),
     )
     seconds = time.perf_counter() - begin
-    print_result((report.as_json if json_output else report.as_text)(found, answers, seconds))
-    return ExitStatus.OK if found.satisfying else ExitStatus.VIOLATED
+    print_result((report.as_json if json_output else report.as_text)(maneuvers, answers, seconds))
+    return ExitStatus.OK if maneuvers.satisfying else ExitStatus.VIOLATED
 
 
 def _best(found: Maneuvers) -> Sequence[RankedManeuver] | None:

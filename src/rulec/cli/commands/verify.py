@@ -176,23 +176,25 @@ class _Run:
         tally = ViolationTally()
         blocks = []
         with progress(f"judging {file}", len(judged.egos)) as tell:
-            for number, one in enumerate(judged.answers(), 1):
+            for number, answer in enumerate(judged.answers(), 1):
                 tell(number)
-                tally.add(one)
+                tally.add(answer)
                 explained = []
-                if isinstance(one, DriveVerdict) and isinstance(one.answer, Verdict):
-                    chosen = one.answer.violations[: self.to_explain]
+                if isinstance(answer, DriveVerdict) and isinstance(answer.answer, Verdict):
+                    chosen = answer.answer.violations[: self.to_explain]
                     self.to_explain -= len(chosen)
-                    explained = [explain(x, one.drive.trace, judged.rules) for x in chosen]
+                    explained = [explain(x, answer.drive.trace, judged.rules) for x in chosen]
                     if explained:
                         blocks.append(
-                            report.drive_details(one, judged, explained, every_part=self.every_part)
+                            report.drive_details(
+                                answer, judged, explained, every_part=self.every_part
+                            )
                         )
-                elif isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged):
-                    self.complaints.add(one.answer.error)
+                elif isinstance(answer, DriveVerdict) and isinstance(answer.answer, NotJudged):
+                    self.complaints.add(answer.answer.error)
                     self.not_answered = True
                 if self.json_output:
-                    print_result(report.as_json(one, judged, explained))
+                    print_result(report.as_json(answer, judged, explained))
         if not self.json_output:
             print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
         self.violated |= bool(tally.violated)
@@ -228,8 +230,8 @@ def _judged(
 
     with progress(f"judging {name}", size) as tell:
         for traces in read_chunks(stream, name, form):
-            found, answers = verify_items(traces, rules)
+            result, answers = verify_items(traces, rules)
             for place, answer in enumerate(answers):
-                yield found, place, answer
+                yield result, place, answer
             if size is not None:
                 tell(stream.tell())

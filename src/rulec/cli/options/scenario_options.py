@@ -27,17 +27,17 @@ def _prediction(
     known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
     if value in PREDICTIONS:
         return value
-    found: dict[str, Fraction] = {}
+    fractions: dict[str, Fraction] = {}
     for part in value.split(","):
         kind, _, weight = (one.strip() for one in part.partition("="))
-        if kind not in PREDICTIONS or kind in found:
+        if kind not in PREDICTIONS or kind in fractions:
             raise click.BadParameter(f"it has to be {known}, or each of them once with a weight")
-        found[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
-        if not found[kind]:
+        fractions[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
+        if not fractions[kind]:
             raise click.BadParameter(f"`{part}` has to end in a weight above 0, such as `=0.7`")
-    if not is_distribution(sum(found.values(), Fraction(0))):
+    if not is_distribution(sum(fractions.values(), Fraction(0))):
         raise click.BadParameter("the weights have to add up to 1")
-    return found
+    return fractions
 
 
 def _scene_options(function: Decorated) -> Decorated:

@@ -40,8 +40,8 @@ def overlaps(plane: Plane, later: Plane) -> Links:
 
 def inverse(links: Links, size: int) -> Links:
     """The links the other way, for ``size`` cells."""
-    links: list[set[int]] = [set() for _ in range(size)]
+    origins: list[set[int]] = [set() for _ in range(size)]
     for i, cells in enumerate(links):
         for j in cells:
-            links[j].add(i)
-    return tuple(frozenset(cells) for cells in links)
+            origins[j].add(i)
+    return tuple(frozenset(cells) for cells in origins)
