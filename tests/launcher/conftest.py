@@ -114,8 +114,15 @@ def checkout(tmp_path):
     folder, tools = tmp_path / "checkout", tmp_path / "tools"
     folder.mkdir()
     tools.mkdir()
-    for part in ("rulec", "pyproject.toml", "tests/run", ".ci/run"):
-        (folder / part).parent.mkdir(exist_ok=True)
+    for part in (
+        "rulec",
+        "pyproject.toml",
+        "tests/run",
+        "tests/benchmarks/run",
+        ".ci/run",
+        ".ci/task",
+    ):
+        (folder / part).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / part, folder / part)
     shutil.copytree(ROOT / "src/launcher", folder / "src/launcher")
     for tool in TOOLS.split():

@@ -19,8 +19,8 @@ from pygments.token import (
 )
 
 from rulec.report.text.pygments_lexer import RulecLexer
-from rulec.report.textmate import textmate_grammar
 from rulec.syntax.keywords import ITEM_WORDS, OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED, SYMBOLS
+from tools.textmate import textmate_grammar
 
 ROOT = Path(__file__).resolve().parents[2]
 RULEBOOKS = [*(ROOT / "rulebooks").rglob("*.rules"), *(ROOT / "tests").rglob("good/*.rules")]
@@ -116,13 +116,6 @@ def test_textmate_knows_numbers_and_their_units():
 def test_pygments_finds_the_lexer():
     assert type(get_lexer_by_name("rulec")) is RulecLexer
     assert type(get_lexer_for_filename("de.rules")) is RulecLexer
-
-
-def test_the_textmate_grammar_is_up_to_date():
-    file = ROOT / "grammar" / "rulec.tmLanguage.json"
-    assert file.read_text(encoding="utf-8") == textmate_grammar(), (
-        "python -m rulec.report.textmate grammar/rulec.tmLanguage.json"
-    )
 
 
 @pytest.mark.parametrize("word", sorted(RESERVED))

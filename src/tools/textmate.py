@@ -1,21 +1,15 @@
-"""The TextMate grammar in ``grammar/``, made from the words that the parser knows.
-
-``python -m rulec.report.textmate grammar/rulec.tmLanguage.json`` makes it anew.
-"""
+"""The TextMate grammar in ``grammar/``, made from the words that the parser knows."""
 
 from __future__ import annotations
 
 import json
-import sys
-from pathlib import Path
 from typing import Any
 
-from rulec.files import written_whole
 from rulec.syntax import highlighting as words
 
 
 def textmate_grammar() -> str:
-    """The grammar's text, JSON as editors read it."""
+    """Generate the grammar, JSON as editors read it."""
     return json.dumps(_grammar(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -65,8 +59,3 @@ def _named(match: str) -> dict[str, Any]:
             "3": {"name": "entity.name.function.rulec"},
         },
     }
-
-
-if __name__ == "__main__":
-    with written_whole(Path(sys.argv[1])) as stream:
-        stream.write(textmate_grammar().encode())

@@ -1,18 +1,14 @@
-"""The page docs/vocabulary.md: the words of the vocabulary ``road``, from its file's comments.
+"""The page ``docs/vocabulary.md``, made from the file of the vocabulary ``road``.
 
-``python -m rulec.report.vocabulary_table docs/vocabulary.md`` writes it anew. Above each item of
-the file stands a comment, `SUPPLIER: what it means`.
+Above each item of the file stands a comment, `SUPPLIER: what it means`.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from rulec.diagnostics import RulecError, Source
-from rulec.files import written_whole
 from rulec.resources import rulebooks_folder
 from rulec.syntax import decode, parse, tree
 
@@ -26,13 +22,13 @@ declares them, and who supplies them: the scene (ego's own motion, and what is m
 the map (the road, its marks and signs), or an interpretation (what others are about to do, and what
 traffic is like). Near is the kerb's side, far the other one. What a state does not mention has its
 default; `–` means that there is none, so that it has to be mentioned where a rule reads it.
-`python -m rulec.report.vocabulary_table docs/vocabulary.md` writes this page.
+`.ci/task regenerate` writes this page.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """What a vocabulary declares: ``holds`` says of which values, ``default`` is None for none."""
+    """A declared word; ``holds`` describes its values, ``default`` is None for none."""
 
     name: str
     about: str
@@ -42,8 +38,13 @@ class Word:
     supplier: str
 
 
+def road_page() -> str:
+    """Render the vocabulary ``road``."""
+    return vocabulary_page(decode(ROAD.name, ROAD.read_bytes()))
+
+
 def vocabulary_page(source: Source) -> str:
-    """The page for a vocabulary's file. Raises RulecError if it has mistakes."""
+    """Render a vocabulary's file as a page. Raises RulecError if it has mistakes."""
     file, mistakes = parse(source)
     if mistakes:
         raise RulecError(mistakes)
@@ -79,21 +80,30 @@ def _words(item: tree.Item) -> Iterator[Word]:
     match item:
         case tree.EnumerationItem(name, parameters, values, default):
             holds = ", ".join(f"`{value.text}`" for value in values)
-            said = None if default is None else f"`{default.text}`"
-            yield Word(name.text, _about(parameters), holds, said, meaning, supplier)
+            default_text = None if default is None else f"`{default.text}`"
+            yield Word(name.text, _about(parameters), holds, default_text, meaning, supplier)
         case tree.SignalItem(signals, default):
-            said = None if default is None else f"`{str(default).lower()}`"
-            for one in signals:
-                yield Word(one.name.text, _about(one.parameters), "signal", said, meaning, supplier)
+            default_text = None if default is None else f"`{str(default).lower()}`"
+            for signal in signals:
+                yield Word(
+                    signal.name.text,
+                    _about(signal.parameters),
+                    "signal",
+                    default_text,
+                    meaning,
+                    supplier,
+                )
         case tree.QuantityItem(name, parameters, unit, default):
-            said = None if default is None else f"{default:g}"
-            yield Word(name.text, _about(parameters), f"in {unit}", said, meaning, supplier)
+            default_text = None if default is None else f"{default:g}"
+            yield Word(name.text, _about(parameters), f"in {unit}", default_text, meaning, supplier)
 
 
 def _about(parameters: Sequence[tree.Parameter]) -> str:
     return ", ".join(
-        one.name.text if one.type is None else f"{one.name.text}: {one.type.text}"
-        for one in parameters
+        parameter.name.text
+        if parameter.type is None
+        else f"{parameter.name.text}: {parameter.type.text}"
+        for parameter in parameters
     )
 
 
@@ -125,8 +135,3 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
 
 def _row(cells: Sequence[str]) -> str:
     return f"| {' | '.join(cells)} |"
-
-
-if __name__ == "__main__":
-    with written_whole(Path(sys.argv[1])) as stream:
-        stream.write(vocabulary_page(decode(ROAD.name, ROAD.read_bytes())).encode())

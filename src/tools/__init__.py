@@ -1,0 +1,1 @@
+"""Programs of rulec's developers, which write the files that are made from others."""

@@ -1,0 +1,10 @@
+"""The page ``docs/codes.md``, made from the explanations of the messages."""
+
+from __future__ import annotations
+
+from rulec.report.findings import code_pages
+
+
+def codes_page() -> str:
+    """Render every code of a message, as ``rulec explain --all`` does in Markdown."""
+    return code_pages.as_page() + "\n"

@@ -1,0 +1,11 @@
+"""The parser's tables, ``grammar/rulec.tables.json``, made from ``grammar/rulec.lark``."""
+
+from __future__ import annotations
+
+from rulec.resources import grammar_file
+from rulec.syntax.grammar import tables_of
+
+
+def parser_tables() -> str:
+    """Generate the tables that spare the parser their making at each start."""
+    return tables_of(grammar_file("rulec.lark").read_text(encoding="utf-8"))

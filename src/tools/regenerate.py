@@ -1,0 +1,47 @@
+"""Write the generated files of the repository, or name those that are out of date.
+
+``python -m tools.regenerate [--check]``. Exit status: 0, or 1 with ``--check`` if one is.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from rulec.files import written_whole
+from tools.codes_page import codes_page
+from tools.parser_tables import parser_tables
+from tools.textmate import textmate_grammar
+from tools.vocabulary_page import road_page
+
+ROOT = Path(__file__).resolve().parents[2]
+GENERATED: Mapping[str, Callable[[], str]] = {
+    "grammar/rulec.tables.json": parser_tables,
+    "grammar/rulec.tmLanguage.json": textmate_grammar,
+    "docs/codes.md": codes_page,
+    "docs/vocabulary.md": road_page,
+}
+"""Path from the root -> what makes its text."""
+
+
+def is_current(name: str) -> bool:
+    """Compare a generated file with what would be written now."""
+    path = ROOT / name
+    return path.is_file() and path.read_text(encoding="utf-8") == GENERATED[name]()
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write every file that is out of date; with ``--check`` only name it."""
+    outdated = [name for name in GENERATED if not is_current(name)]
+    for name in outdated:
+        print(f"{name} is out of date" if "--check" in arguments else f"wrote {name}")
+        if "--check" not in arguments:
+            (ROOT / name).parent.mkdir(parents=True, exist_ok=True)
+            with written_whole(ROOT / name) as stream:
+                stream.write(GENERATED[name]().encode())
+    return int(bool(outdated) and "--check" in arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
