@@ -13,6 +13,7 @@ from typing import IO, Final
 from unicodedata import normalize
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, Source, SourceLocation, Span
+from rulec.file_messages import NOT_UTF8, UNREADABLE_FILE, UNWRITABLE_FILE
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
@@ -96,14 +97,14 @@ def opened(
     except (OSError, ValueError) as problem:  # ValueError: a null character in the name
         message = f"the file cannot be read: {_reason(problem)}"
         place = SourceLocation(str(path))
-        raise RulecError(Diagnostic("R0701", message, place, help=way_out, labels=labels)) from None
+        raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     with stream:
         yield stream
 
 
 def _unwritable(path: Path, problem: OSError) -> Diagnostic:
-    return Diagnostic(
-        "R0702", f"the file cannot be written: {_reason(problem)}", SourceLocation(str(path))
+    return UNWRITABLE_FILE.at(
+        SourceLocation(str(path)), f"the file cannot be written: {_reason(problem)}"
     )
 
 
@@ -135,13 +136,10 @@ def without_null(source: Source) -> Source:
     """The same source, if it has no null character. Raises RulecError R0101."""
     null = source.text.find("\0")
     if null >= 0:
-        raise RulecError(
-            Diagnostic(
-                "R0101",
-                "the file holds a null character and is not a text",
-                Span(source, null, null + 1).place,
-                help="give a file of plain text in UTF-8",
-            )
+        raise NOT_UTF8.error(
+            Span(source, null, null + 1),
+            "the file holds a null character and is not a text",
+            help="give a file of plain text in UTF-8",
         )
     return source
 
@@ -150,13 +148,12 @@ def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     way_out = "save the file as UTF-8"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         place = SourceLocation(name, 1, 1, 1, 1)
-        return Diagnostic("R0101", "the file is in UTF-16, not in UTF-8", place, help=way_out)
+        return NOT_UTF8.at(place, "the file is in UTF-16, not in UTF-8", help=way_out)
     before = Source(name, data[:position].decode("utf-8"))
     line, column = before.position(len(before.text))
     excerpt = data.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r\0")
-    return Diagnostic(
-        "R0101",
-        f"the byte 0x{data[position]:02x} is not UTF-8",
+    return NOT_UTF8.at(
         SourceLocation(name, line, column, line, column + 1, excerpt),
+        f"the byte 0x{data[position]:02x} is not UTF-8",
         help=way_out,
     )

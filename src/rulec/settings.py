@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.file_messages import WRONG_SETTINGS
 from rulec.files import decoded, opened
 from rulec.toml import parsed_toml
 
@@ -33,7 +34,7 @@ def search_path(folder: Path | None = None) -> tuple[Path, ...]:
 def _folders(file: Path) -> tuple[Path, ...]:
     with opened(file) as stream:
         source = decoded(str(file), stream.read())
-    settings = parsed_toml(source, "R0704", _HOW)
+    settings = parsed_toml(source, WRONG_SETTINGS, _HOW)
     for name in settings:
         if name != "search_path":
             way_out = did_you_mean(name, ["search_path"]) or "the one setting is `search_path`"
@@ -53,4 +54,4 @@ def _folders(file: Path) -> tuple[Path, ...]:
 
 
 def _wrong(file: Path, message: str, way_out: str) -> RulecError:
-    return RulecError(Diagnostic("R0704", message, SourceLocation(str(file)), help=way_out))
+    return WRONG_SETTINGS.error(SourceLocation(str(file)), message, help=way_out)

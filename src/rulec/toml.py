@@ -6,12 +6,13 @@ import re
 from importlib import import_module
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
+from rulec.diagnostics import RulecError, Source, SourceLocation
+from rulec.diagnostics.code import Code
 
 _DEEP_KEY = re.compile(r"^[ \t\[]*\w+(?:[ \t]*\.[ \t]*\w+){40}", re.MULTILINE)
 
 
-def parsed_toml(source: Source, code: str, how: str) -> dict[str, Any]:
+def parsed_toml(source: Source, code: Code, how: str) -> dict[str, Any]:
     """A TOML file's tables.
 
     Args:
@@ -41,8 +42,8 @@ def parsed_toml(source: Source, code: str, how: str) -> dict[str, Any]:
     raise _not_toml(message, place, code, how) from None
 
 
-def _not_toml(message: str, place: SourceLocation, code: str, how: str) -> RulecError:
-    return RulecError(Diagnostic(code, f"the file is not TOML: {message}", place, help=how))
+def _not_toml(message: str, place: SourceLocation, code: Code, how: str) -> RulecError:
+    return code.error(place, f"the file is not TOML: {message}", help=how)
 
 
 def _syntax_error(message: str, source: Source) -> tuple[str, SourceLocation]:

@@ -10,7 +10,7 @@ from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
 from rulec.cli.commands.completion import SHELLS
 from rulec.cli.main import VERBS, main, rulec
-from rulec.diagnostics.codes import CODES
+from rulec.report.findings.code_registry import all_codes
 
 
 def offered(words, incomplete, kind=BashComplete):
@@ -65,7 +65,7 @@ def test_verbs_are_described_by_whole_sentences():
 def test_codes_come_with_their_titles():
     program = ZshComplete(rulec, {}, "rulec", "_RULEC_COMPLETE")
     (one,) = program.get_completions(["explain"], "R0403")
-    assert one.help == CODES["R0403"]
+    assert one.help == all_codes()["R0403"].title
 
 
 @pytest.mark.parametrize("shell", SHELLS)
@@ -114,8 +114,8 @@ def test_fish_offers_files_in_folders_and_whole_descriptions(capsys, tmp_path):
 
     assert completed("rulec check books/m") == ["books/mine.rules"]
     (explained,) = completed("rulec explain R0208")
-    assert explained == f"R0208\t{CODES['R0208']}"
-    assert "," in CODES["R0208"]
+    assert explained == f"R0208\t{all_codes()['R0208'].title}"
+    assert "," in all_codes()["R0208"].title
 
 
 def test_the_program_answers_the_script():

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
-from rulec.diagnostics.codes import CODES
+from rulec.report.findings.code_registry import all_codes
 from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
 from rulec.scenario import available_scenarios
 
@@ -34,7 +34,7 @@ def test_everything_but_codes(capsys):
         ("rulebooks", {"esterle2019"}),
         ("vocabularies", {"paper", "road"}),
         ("scenarios", set(available_scenarios())),
-        ("codes", set(CODES)),
+        ("codes", set(all_codes())),
     ],
 )
 def test_one_kind(kind, names, capsys):

@@ -12,9 +12,9 @@ from rulec.api.rulebook_questions import analyze_rulebook, run_examples
 from rulec.api.workflow import compile_rulebook, find_maneuvers
 from rulec.book_tests.verdict_coverage import uncovered_verdicts
 from rulec.diagnostics import RulecError
-from rulec.diagnostics.codes import EXPLANATIONS, STAGES
 from rulec.monitoring.verify import verify_or_reason
 from rulec.partition import navigation_graph
+from rulec.report.findings.code_registry import STAGES, all_codes, codes_of_stage
 from rulec.rulebook.loader import diagnose, parse_rulebook
 from rulec.scenario.scenario_files import read_scenario
 from rulec.trace.formats.trace_files import read_traces
@@ -73,6 +73,7 @@ def run_as_python(text, folder):
     return ()
 
 
+CODES = all_codes()
 NOTHING = RulecError(())
 RUN = {
     "rules": checked,
@@ -119,27 +120,25 @@ def codes_of(kind, text, folder):
     return [one.code for one in found]
 
 
-WITH_EXAMPLES = [code for code, one in EXPLANATIONS.items() if one.kind != "circumstance"]
+WITH_EXAMPLES = [code for code, one in CODES.items() if one.kind != "circumstance"]
 
 
 @pytest.mark.parametrize("code", WITH_EXAMPLES)
 def test_the_bad_example_gets_the_code_and_the_mended_one_none(code, tmp_path):
-    about = EXPLANATIONS[code]
+    about = CODES[code]
     assert set(codes_of(about.kind, about.bad, tmp_path)) == {code}
     assert codes_of(about.kind, about.good, tmp_path) == []
 
 
-@pytest.mark.parametrize(
-    "code", [code for code, one in EXPLANATIONS.items() if one.kind == "command"]
-)
+@pytest.mark.parametrize("code", [code for code, one in CODES.items() if one.kind == "command"])
 def test_commands_end_as_they_should(code, tmp_path):
-    about = EXPLANATIONS[code]
+    about = CODES[code]
     assert shell(about.bad, tmp_path)[1] in (1, 2)
     assert shell(about.good, tmp_path)[1] == 0
 
 
 def test_only_what_no_input_makes_has_no_example():
-    assert [code for code in EXPLANATIONS if code not in WITH_EXAMPLES] == [
+    assert [code for code in CODES if code not in WITH_EXAMPLES] == [
         "R0402",
         "R0403",
         "R0611",
@@ -147,20 +146,22 @@ def test_only_what_no_input_makes_has_no_example():
 
 
 def test_traces_are_lines():
-    for one in EXPLANATIONS.values():
+    for one in CODES.values():
         if one.kind == "trace":
             assert [bool(json.loads(text)) for text in (one.bad, one.good)] == [True, True]
 
 
 def test_codes_stand_in_their_stage_and_in_order():
-    for number, codes in enumerate(STAGES.values(), 1):
+    for number, stage in enumerate(STAGES, 1):
+        codes = [code.code for code in codes_of_stage(stage)]
+        assert codes
         assert all(code.startswith(f"R0{number}") for code in codes)
-    assert list(EXPLANATIONS) == sorted(EXPLANATIONS)
+    assert list(CODES) == sorted(CODES)
 
 
-@pytest.mark.parametrize("code", EXPLANATIONS)
+@pytest.mark.parametrize("code", CODES)
 def test_an_explanation_is_written_for_people(code):
-    about = EXPLANATIONS[code]
+    about = CODES[code]
     assert about.title[0].islower() or about.title.startswith("Spot")
     assert about.why[0].isupper()
     assert about.why.endswith(".")

@@ -5,10 +5,60 @@ from __future__ import annotations
 from rulec.automata.axiom_instances import AxiomInstance
 from rulec.automata.spot_worker import Failed
 from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import in_words
 from rulec.rulebook.model import Rule
+
+_SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
+_EACH = [f"not s{number}" for number in range(1, 18)]
+AUTOMATON_TOO_LARGE = Code(
+    "R0401",
+    title="the automaton of a rule would be too large",
+    why="An automaton can be far larger than its formula. A rule may take 5 s of processor time "
+    "and 2 GiB of memory to compile, and read 65,536 different letters (16 signals). Demands "
+    "that are joined by `and` can each have a rule of their own; those automata stand beside "
+    "each other instead of being multiplied.",
+    bad=f"rulebook example\nsignal {_SIGNALS}\nhard rule all_off {{\n"
+    f"  require always ({' and '.join(_EACH[:9])}\n"
+    f"                  and {' and '.join(_EACH[9:])})\n}}\n",
+    good=f"rulebook example\nsignal {_SIGNALS}\n"
+    f"hard rule these_off {{\n  require always ({' and '.join(_EACH[:9])})\n}}\n"
+    f"hard rule those_off {{\n  require always ({' and '.join(_EACH[9:])})\n}}\n",
+    kind="compiled",
+)
+
+FAILED_CHECK = Code(
+    "R0402",
+    title="the compiled automaton failed its check against the formula",
+    why="After every compilation the automaton is compared with the formula that it came from. If "
+    "they differ there is a mistake in Spot or in rulec, none in the rulebook. Please report "
+    "the rule.",
+    kind="circumstance",
+)
+
+SPOT_MISSING = Code(
+    "R0403",
+    title="Spot is not installed",
+    why="Spot turns formulas into automata. There is a package for Linux on x86-64 (`pip install "
+    "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook "
+    "that was compiled elsewhere runs without Spot.",
+    kind="circumstance",
+)
+
+CONTRADICTORY_AXIOMS = Code(
+    "R0409",
+    title="facts contradict each other",
+    why="A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
+    "all, there is no state that a rule could speak of. The message names facts that "
+    "contradict each other, none of them needlessly.",
+    bad="rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
+    "fact not fog\nhard rule r { require always not (wet and fog) }\n",
+    good="rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
+    "hard rule r { require always not wet }\n",
+    kind="compiled",
+)
 
 
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
@@ -20,10 +70,9 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
     if failed is not None and failed.why == "bug":
         raise RuntimeError(f"while compiling rule {rule.name}:\n{failed.traceback}")
     if failed is not None and failed.why == "check":
-        return Diagnostic(
-            "R0402",
-            f"the automaton of rule `{rule.name}` is not equivalent to its formula",
+        return FAILED_CHECK.at(
             place,
+            f"the automaton of rule `{rule.name}` is not equivalent to its formula",
             help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
         )
     if failed is not None and failed.why == "facts":
@@ -33,10 +82,9 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
         if failed is not None and failed.why == "letters"
         else f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     )
-    return Diagnostic(
-        "R0401",
-        f"the automaton of rule `{rule.name}` would be too large: {why}",
+    return AUTOMATON_TOO_LARGE.at(
         place,
+        f"the automaton of rule `{rule.name}` would be too large: {why}",
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
         "rules beside each other do not" + _bounds_help(rule),
     )
@@ -48,10 +96,9 @@ def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnost
     said = ", ".join(f"`{in_words(one.formula)}`" for one in axioms)
     types = {variable.name: variable.type for variable in rule.variables}
     who = sorted({f"a `{types[name]}`" for one in instances for name in one.variables})
-    return Diagnostic(
-        "R0409",
+    return CONTRADICTORY_AXIOMS.at(
+        first.span,
         f"these facts contradict each other: {said}" if others else f"{said} can never be a fact",
-        at(first.span),
         expected="no state can be so",
         help="a fact is what holds in every state: correct or remove one of them"
         if others
@@ -69,8 +116,8 @@ def _bounds_help(rule: Rule) -> str:
 
 def no_spot(problem: str) -> Diagnostic:
     """R0403: Spot cannot be loaded."""
-    return Diagnostic(
-        "R0403",
+    return SPOT_MISSING.at(
+        None,
         f"Spot, which turns rules into automata, cannot be loaded: {problem}",
         help="`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
         "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot",

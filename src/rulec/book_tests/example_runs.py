@@ -8,11 +8,13 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.book_tests.book_test_messages import EXAMPLE_FAILED
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import speaks_of_seconds
 from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import columns_of, run
+from rulec.rulebook.examples.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.trace import Trace
 
@@ -109,7 +111,9 @@ def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> Rule
     spans = example.state_spans
     place = spans[error.number].place if spans else at(example.span)
     note = f"in an example of rule `{rule.name}`"
-    return RulecError(replace(found, code="R0306", place=place, notes=(*found.notes[:1], note)))
+    return RulecError(
+        replace(found, code=CONTRADICTORY_STATE.code, place=place, notes=(*found.notes[:1], note))
+    )
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
@@ -168,10 +172,9 @@ def example_warning(outcome: ExampleOutcome) -> Diagnostic:
         if not outcome.ends:
             end = "the last state did not go on for ever"
         notes = (f"the rule could still be kept, if {end}",)
-    return Diagnostic(
-        "R0406",
+    return EXAMPLE_FAILED.at(
+        example.span,
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
-        at(example.span),
         help="either the formula or the example does not say what is meant",
         labels=labels,
         notes=notes,

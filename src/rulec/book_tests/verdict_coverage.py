@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.book_tests.book_test_messages import RULE_NOT_EXERCISED
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Rule
 from rulec.witnesses.coverage_witness import possible_letters
 
@@ -59,10 +59,9 @@ def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagn
         notes = (f"all of its examples would also pass if it {less}",)
     wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
     clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
-    return Diagnostic(
-        "R0408",
+    return RULE_NOT_EXERCISED.at(
+        rule.span,
         message,
-        at(rule.span),
         expected=f"expected {clauses}",
         help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
         "whether the law agrees, you know",

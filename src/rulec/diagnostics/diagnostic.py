@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
-from rulec.diagnostics.codes import CODES
 from rulec.diagnostics.source_text import SourceLocation, Span
+
+Severity: TypeAlias = Literal["error", "warning"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +24,8 @@ class Diagnostic:
     """One mistake (or remark).
 
     ``message`` says what is wrong in one clause; ``expected`` stands beside the underlined place
-    (``expected a name``); ``help`` is the way out. ``code`` is a key of
-    ``rulec.diagnostics.codes.CODES``.
+    (``expected a name``); ``help`` is the way out. It is made by the ``Code`` whose
+    text ``code`` is.
     """
 
     code: str
@@ -34,11 +35,7 @@ class Diagnostic:
     help: str = ""
     labels: tuple[Label, ...] = ()
     notes: tuple[str, ...] = ()
-    severity: Literal["error", "warning"] = "error"
-
-    def __post_init__(self) -> None:
-        if self.code not in CODES:
-            raise ValueError(f"unregistered diagnostic code {self.code!r}")
+    severity: Severity = "error"
 
 
 def at(span: Span | None) -> SourceLocation | None:

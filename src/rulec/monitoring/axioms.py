@@ -13,6 +13,7 @@ from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.renaming import renamed
+from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary.object_choices import choices
 
@@ -112,10 +113,9 @@ def _error(
     # A compiled rulebook has no text to show.
     unseen = [f"the fact is in {one.file}, line {one.line}" for one in places if not one.excerpt]
     return ImpossibleStateError(
-        Diagnostic(
-            "R0508",
-            f"{where} cannot be: {said} {'holds' if len(broken) == 1 else 'hold'} in every state",
+        VIOLATED_AXIOM.at(
             place,
+            f"{where} cannot be: {said} {'holds' if len(broken) == 1 else 'hold'} in every state",
             help="correct the state; or the fact, if there can be such states",
             labels=tuple(Label(one, "what holds in every state") for one in places if one.excerpt),
             notes=(f"here {', '.join(values)}", *unseen, *([why] if why else [])),

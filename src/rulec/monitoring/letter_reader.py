@@ -9,9 +9,10 @@ from typing import Any
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.thresholds import ThresholdScale, scale
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, total
 from rulec.monitoring.axioms import impossible
+from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
 from rulec.vocabulary import Vocabulary
@@ -169,13 +170,10 @@ class LetterReader:
 
     def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
         of = f" of `{', '.join(items)}`" if items else ""
-        return RulecError(
-            Diagnostic(
-                "R0504",
-                f"{self._where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
-                self._place,
-                help="supply it in every state, or declare a default in the vocabulary",
-            )
+        return MISSING_VALUE.error(
+            self._place,
+            f"{self._where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
+            help="supply it in every state, or declare a default in the vocabulary",
         )
 
 

@@ -7,8 +7,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean, named
+from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
 from rulec.trace import State
+from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 
@@ -18,12 +20,11 @@ def check_objects(
     """Every object is of a type that the vocabulary knows. Raises RulecError R0505."""
     for name, kind in objects.items():
         if kind not in vocabulary.types:
-            raise _error(
-                "R0505",
+            raise UNKNOWN_OBJECT.error(
+                place,
                 f"object `{name}` is of type `{kind}`, which vocabulary "
                 f"`{vocabulary.name}` does not know",
-                place,
-                _suggest(kind, vocabulary.types),
+                help=_suggest(kind, vocabulary.types),
             )
 
 
@@ -41,11 +42,10 @@ def check_state(
     for name, value in state.items():
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
-            raise _error(
-                "R0502",
-                f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
+            raise UNDECLARED_NAME.error(
                 place,
-                _unknown_name(name, vocabulary),
+                f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
+                help=_unknown_name(name, vocabulary),
             )
         _check_value(value, declaration, declaration.parameters, objects, vocabulary, where, place)
 
@@ -63,23 +63,23 @@ def _check_value(
     if not parameters:
         if not _fits(value, declaration):
             message = f"{where} says `{name}` is {_shown(value)}; {_wanted(declaration)}"
-            raise _error("R0503", message, place, _nearest_value(value, declaration))
+            raise UNFITTING_VALUE.error(place, message, help=_nearest_value(value, declaration))
         return
     # Asking for a mapping takes far longer than asking for a dictionary.
     if type(value) is not dict and not isinstance(value, Mapping):
         message = f"{where} gives `{name}` one value; it is about each `{parameters[0]}`"
         way_out = f'write {{"{name}": {{"OBJECT": VALUE}}}}'
-        raise _error("R0503", message, place, way_out)
+        raise UNFITTING_VALUE.error(place, message, help=way_out)
     for item, inner in value.items():
         if item not in objects:
             message = f"{where} gives `{name}` for `{item}`, which is not among the objects"
-            raise _error("R0505", message, place, _suggest(item, objects))
+            raise UNKNOWN_OBJECT.error(place, message, help=_suggest(item, objects))
         if not vocabulary.is_subtype(objects[item], parameters[0]):
             message = (
                 f"{where} gives `{name}` for `{item}`, which is of type `{objects[item]}`; "
                 f"`{name}` is about each `{parameters[0]}`"
             )
-            raise _error("R0505", message, place)
+            raise UNKNOWN_OBJECT.error(place, message)
         _check_value(inner, declaration, parameters[1:], objects, vocabulary, where, place)
 
 
@@ -139,9 +139,3 @@ def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
     if enumeration is not None:
         return f'`{name}` is a value: write {{"{enumeration.name}": … "{name}"}}'
     return _suggest(name, vocabulary.declarations)
-
-
-def _error(
-    code: str, message: str, place: SourceLocation | None, help_text: str = ""
-) -> RulecError:
-    return RulecError(Diagnostic(code, message, place, help=help_text))

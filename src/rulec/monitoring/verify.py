@@ -14,6 +14,7 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import bindings
 from rulec.monitoring.letter_reader import LetterReader
+from rulec.monitoring.monitoring_messages import OTHER_STEP
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
@@ -111,14 +112,11 @@ def check_step(
     if rule.step_s is None or rule.step_s == step_s:
         return
     step = number_in_words(step_s)
-    raise RulecError(
-        Diagnostic(
-            "R0507",
-            f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
-            f"{what} has steps of {step} s",
-            place,
-            help=f"compile its source with `--step {step}`",
-        )
+    raise OTHER_STEP.error(
+        place,
+        f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
+        f"{what} has steps of {step} s",
+        help=f"compile its source with `--step {step}`",
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells.cell_model import Cell
 from rulec.partition.navigation_graph import NavigationGraph
+from rulec.partition.partition_messages import NOT_A_PATH
 
 Profile = tuple[tuple[float, float], ...]
 """Breakpoints (s, d): from each s on the bound is d, until the next one."""
@@ -55,8 +56,8 @@ def envelope(graph: NavigationGraph, path: Sequence[int]) -> tuple[Envelope, ...
 
 
 def _stray(message: str, expected: str) -> Diagnostic:
-    return Diagnostic(
-        "R0609",
+    return NOT_A_PATH.at(
+        None,
         message,
         expected=f"expected {expected}",
         help="give the index of one cell a layer, each a successor of the one before",

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict, get_args
 
-from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
+from rulec.diagnostics import did_you_mean, named
 from rulec.partition.cells.adjacency import AdjacencyName, neighbours
 from rulec.partition.cells.cell_model import Layer
 from rulec.partition.cells.cell_plane import plane
@@ -21,6 +21,7 @@ from rulec.partition.cells.occupancy import scene
 from rulec.partition.cells.predicted_occupancy import Predicted
 from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.cells.snapping import snapped
+from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
 from rulec.partition.time_margin import Edges, Margins, edges
 from rulec.scenario import Obstacle, Scenario
@@ -176,11 +177,9 @@ def navigation_graph(
 
 def _check_choice(what: str, name: str, known: tuple[str, ...]) -> None:
     if name not in known:
-        raise RulecError(
-            Diagnostic(
-                "R0608",
-                f"there is no {what} `{name}`",
-                expected=f"expected one of {named(known)}",
-                help=did_you_mean(str(name), known),
-            )
+        raise UNKNOWN_PARTITION.error(
+            None,
+            f"there is no {what} `{name}`",
+            expected=f"expected one of {named(known)}",
+            help=did_you_mean(str(name), known),
         )

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells.cell_model import Plane
 from rulec.partition.cells.cell_plane import plane
 from rulec.partition.cells.occupancy import Occupancy, scene
 from rulec.partition.cells.regions import ExtentName, PartitionName
+from rulec.partition.partition_messages import NO_START_CELL
 from rulec.scenario import Scenario
 from rulec.scenario.time_grid import MAX_LAYERS, Timing
 
@@ -46,37 +46,31 @@ def start_cell(
     ]
     free = places.roadway.free
     if free.d_min == free.d_max:
-        raise RulecError(
-            Diagnostic(
-                "R0607",
-                f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
-                expected="expected a road with room for ego, as its extent is `body`",
-                help="correct ego's `width`, or take the extent `lane`, which leaves it out",
-            )
+        raise NO_START_CELL.error(
+            None,
+            f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
+            expected="expected a road with room for ego, as its extent is `body`",
+            help="correct ego's `width`, or take the extent `lane`, which leaves it out",
         )
     if not in_the_way:
-        raise RulecError(
-            Diagnostic(
-                "R0607",
-                f"ego starts off the road, at s = {s:g}, d = {d:g}",
-                expected="expected a place on one of the lanes",
-                help="move ego, or extend the road",
-            )
+        raise NO_START_CELL.error(
+            None,
+            f"ego starts off the road, at s = {s:g}, d = {d:g}",
+            expected="expected a place on one of the lanes",
+            help="move ego, or extend the road",
         )
     blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
     finer = step_that_leaves_room(scenario, timing, partition, extent, 2)
-    raise RulecError(
-        Diagnostic(
-            "R0607",
-            f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
-            "so ego has no free cell to start from",
-            expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
-            help=f"a step of {float(finer.step):g} s would do"
-            if finer
-            else f"a smaller step does not help here: {_remedy(scenario)}",
-        )
+    raise NO_START_CELL.error(
+        None,
+        f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
+        "so ego has no free cell to start from",
+        expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
+        help=f"a step of {float(finer.step):g} s would do"
+        if finer
+        else f"a smaller step does not help here: {_remedy(scenario)}",
     )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import Diagnostic, RulecError, named
+from rulec.diagnostics import RulecError, named
 from rulec.logic.free_names import names_in
+from rulec.planning.planning_messages import TWO_PARTITIONS
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
@@ -61,4 +62,4 @@ def _spoken_of(vocabulary: Vocabulary) -> PartitionName:
 
 
 def _no_partition(message: str, way_out: str) -> RulecError:
-    return RulecError(Diagnostic("R0405", message, help=way_out))
+    return TWO_PARTITIONS.error(None, message, help=way_out)

@@ -11,13 +11,14 @@ from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.replay import replayed
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.online.snapshot_file import read_saved
 from rulec.monitoring.state_validation import check_objects
+from rulec.planning.planning_messages import UNFITTING_PAST
 from rulec.planning.product.graph_instances import HARD
 from rulec.rulebook.model import Strength
 from rulec.trace import Trace, TraceGraph
@@ -80,13 +81,10 @@ def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Tr
         if isinstance(rulec_error, RulecError):
             raise rulec_error
     if len(result) > 1:
-        raise RulecError(
-            Diagnostic(
-                "R0511",
-                "there are several traces in this file; there is but one past",
-                place,
-                help="give a file with one trace",
-            )
+        raise UNFITTING_PAST.error(
+            place,
+            "there are several traces in this file; there is but one past",
+            help="give a file with one trace",
         )
     (trace,) = result
     assert isinstance(trace, Trace)
@@ -115,4 +113,4 @@ def _monitor(
 
 def _no_way(message: str, place: SourceLocation | None) -> RulecError:
     way_out = "give a past that ends one step before the scenario begins, with the same objects"
-    return RulecError(Diagnostic("R0511", message, place, help=way_out))
+    return UNFITTING_PAST.error(place, message, help=way_out)

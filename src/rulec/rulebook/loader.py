@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 from rulec.rulebook.files.extends import Book, read_bases, source_file
+from rulec.rulebook.files.reference_messages import WRONG_KIND_OF_FILE
 from rulec.rulebook.files.search_path import (
     Dependency,
     available_rulebooks,
@@ -224,10 +225,9 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
 
 def _not_a_rulebook(file: tree.File) -> Diagnostic:
     assert file.name is not None, "only files with a name are known to be vocabularies"
-    return Diagnostic(
-        "R0206",
+    return WRONG_KIND_OF_FILE.at(
+        file.name.span,
         f"`{file.name.text}` is a vocabulary, not a rulebook",
-        file.name.span.place,
         expected="expected `rulebook NAME`",
         help=f"a rulebook takes its words from it by `use {file.name.text}`",
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import SourceLocation
 from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import XmlFormat, is_xml, root_of, short
+from rulec.scenario.scenario_messages import OTHER_CHOICE
 
 RECORDING = XmlFormat(
     "recorded traffic",
@@ -38,13 +39,10 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
         expected = "expected `commonRoad` or `fcd-export`"
         raise RECORDING.refused(path, why, expected=expected)
     if net is not None:
-        raise RulecError(
-            Diagnostic(
-                "R0613",
-                f"`{path.name}` has its own roads, and takes no net",
-                SourceLocation(str(path)),
-                help="leave out --net, which is for SUMO's floating-car data",
-            )
+        raise OTHER_CHOICE.error(
+            SourceLocation(str(path)),
+            f"`{path.name}` has its own roads, and takes no net",
+            help="leave out --net, which is for SUMO's floating-car data",
         )
     from rulec.scenario.commonroad.commonroad_file import read_commonroad
 

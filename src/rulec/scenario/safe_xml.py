@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import IO, cast
 from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files import opened
+from rulec.scenario.scenario_messages import NOT_A_RECORDING
 
 LONGEST_TAG = 1_000_000
 """Bytes; expat keeps a tag in memory until it ends."""
@@ -47,8 +48,7 @@ class XmlFormat:
         """Why a file is none of these (R0610), and on which line that shows, if on one."""
         place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
         message = f"the file cannot be read as {self.words}: {why}"
-        found = Diagnostic("R0610", message, place, expected=expected, help=help_text or self.help)
-        return RulecError(found)
+        return NOT_A_RECORDING.error(place, message, expected=expected, help=help_text or self.help)
 
 
 ElementHandler = Callable[[str, Mapping[str, str], XMLParserType], None]

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, did_you_mean, named
+from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
 from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import is_xml
+from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
 from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.field_check import Findings
 from rulec.scenario.toml.field_locations import TomlText
@@ -44,13 +45,11 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
     looks_like_a_path = not isinstance(name_or_path, str) or os.sep in name or "." in name
     if looks_like_a_path or _exists(name):
         return read_scenario(Path(name), choice)
-    raise RulecError(
-        Diagnostic(
-            "R0601",
-            f"there is no scenario `{name}`",
-            expected=f"expected a built-in scenario ({named(known)}) or the path of a file",
-            help=did_you_mean(name, known) or "give one of these names, or a file's path",
-        )
+    raise UNKNOWN_SCENARIO.error(
+        None,
+        f"there is no scenario `{name}`",
+        expected=f"expected a built-in scenario ({named(known)}) or the path of a file",
+        help=did_you_mean(name, known) or "give one of these names, or a file's path",
     )
 
 
@@ -61,17 +60,16 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
 
         return read_scene(path, choice or Choice())
     if choice not in (None, Choice()):
-        raise RulecError(
-            Diagnostic(
-                "R0613",
-                f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
-                "chosen",
-                SourceLocation(str(path)),
-                help="leave the options for recorded scenes out, or edit the scenario's file",
-            )
+        raise OTHER_CHOICE.error(
+            SourceLocation(str(path)),
+            f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
+            "chosen",
+            help="leave the options for recorded scenes out, or edit the scenario's file",
         )
     source = _text(path)
-    return to_scenario(parsed_toml(source, "R0602", _HOW), path.stem, Findings(TomlText(source)))
+    return to_scenario(
+        parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, Findings(TomlText(source))
+    )
 
 
 def _exists(name: str) -> bool:
@@ -86,12 +84,9 @@ def _text(path: Path) -> Source:
     with opened(path, way_out) as stream:
         content = stream.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:
-        raise RulecError(
-            Diagnostic(
-                "R0602",
-                f"the file is too large: at most {LARGEST_BYTES:,} bytes are read",
-                SourceLocation(str(path)),
-                help="keep the obstacles near ego, and the part of their motion that matters",
-            )
+        raise NOT_A_SCENARIO.error(
+            SourceLocation(str(path)),
+            f"the file is too large: at most {LARGEST_BYTES:,} bytes are read",
+            help="keep the obstacles near ego, and the part of their motion that matters",
         )
     return decoded(str(path), content)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import isfinite
 
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.scenario.scenario_messages import UNFITTING_HORIZON
 
 MAX_LAYERS = 10_000
 # A step typed as 0.3333333333 is meant as a third; one typed as 0.3333 is not
@@ -37,24 +38,20 @@ def timing(horizon_s: float, step_s: float) -> Timing:
     for name, value in (("horizon", horizon_s), ("step", step_s)):
         number = not isinstance(value, bool) and isinstance(value, (int, float))
         if not number or not isfinite(value) or value <= 0:
-            raise RulecError(
-                Diagnostic(
-                    "R0606",
-                    f"the {name} is `{value}`",
-                    expected="expected a time in seconds, above 0",
-                    help=f"give the {name} as a number of seconds, such as 0.5",
-                )
+            raise UNFITTING_HORIZON.error(
+                None,
+                f"the {name} is `{value}`",
+                expected="expected a time in seconds, above 0",
+                help=f"give the {name} as a number of seconds, such as 0.5",
             )
     horizon, step = Fraction(str(horizon_s)), Fraction(str(step_s))
     steps = round(horizon / step)
     if steps >= MAX_LAYERS:
-        raise RulecError(
-            Diagnostic(
-                "R0606",
-                f"a horizon of {horizon_s:g} s in steps of {step_s:g} s has too many layers",
-                expected=f"expected fewer than {MAX_LAYERS} steps",
-                help="take a longer step or a shorter horizon",
-            )
+        raise UNFITTING_HORIZON.error(
+            None,
+            f"a horizon of {horizon_s:g} s in steps of {step_s:g} s has too many layers",
+            expected=f"expected fewer than {MAX_LAYERS} steps",
+            help="take a longer step or a shorter horizon",
         )
     if steps == 0 or abs(horizon - steps * step) > _ROUNDING * horizon:
         raise RulecError(_no_multiple(horizon_s, step_s, max(steps, 1)))
@@ -62,8 +59,8 @@ def timing(horizon_s: float, step_s: float) -> Timing:
 
 
 def _no_multiple(horizon_s: float, step_s: float, steps: int) -> Diagnostic:
-    return Diagnostic(
-        "R0606",
+    return UNFITTING_HORIZON.at(
+        None,
         f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
         expected="expected a horizon that is a multiple of the step",
         help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "

@@ -9,15 +9,16 @@ from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
 from rulec.syntax.building import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
+from rulec.syntax.messages.whole_file import (
+    EXPECTED_BEGINNING,
+    GIVEN_TWICE,
+    HOW_TO_BEGIN,
+    MISPLACED_LINE,
+    MISSING_PART,
+)
 
 Said = tuple[str, Clause | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
-
-HOW_TO_BEGIN: Final = (
-    "expected `rulebook NAME`",
-    "a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`",
-)
-"""What a diagnostic about a file's beginning expects, and its help."""
 
 Part = tree.FileLine | tree.HeaderLine | tree.Item
 """What stands at the top level of a file."""
@@ -162,20 +163,18 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     item: Part | None = None
     for part in parts[1:]:
         if isinstance(part, tree.FileLine):
-            yield Diagnostic(
-                "R0115",
+            yield MISPLACED_LINE.at(
+                part.span,
                 f"`{part.kind} {part.name.text}` begins a second file in this one",
-                part.span.place,
                 help="move it to a file of its own",
                 labels=(Label(parts[0].span.place, "the file begins here"),),
             )
         elif not isinstance(part, _Header):
             item = item or (None if isinstance(part, tree.BrokenItem) else part)
         elif item is not None:
-            yield Diagnostic(
-                "R0115",
+            yield MISPLACED_LINE.at(
+                part.span,
                 "header lines stand before declarations and rules",
-                part.span.place,
                 expected="expected a declaration or a rule",
                 help="move it to the top of the file, below `rulebook NAME`",
                 labels=(Label(_start(item.span).place, "the header ended before this"),),
@@ -186,10 +185,9 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     # One that has none of its own offers something to those that extend it.
     enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Provision
     if not any(isinstance(part, enough) for part in parts):
-        yield Diagnostic(
-            "R0114",
+        yield MISSING_PART.at(
+            _start(parts[0].span),
             "the rulebook has no rule",
-            _start(parts[0].span).place,
             help="a rule is written `hard rule NAME { require … }`",
         )
 
@@ -197,20 +195,18 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
         if isinstance(part, tree.RuleItem | tree.Provision | _Header):
-            yield Diagnostic(
-                "R0115",
+            yield MISPLACED_LINE.at(
+                _start(part.span),
                 "a vocabulary holds declarations only",
-                _start(part.span).place,
                 expected="expected a declaration",
                 help="rules and header lines belong in a rulebook",
             )
 
 
 def _twice(what: str, again: Span, first: Span) -> Diagnostic:
-    return Diagnostic(
-        "R0116",
+    return GIVEN_TWICE.at(
+        again,
         f"{what} is given twice",
-        again.place,
         expected="given again here",
         help="keep one of them",
         labels=(Label(first.place, "first given here"),),
@@ -218,21 +214,20 @@ def _twice(what: str, again: Span, first: Span) -> Diagnostic:
 
 
 def _no_require(head: RuleHead, span: Span) -> Diagnostic:
-    return Diagnostic(
-        "R0114",
+    return MISSING_PART.at(
+        span,
         f"rule `{head.name.text}` requires nothing",
-        span.place,
         expected="expected a `require` clause in this rule",
         help="say what must hold, such as `require always not p`",
     )
 
 
 def _no_file_line(first: Part) -> Diagnostic:
-    return Diagnostic(
-        "R0114",
+    return MISSING_PART.at(
+        _start(first.span),
         "the file does not say what it is",
-        _start(first.span).place,
-        *HOW_TO_BEGIN,
+        expected=EXPECTED_BEGINNING,
+        help=HOW_TO_BEGIN,
     )
 
 

@@ -9,11 +9,17 @@ from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import building, tree
-from rulec.syntax.assembly import HOW_TO_BEGIN, Part, assemble_file, assemble_rule
+from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import Clause, Values
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
+from rulec.syntax.messages.whole_file import (
+    EMPTY_FILE,
+    EXPECTED_BEGINNING,
+    HOW_TO_BEGIN,
+    NOT_A_RULEBOOK,
+)
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.source_decoding import checked
 from rulec.syntax.split_file import FileSplitter
@@ -41,7 +47,9 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     except RulecError as error:
         return _NOTHING, error.diagnostics
     if not tokens:
-        empty = Diagnostic("R0103", "the file is empty", Span(source, 0, 0).place, *HOW_TO_BEGIN)
+        empty = EMPTY_FILE.at(
+            Span(source, 0, 0), "the file is empty", expected=EXPECTED_BEGINNING, help=HOW_TO_BEGIN
+        )
         return _NOTHING, (empty,)
     reader = _Reader(source, tokens)
     splitter = FileSplitter(source, tokens)
@@ -81,8 +89,12 @@ def _is_something_else(parts: Sequence[Part]) -> bool:
 
 
 def _something_else(source: Source, first: Token) -> Diagnostic:
-    place = Span(source, first.start, first.end).place
-    return Diagnostic("R0117", "the file is no rulebook", place, *HOW_TO_BEGIN)
+    return NOT_A_RULEBOOK.at(
+        Span(source, first.start, first.end),
+        "the file is no rulebook",
+        expected=EXPECTED_BEGINNING,
+        help=HOW_TO_BEGIN,
+    )
 
 
 def _position(diagnostic: Diagnostic) -> tuple[int, int]:

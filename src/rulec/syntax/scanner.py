@@ -9,6 +9,7 @@ import re
 from typing import NamedTuple
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.syntax.messages.whole_file import FILE_TOO_LARGE
 
 MAX_TOKENS = 1_000_000
 """Far above what a file of the permitted size holds, far below what would exhaust memory."""
@@ -84,9 +85,8 @@ def _end_of_unterminated(text: str, start: int, end: int) -> int:
 
 
 def _too_many(source: Source, position: int) -> Diagnostic:
-    return Diagnostic(
-        "R0102",
+    return FILE_TOO_LARGE.at(
+        Span(source, position, position + 1),
         f"the file holds more than {MAX_TOKENS:,} words and signs",
-        Span(source, position, position + 1).place,
         help="split it into several rulebooks",
     )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
+from rulec.diagnostics import Source, SourceLocation
 from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
+from rulec.syntax.messages.whole_file import FILE_TOO_LARGE
 
 
 def decode(name: str, data: bytes) -> Source:
@@ -28,11 +29,8 @@ def checked(source: Source) -> Source:
 
 def _check_size(name: str, size: int) -> None:
     if size > MAX_SOURCE_BYTES:
-        raise RulecError(
-            Diagnostic(
-                "R0102",
-                f"the file is too large: at most {MAX_SOURCE_BYTES:,} bytes are read",
-                SourceLocation(name),
-                help="split it into several rulebooks",
-            )
+        raise FILE_TOO_LARGE.error(
+            SourceLocation(name),
+            f"the file is too large: at most {MAX_SOURCE_BYTES:,} bytes are read",
+            help="split it into several rulebooks",
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.trace.trace_messages import NO_STATES, NOT_A_TRACE, UNKNOWN_OBJECT
 from rulec.trace.trace_model import Trace
 
 
@@ -19,17 +19,19 @@ def check_trace(trace: Trace) -> None:
     for number, state in enumerate(trace.states):
         # Asking for a mapping takes far longer than asking for a dictionary.
         if type(state) is not dict and not isinstance(state, Mapping):
-            raise _error("R0501", f"state {number} is no object of names and values", trace)
+            raise NOT_A_TRACE.error(trace.place, f"state {number} is no object of names and values")
     check_presence(trace)
 
 
 def check_frame(trace: Trace) -> None:
     """As ``check_trace``, of all but the states and who is there."""
     if not trace.states:
-        raise _error("R0506", "the trace has no states; it needs at least one to judge", trace)
+        raise NO_STATES.error(
+            trace.place, "the trace has no states; it needs at least one to judge"
+        )
     if not 0 < trace.step_s < math.inf:
         message = f"`step_s` is {float(trace.step_s):g}; it has to be a number of seconds above 0"
-        raise _error("R0501", message, trace)
+        raise NOT_A_TRACE.error(trace.place, message)
 
 
 def check_presence(trace: Trace) -> None:
@@ -37,14 +39,10 @@ def check_presence(trace: Trace) -> None:
     for name, (first, last) in trace.present.items():
         if name not in trace.objects:
             message = f"`present` speaks of `{name}`, which is not among the trace's objects"
-            raise _error("R0505", message, trace)
+            raise UNKNOWN_OBJECT.error(trace.place, message)
         if not 0 <= first <= last < len(trace.states):
             message = (
                 f"`present` has `{name}` in states {first} to {last}; "
                 f"the trace has states 0 to {len(trace.states) - 1}"
             )
-            raise _error("R0505", message, trace)
-
-
-def _error(code: str, message: str, trace: Trace) -> RulecError:
-    return RulecError(Diagnostic(code, message, trace.place))
+            raise UNKNOWN_OBJECT.error(trace.place, message)

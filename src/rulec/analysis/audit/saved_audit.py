@@ -7,8 +7,9 @@ from pathlib import Path
 
 import msgspec
 
+from rulec.analysis.audit.audit_messages import NOT_AN_AUDIT
 from rulec.analysis.audit.rulebook_audit import Audit
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import opened
 
@@ -34,11 +35,8 @@ def read_audits(path: Path) -> tuple[Audit, ...]:
 
 
 def _no_audit(path: Path, reason: str) -> RulecError:
-    return RulecError(
-        Diagnostic(
-            "R0705",
-            f"this is not an audit{reason}",
-            SourceLocation(str(path)),
-            help="write one with `rulec audit RULEBOOK --output-format json`",
-        )
+    return NOT_AN_AUDIT.error(
+        SourceLocation(str(path)),
+        f"this is not an audit{reason}",
+        help="write one with `rulec audit RULEBOOK --output-format json`",
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from rulec.analysis.lint.conflict_search import Conflict, are_related, conflict
+from rulec.analysis.lint.finding_messages import CONFLICTING_RULES
 from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -76,11 +77,10 @@ def _cannot_be_kept(
     when = "at all" if clash.trace is None else "any more"
     notes = () if clash.trace is None else trace_note("after the trace", clash.trace, whole)
     both = "both" if len(names) == 2 else "all"
-    return Diagnostic(
-        "R0804",
+    return CONFLICTING_RULES.at(
+        rules[last].span,
         f"rules {', '.join(f'`{name}`' for name in firsts)} and `{last}` cannot {both} be kept "
         f"{when}, though each alone could",
-        at(rules[last].span),
         help="except from one of them what another one asks for, or make it soft",
         labels=tuple(
             Label(place, f"`{name}` is here")

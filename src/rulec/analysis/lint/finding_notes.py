@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rulec.analysis.lint.finding_messages import NOT_DECIDED
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_literals import trace_literal
 from rulec.diagnostics import Diagnostic
-from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.model import Rule
 from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
@@ -21,10 +21,9 @@ def trace_note(what: str, trace: Trace, sides: Sequence[AnalyzedRule]) -> tuple[
 
 def undecided_diagnostic(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
     """The warning (R0807) that a question about a rule was left open."""
-    return Diagnostic(
-        "R0807",
+    return NOT_DECIDED.at(
+        rule.span,
         f"not decided of rule `{rule.name}` whether {what}: {problem}",
-        at(rule.span),
         help="say less in one rule; rules beside each other are looked at one by one",
         severity="warning",
     )

@@ -8,6 +8,13 @@ from dataclasses import replace
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
+from rulec.analysis.lint.finding_messages import (
+    ADDS_NOTHING,
+    CANNOT_BE_KEPT,
+    CANNOT_BE_VIOLATED,
+    NEVER_TRIGGERED,
+    WEAKER_THAN_BASE,
+)
 from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
@@ -80,11 +87,10 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> I
             yield undecided_diagnostic(rule, f"{what[trigger.kind]} can ever hold", problem)
             continue
         if not occurs:
-            yield Diagnostic(
-                "R0805",
+            yield NEVER_TRIGGERED.at(
+                rule.span,
                 f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
                 f"`{in_words(trigger.formula)}`",
-                at(rule.span),
                 help="no state of the world can be like that; say what is meant, or leave it out",
                 severity="warning",
             )
@@ -95,18 +101,16 @@ def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
         if not can_be_violated(side):
             if has_constant(rule.formula):
                 return  # an option has switched it off
-            yield Diagnostic(
-                "R0801",
+            yield CANNOT_BE_VIOLATED.at(
+                rule.span,
                 f"nothing can violate rule `{rule.name}`",
-                at(rule.span),
                 help="it holds in every trace that can be; say what it is to forbid",
                 severity="warning",
             )
         elif not can_be_kept(side):
-            yield Diagnostic(
-                "R0802",
+            yield CANNOT_BE_KEPT.at(
+                rule.span,
                 f"nothing can keep rule `{rule.name}`",
-                at(rule.span),
                 help="every trace violates it; say what it is to allow",
             )
     except UndecidedError as problem:
@@ -121,7 +125,7 @@ def _needless(
     found: list[Diagnostic] = []
     for name in reversed(names):
         found += _implied(rules[name], [one for one in left if one != name], rules, sides)
-        if found and found[-1].code == "R0803" and f"`{name}` adds" in found[-1].message:
+        if found and found[-1].code == ADDS_NOTHING.code and f"`{name}` adds" in found[-1].message:
             left.remove(name)
     yield from reversed(found)
 
@@ -142,10 +146,9 @@ def _implied(
         listed = [one.rule.name for one in premises]
         verb = "forbids" if len(listed) == 1 else "together forbid"
         who = " and ".join(f"`{one}`" for one in listed)
-        yield Diagnostic(
-            "R0803",
+        yield ADDS_NOTHING.at(
+            rule.span,
             f"rule `{rule.name}` adds nothing: {who} {verb} all that it forbids",
-            at(rule.span),
             help="leave it out, unless its own provision is worth a rule",
             labels=tuple(
                 Label(where, "this is enough" if len(listed) == 1 else "this is part of it")
@@ -183,10 +186,9 @@ def _weaker(
         for trace in found.second_forbids
         for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
-    yield Diagnostic(
-        "R0806",
+    yield WEAKER_THAN_BASE.at(
+        rule.span,
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
-        at(rule.span),
         help="if the law has it so, nothing is to be done",
         notes=tuple(notes),
         severity="warning",

@@ -13,10 +13,11 @@ from typing import Any
 import msgspec
 
 from rulec.automata.bundle.bundle_check import checked
+from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE
 from rulec.automata.bundle.bundle_schema import WRITTEN_AS, File, Header
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
@@ -149,13 +150,8 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
 
 
 def _damaged(file: str, message: str) -> RulecError:
-    return RulecError(
-        Diagnostic(
-            "R0404",
-            message,
-            SourceLocation(file),
-            help="compile it again from its source with `rulec compile`",
-        )
+    return DAMAGED_BUNDLE.error(
+        SourceLocation(file), message, help="compile it again from its source with `rulec compile`"
     )
 
 

@@ -30,6 +30,7 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
 
     Exit status: 0 no mistakes, 1 there are some, 2 a question could not be answered.
     """
+    from rulec.analysis.lint.finding_messages import NOT_DECIDED
     from rulec.diagnostics import RulecError
     from rulec.report.findings.finding_formats import render
     from rulec.report.text.console import print_diagnostics, print_result, wants_color
@@ -50,7 +51,7 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
         number = len(rulebooks)
         print_result(f"{number:,} {'rulebook' if number == 1 else 'rulebooks'}, nothing found")
     print_diagnostics(unread)
-    if unread or any(diagnostic.code == "R0807" for diagnostic in diagnostics):
+    if unread or any(diagnostic.code == NOT_DECIDED.code for diagnostic in diagnostics):
         return ExitStatus.NOT_ANSWERED
     fatal = any(fail_on in ("warning", diagnostic.severity) for diagnostic in diagnostics)
     return ExitStatus.FOUND if fatal else ExitStatus.OK

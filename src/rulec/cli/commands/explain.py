@@ -20,25 +20,26 @@ from rulec.cli.options.shell_completion import complete_codes
 def command(code: str | None, every: bool, output_format: str) -> None:
     """Explain CODE, such as R0104: what it means, a bad example, and the mended one."""
     from rulec.diagnostics import nearest_name
-    from rulec.diagnostics.codes import CODES
     from rulec.report.findings import code_pages
+    from rulec.report.findings.code_registry import all_codes, code_named
     from rulec.report.text.console import print_result
 
     if every == (code is not None):
         raise click.UsageError("give one code, or --all")
-    codes = list(CODES) if code is None else [code.upper()]
-    if codes[0] not in CODES:
-        near = nearest_name(codes[0], CODES)
+    named = None if code is None else code_named(code.upper())
+    if code is not None and named is None:
+        near = nearest_name(code.upper(), all_codes())
         raise click.UsageError(
             f"there is no code `{code}`; "
             + (f"did you mean `{near}`?" if near else "`rulec list codes` shows them all")
         )
+    codes = [*all_codes().values()] if named is None else [named]
     match output_format:
         case "json":
             print_result(code_pages.as_json(codes))
-        case "markdown" if every:
-            print_result(code_pages.as_page())
+        case "markdown" if named is not None:
+            print_result(f"# {named.code}: {named.title}\n\n{code_pages.as_markdown(named)}")
         case "markdown":
-            print_result(f"# {codes[0]}: {CODES[codes[0]]}\n\n{code_pages.as_markdown(codes[0])}")
+            print_result(code_pages.as_page())
         case _:
-            print_result("\n\n\n".join(code_pages.as_text(code) for code in codes))
+            print_result("\n\n\n".join(map(code_pages.as_text, codes)))

@@ -58,6 +58,6 @@ def _listed(kind: str) -> list[Listed]:
                 for name in available_scenarios()
             ]
         case _:
-            from rulec.diagnostics.codes import CODES
+            from rulec.report.findings.code_registry import all_codes
 
-            return [Listed(code, title) for code, title in CODES.items()]
+            return [Listed(text, code.title) for text, code in all_codes().items()]

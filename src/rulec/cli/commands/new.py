@@ -32,7 +32,8 @@ def command(name: str, output: str, base: str | None) -> None:
 
     An existing file is left alone.
     """
-    from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+    from rulec.diagnostics import SourceLocation
+    from rulec.file_messages import UNWRITABLE_FILE
     from rulec.files import make_folder, written_whole
     from rulec.report.text.console import print_result
     from rulec.rulebook.files.template import new_rulebook, new_rulebook_upon
@@ -52,10 +53,8 @@ def command(name: str, output: str, base: str | None) -> None:
     path = Path(output) / f"{name}.rules"
     if path.exists() or path.is_symlink():
         way_out = "give another name, or another folder with --output"
-        raise RulecError(
-            Diagnostic(
-                "R0702", "the file is there already", SourceLocation(str(path)), help=way_out
-            )
+        raise UNWRITABLE_FILE.error(
+            SourceLocation(str(path)), "the file is there already", help=way_out
         )
     make_folder(path.parent)
     with written_whole(path) as stream:

@@ -123,12 +123,13 @@ def _write_drives(
     """Write what the vehicles of a recording did."""
     from rulec.api.workflow import machines
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+    from rulec.diagnostics import SourceLocation
     from rulec.extraction.selection.requested import selected_drives
     from rulec.extraction.to_trace import Drive
     from rulec.files import written_whole
     from rulec.report.text.console import print_diagnostics, print_result, progress
     from rulec.scenario.recording_files import read_recording
+    from rulec.scenario.scenario_messages import NOT_IN_RECORDING
     from rulec.settings import search_path
     from rulec.trace.formats.trace_files import format_of, write_traces
 
@@ -161,7 +162,7 @@ def _write_drives(
     kinds = result.drives.kinds()
     if not kinds:
         message = "nobody in this recording drives on a lane"
-        raise RulecError(Diagnostic("R0612", message, SourceLocation(str(file))))
+        raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)
     with progress(f"writing {output}", len(result.egos)) as tell:
         form = form or format_of(str(output))
         if str(output) == "-":

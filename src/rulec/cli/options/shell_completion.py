@@ -67,12 +67,12 @@ def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Codes of messages, with what they are about."""
-    from rulec.diagnostics.codes import CODES
+    from rulec.report.findings.code_registry import all_codes
 
     return [
-        CompletionItem(code, help=title)
-        for code, title in CODES.items()
-        if code.startswith(incomplete.upper())
+        CompletionItem(text, help=code.title)
+        for text, code in all_codes().items()
+        if text.startswith(incomplete.upper())
     ]
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean, named
+from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.rulebook.model import Traffic
 from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.trace import Value
 from rulec.vocabulary import Vocabulary
 
@@ -70,13 +71,10 @@ def selected_drives(
 def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
     for ego in wanted:
         if ego not in known:
-            raise RulecError(
-                Diagnostic(
-                    "R0612",
-                    f"there is no vehicle `{ego}` that drives",
-                    SourceLocation(file),
-                    help=did_you_mean(ego, known) or _some(known),
-                )
+            raise NOT_IN_RECORDING.error(
+                SourceLocation(file),
+                f"there is no vehicle `{ego}` that drives",
+                help=did_you_mean(ego, known) or _some(known),
             )
     return tuple(ego for ego in known if not wanted or ego in wanted)
 

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.letter_reader import NOBODY
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.carried_state import CarriedState
@@ -26,6 +26,7 @@ from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import check_step
 from rulec.trace import State
+from rulec.trace.trace_messages import NOT_A_TRACE
 
 _Now: TypeAlias = tuple[MonitorState, int, tuple[Change, ...]]
 """Where a monitor stands, behind which state, and what has changed by that."""
@@ -215,4 +216,4 @@ def _so_far(standing: MonitorState, number: int, changes: tuple[Change, ...]) ->
 
 
 def _no_object(what: str, of: str, place: SourceLocation | None) -> RulecError:
-    return RulecError(Diagnostic("R0501", f"{what} is no object of {of}", place))
+    return NOT_A_TRACE.error(place, f"{what} is no object of {of}")

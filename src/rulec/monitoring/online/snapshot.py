@@ -12,8 +12,9 @@ import msgspec
 
 from rulec.automata.bundle.bundle_file import read_to_data
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
+from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import Edge, Prefix
 from rulec.monitoring.online.monitor_state import MonitorState, beginning, standing_at
@@ -196,4 +197,4 @@ def _violation(one: _Violation, n_states: int, ready: Sequence[Ready]) -> Violat
 
 def _refused(message: str, place: SourceLocation | None) -> RulecError:
     way_out = "restore it with the rulebook that it was saved with, or begin anew"
-    return RulecError(Diagnostic("R0510", message, place, help=way_out))
+    return UNRESTORABLE_MONITOR.error(place, message, help=way_out)

@@ -9,8 +9,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import SourceLocation
 from rulec.files import opened, written_whole
+from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.trace.formats.json_line_problems import is_beginning
 
@@ -25,8 +26,8 @@ def read_saved(path: Path) -> Any:
         why = "it has been cut short" if is_beginning(data) else "it is not JSON"
         message = f"this is not a saved monitor: {why}"
         help_text = "give a file that `rulec monitor --save` has written"
-        raise RulecError(
-            Diagnostic("R0510", message, SourceLocation(str(path)), help=help_text)
+        raise UNRESTORABLE_MONITOR.error(
+            SourceLocation(str(path)), message, help=help_text
         ) from None
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import RulecError
+from rulec.planning.planning_messages import TOO_MANY_MANEUVERS
 from rulec.trace import TraceGraph
 
 MOST = 1 << 17
@@ -24,4 +25,4 @@ def too_many(graph: TraceGraph) -> RulecError:
         "where they are, what the automata remember, and what is violated"
     )
     help_text = "take fewer rules at a time, a larger step, or the same weight for several rules"
-    return RulecError(Diagnostic("R0616", message, help=help_text))
+    return TOO_MANY_MANEUVERS.error(None, message, help=help_text)

@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 from textwrap import fill, indent
 
-from rulec.diagnostics.codes import EXPLANATIONS, STAGES
-from rulec.diagnostics.explanations.explanation import Explanation, Kind
+from rulec.diagnostics.code import Code, ExampleKind
+from rulec.report.findings.code_registry import STAGES, codes_of_stage
 
-_KINDS: dict[Kind, str] = {
+_KINDS: dict[ExampleKind, str] = {
     "rules": "to check",
     "compiled": "to compile",
     "analyzed": "to analyze",
@@ -22,7 +22,7 @@ _KINDS: dict[Kind, str] = {
     "circumstance": "",
 }
 
-_FENCES: dict[Kind, str] = {
+_FENCES: dict[ExampleKind, str] = {
     "rules": "rulec",
     "compiled": "rulec",
     "analyzed": "rulec",
@@ -44,46 +44,43 @@ by the tests. `rulec explain --all --output-format markdown` writes this page.
 """
 
 
-def as_text(code: str) -> str:
+def as_text(code: Code) -> str:
     """An explanation for a terminal."""
-    about = EXPLANATIONS[code]
-    parts = [f"{code}: {about.title}", fill(about.why, 80)]
-    for head, example in _examples(about):
+    parts = [f"{code.code}: {code.title}", fill(code.why, 80)]
+    for head, example in _examples(code):
         parts.append(f"{head}:\n\n{indent(example, '    ')}")
     return "\n\n".join(parts)
 
 
-def as_plain_text(code: str) -> str:
+def as_plain_text(code: Code) -> str:
     """The explanation without its title, for a format that has that elsewhere."""
     return as_text(code).partition("\n\n")[2]
 
 
-def as_markdown(code: str) -> str:
+def as_markdown(code: Code) -> str:
     """The explanation without its title, in Markdown."""
-    about = EXPLANATIONS[code]
-    parts = [fill(about.why, 100, break_on_hyphens=False)]
-    for head, example in _examples(about):
+    parts = [fill(code.why, 100, break_on_hyphens=False)]
+    for head, example in _examples(code):
         # What follows the language's name keeps the samples of mistakes from being taken for good.
         parts.append(
-            f"{head}:\n\n```{_FENCES[about.kind]} {head.split()[0].lower()}\n{example}\n```"
+            f"{head}:\n\n```{_FENCES[code.kind]} {head.split()[0].lower()}\n{example}\n```"
         )
     return "\n\n".join(parts)
 
 
-def as_json(codes: Iterable[str]) -> str:
+def as_json(codes: Iterable[Code]) -> str:
     """A list with an object for each code."""
     return json.dumps(
         [
             {
-                "code": code,
-                "title": about.title,
-                "why": about.why,
-                "kind": about.kind,
-                "bad": about.bad,
-                "good": about.good,
+                "code": code.code,
+                "title": code.title,
+                "why": code.why,
+                "kind": code.kind,
+                "bad": code.bad,
+                "good": code.good,
             }
             for code in codes
-            for about in [EXPLANATIONS[code]]
         ],
         ensure_ascii=False,
         indent=2,
@@ -93,15 +90,16 @@ def as_json(codes: Iterable[str]) -> str:
 def as_page() -> str:
     """docs/codes.md."""
     parts = [_HEAD]
-    for number, (stage, codes) in enumerate(STAGES.items(), 1):
+    for number, stage in enumerate(STAGES, 1):
         parts.append(f"## R0{number}: {stage.lower()}\n")
         parts += [
-            f"### {code}: {about.title}\n\n{as_markdown(code)}\n" for code, about in codes.items()
+            f"### {code.code}: {code.title}\n\n{as_markdown(code)}\n"
+            for code in codes_of_stage(stage)
         ]
     return "\n".join(parts).rstrip("\n")
 
 
-def _examples(about: Explanation) -> Iterator[tuple[str, str]]:
-    if about.kind != "circumstance":
-        yield f"Wrong ({_KINDS[about.kind]})", about.bad.rstrip("\n")
-        yield "Mended", about.good.rstrip("\n")
+def _examples(code: Code) -> Iterator[tuple[str, str]]:
+    if code.kind != "circumstance":
+        yield f"Wrong ({_KINDS[code.kind]})", code.bad.rstrip("\n")
+        yield "Mended", code.good.rstrip("\n")

@@ -12,8 +12,9 @@ from typing import Any
 from urllib.parse import quote
 
 from rulec.diagnostics import Diagnostic, SourceLocation
-from rulec.diagnostics.codes import EXPLANATIONS
+from rulec.diagnostics.code import Code
 from rulec.report.findings.code_pages import as_markdown, as_plain_text
+from rulec.report.findings.code_registry import all_codes
 from rulec.version import __version__
 
 SCHEMA = (
@@ -34,7 +35,7 @@ def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
             "driver": {
                 "name": "rulec",
                 "version": __version__,
-                "rules": [_rule(code) for code in codes],
+                "rules": [_rule(all_codes()[code]) for code in codes],
             }
         },
         "columnKind": "unicodeCodePoints",
@@ -45,12 +46,11 @@ def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
     return json.dumps(document, ensure_ascii=False, indent=2)
 
 
-def _rule(code: str) -> dict[str, Any]:
-    about = EXPLANATIONS[code]
+def _rule(code: Code) -> dict[str, Any]:
     return {
-        "id": code,
-        "shortDescription": {"text": about.title},
-        "fullDescription": {"text": about.why},
+        "id": code.code,
+        "shortDescription": {"text": code.title},
+        "fullDescription": {"text": code.why},
         "help": {"text": as_plain_text(code), "markdown": as_markdown(code)},
     }
 

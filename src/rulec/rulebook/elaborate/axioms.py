@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from rulec.diagnostics import Diagnostic, Label
 from rulec.rulebook.elaborate.elaboration import truth
 from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.names.atom_messages import WRONG_ARGUMENT_TYPE
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.scope import SIDES, BoundVariable, Scope
 from rulec.rulebook.names.symbol_table import SymbolTable
@@ -89,10 +90,9 @@ def _parameters(
 
 
 def _two_types(name: tree.Name, known: BoundVariable, wanted: str) -> Diagnostic:
-    return Diagnostic(
-        "R0302",
+    return WRONG_ARGUMENT_TYPE.at(
+        name.span,
         f"`{name.text}` cannot be both a `{known.type}` and a `{wanted}`",
-        name.span.place,
         expected=f"here it has to be a `{wanted}`",
         help="say the fact of objects of one type",
         labels=(Label(known.span.place, f"here it has to be a `{known.type}`"),),

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
 from rulec.rulebook.elaborate.linear_arithmetic import Number
 from rulec.syntax import tree
 from rulec.syntax.printer import print_formula
 
+SENSELESS_BOUND = Code(
+    "R0317",
+    title="a bound of time makes no sense",
+    why="Bounds are fixed times or whole numbers of steps: `[<= 3 s]`, `[>= 2 steps]`, "
+    "`[1 s .. 4 s]`. `next` and `previously` look at one instant: `next[2 steps]`.",
+    bad="rulebook example\nsignal wet\nhard rule r { require eventually[4 s .. 1 s] wet }\n",
+    good="rulebook example\nsignal wet\nhard rule r { require eventually[1 s .. 4 s] wet }\n",
+)
+
 
 def two_units_of_time(bound: tree.Bound) -> Diagnostic:
     """A bound from seconds to steps."""
-    return Diagnostic(
-        "R0317",
+    return SENSELESS_BOUND.at(
+        bound.span,
         "a bound is in units of time or in steps, not in both",
-        bound.span.place,
         expected="expected one of them",
         help="write both ends in seconds, or both in steps",
     )
@@ -30,17 +39,14 @@ def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.Bound) -> Diagnostic:
     else:
         message = f"`{node.operator}` looks at one instant, and this is a stretch of time"
         way_out = f"write `{node.operator}[{text}]`"
-    return Diagnostic(
-        "R0317", message, bound.span.place, expected="expected another bound", help=way_out
-    )
+    return SENSELESS_BOUND.at(bound.span, message, expected="expected another bound", help=way_out)
 
 
 def empty_bound(bound: tree.Bound) -> Diagnostic:
     """``[4 s .. 1 s]``."""
-    return Diagnostic(
-        "R0317",
+    return SENSELESS_BOUND.at(
+        bound.span,
         "the bound ends before it begins",
-        bound.span.place,
         expected="expected the smaller number first",
         help="exchange the two",
     )
@@ -48,10 +54,9 @@ def empty_bound(bound: tree.Bound) -> Diagnostic:
 
 def half_a_step(side: tree.Number) -> Diagnostic:
     """``[<= 1.5 steps]``."""
-    return Diagnostic(
-        "R0317",
+    return SENSELESS_BOUND.at(
+        side.span,
         f"there is no {side.text} of a step",
-        side.span.place,
         expected="expected a whole number of steps",
         help="write a whole number, or a time in seconds",
     )
@@ -65,10 +70,9 @@ def no_time(side: tree.Amount, found: Number) -> Diagnostic:
         why = "is below 0"
     else:
         why = f"is {kind_of(found.dimension)}"
-    return Diagnostic(
-        "R0317",
+    return SENSELESS_BOUND.at(
+        side.span,
         f"`{short(side)}` {why}; a bound is a fixed time",
-        side.span.place,
         expected="expected a time",
         help="write a time, such as `3 s`, or a number of steps, such as `2 steps`",
     )

@@ -19,6 +19,7 @@ from rulec.logic.formula import (
 from rulec.logic.printing import term_in_words
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.bounds import bound_of
+from rulec.rulebook.elaborate.elaboration_messages import OPERATOR_BEFORE_THEN
 from rulec.rulebook.elaborate.linear_arithmetic import (
     Linear,
     Number,
@@ -199,10 +200,9 @@ def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -
 def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
     """Who writes ``never p then q`` means ``never (p then q)``: ``never p`` has no end."""
     if phase.operator in ("always", "never", "eventually") and not phase.grouped:
-        yield Diagnostic(
-            "R0311",
+        yield OPERATOR_BEFORE_THEN.at(
+            phase.span,
             f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
-            phase.span.place,
             expected=f"`{phase.operator}` binds tighter than `then`",
             help=f"write `{phase.operator} (… then …)` to speak of the sequence",
             severity="warning",

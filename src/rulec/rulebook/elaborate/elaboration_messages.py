@@ -6,14 +6,50 @@ from collections.abc import Iterator
 from itertools import chain
 
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
+from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
 from rulec.rulebook.elaborate.linear_arithmetic import Number
-from rulec.rulebook.names.declaration_messages import unit_help
+from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE, UNUSED_VARIABLE
+from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
+from rulec.rulebook.names.declaration_messages import UNKNOWN_UNIT, unit_help
 from rulec.rulebook.names.scope import SIDES, Scope
 from rulec.syntax import tree
+from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.units import DIMENSIONS, Dimension, unit_refusal
+
+OPERATOR_BEFORE_THEN = Code(
+    "R0311",
+    title="an operator speaks of a phase before `then`, not of the sequence",
+    why="Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
+    "phase without `a`, then `b`. A whole sequence stands in parentheses.",
+    bad="rulebook example\nsignal a, b\nhard rule r { require never a then b }\n",
+    good="rulebook example\nsignal a, b\nhard rule r { require never (a then b) }\n",
+)
+
+NOT_LINEAR = Code(
+    "R0314",
+    title="two numbers that change are multiplied or divided",
+    why="Comparisons are linear: numbers that states give are added, subtracted, and multiplied or "
+    "divided by fixed numbers and parameters, except by 0.",
+    bad="rulebook example\nquantity gap in m default 100\nquantity speed in m/s default 0\n"
+    "hard rule r { require always gap / speed >= 2 s }\n",
+    good="rulebook example\nquantity gap in m default 100\nquantity speed in m/s default 0\n"
+    "hard rule r { require always gap >= 2 s * speed }\n",
+)
+
+MISPLACED_TEMPORAL_OPERATOR = Code(
+    "R0319",
+    title="a temporal operator stands in a count, a parameter or a fact",
+    why="The words `some`, `every` and `count` go over the objects of one moment, and a "
+    "parameter is a number "
+    "of one moment. What happens to one object over time is said by a variable of the rule.",
+    bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
+    "hard rule r { require every c: car (always not near(c)) }\n",
+    good="rulebook example\ntype car\nsignal near(c: car) default false\n"
+    "hard rule r { require always every c: car (not near(c)) }\n",
+)
 
 
 def kind_of(dimension: Dimension | None) -> str:
@@ -64,10 +100,9 @@ def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnos
         unit = scope.declared.unit_text(node.name.text)
     inside = f" (in {unit})" if unit else ""
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.span,
         f"`{short(node)}` is {kind_of(found.dimension)}{inside} and cannot be true or false",
-        node.span.place,
         expected="expected something that is true or false",
         help=f"compare it, such as `{short(node)} {test}`",
         labels=_once(origins(node, scope)),
@@ -77,10 +112,9 @@ def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnos
 def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
     """A variable where a formula needs something true or false."""
     example = next(iter(scope.declared.about_one()), "p")
-    return Diagnostic(
-        "R0303",
+    return NOT_BOOLEAN.at(
+        node.span,
         f"`{short(node)}` is an object and cannot be true or false",
-        node.span.place,
         expected="expected a signal or a value",
         help=f"say something about it, such as `{example}({short(node)})`",
     )
@@ -88,10 +122,9 @@ def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
 
 def no_number(node: tree.Formula, found: object, scope: Scope) -> Diagnostic:
     """Something true or false, or an object, where a number is needed."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.span,
         f"`{short(node)}` is {what_of(found)}, not a number",
-        node.span.place,
         expected="expected a number",
         help="a number is a quantity, a parameter, a count, or such as `1.5 m`",
         labels=_once(origins(node, scope)),
@@ -116,10 +149,9 @@ def values_compared(
         )
     else:
         way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
-    return Diagnostic(
-        "R0303",
+    return NOT_BOOLEAN.at(
+        node.span,
         f"`{name}` is not compared: each of its values is true or false by itself",
-        node.span.place,
         expected="expected the value alone",
         help=way_out,
         labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
@@ -135,10 +167,9 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
     if isinstance(node.right, tree.Truth) and isinstance(node.left, tree.AtomUse):
         holds = node.right.value == (node.relation == "=")
         way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.span,
         f"both sides of `{node.relation}` are true or false, not numbers",
-        node.span.place,
         expected="expected two numbers",
         help=way_out,
         labels=_once(chain(origins(node.left, scope), origins(node.right, scope))),
@@ -149,10 +180,9 @@ def not_comparable(
     node: tree.Formula, found: object, around: tree.Compare, scope: Scope
 ) -> Diagnostic:
     """A side of a comparison that is no number."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.span,
         f"`{short(node)}` is {what_of(found)}, not a number",
-        node.span.place,
         expected=f"expected a number beside `{around.relation}`",
         help="numbers are compared, and objects by `=` and `!=`",
         labels=_once(origins(node, scope)),
@@ -179,10 +209,9 @@ def two_dimensions(
     one, other = kind_of(left.dimension), kind_of(right.dimension)
     verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
     message = f"`{short(first)}` is {one} and `{short(second)}` {other}"
-    return Diagnostic(
-        "R0312",
+    return MIXED_DIMENSIONS.at(
+        second.span,
         f"{message}: they cannot be {verb}",
-        second.span.place,
         expected=f"this is {other}",
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
@@ -218,11 +247,10 @@ def _factor(node: tree.Formula) -> str:
 
 def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
     """``number if condition else truth``."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.otherwise.span,
         f"`{short(node.value)}` is {what_of(value)} and `{short(node.otherwise)}` "
         f"{what_of(otherwise)}: they cannot stand for each other",
-        node.otherwise.span.place,
         expected=f"this is {what_of(otherwise)}",
         help="both sides of `if … else` are numbers, or both are true or false",
         labels=_once(origins(node.value, scope)),
@@ -234,11 +262,10 @@ def unknown_unit(node: tree.Number) -> Diagnostic:
     refusal = unit_refusal(node.unit)
     if refusal is not None:
         message = f"the unit `{node.unit}` cannot be used: {refusal.why}"
-        return Diagnostic("R0209", message, node.span.place, help=refusal.instead)
-    return Diagnostic(
-        "R0209",
+        return UNKNOWN_UNIT.at(node.span, message, help=refusal.instead)
+    return UNKNOWN_UNIT.at(
+        node.span,
         f"there is no unit `{node.unit}`",
-        node.span.place,
         expected="expected a unit of measure",
         help=unit_help(node.unit),
     )
@@ -246,10 +273,9 @@ def unknown_unit(node: tree.Number) -> Diagnostic:
 
 def too_long(node: tree.Number) -> Diagnostic:
     """A number with more digits than anyone could mean."""
-    return Diagnostic(
-        "R0112",
+    return NUMBER_TOO_LARGE.at(
+        node.span,
         "this number has too many digits",
-        node.span.place,
         help="write at most 400 digits, and no exponent beyond 400",
     )
 
@@ -262,10 +288,9 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
     else:
         why = "a number that changes from state to state cannot be divided by"
         wanted = "behind `/`"
-    return Diagnostic(
-        "R0314",
+    return NOT_LINEAR.at(
+        node.span,
         f"`{short(node)}`: {why}",
-        node.span.place,
         expected=f"expected a fixed number {wanted}",
         help="multiply and divide by fixed numbers and parameters only",
     )
@@ -273,10 +298,9 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
 
 def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
     """A division by 0."""
-    return Diagnostic(
-        "R0314",
+    return NOT_LINEAR.at(
+        node.right.span,
         f"`{short(node)}` divides by 0",
-        node.right.span.place,
         expected="expected a number other than 0",
         help="check the divisor",
     )
@@ -284,20 +308,18 @@ def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
 
 def too_many_cases(node: tree.Formula) -> Diagnostic:
     """A comparison with too many conditional numbers."""
-    return Diagnostic(
-        "R0323",
+    return FORMULA_TOO_LARGE.at(
+        node.span,
         f"`{short(node)}` becomes too large, with parameters and conditions put in",
-        node.span.place,
         help="use fewer numbers that have an `if`, or say it in several comparisons",
     )
 
 
 def objects_have_no_order(node: tree.Compare) -> Diagnostic:
     """``v < w`` of objects."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        node.span,
         f"`{short(node.left)}` and `{short(node.right)}` are objects, which have no order",
-        node.span.place,
         expected="expected `=` or `!=` between objects",
         help="compare numbers of theirs",
     )
@@ -305,10 +327,9 @@ def objects_have_no_order(node: tree.Compare) -> Diagnostic:
 
 def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
     """A temporal operator in a count's body or a parameter."""
-    return Diagnostic(
-        "R0319",
+    return MISPLACED_TEMPORAL_OPERATOR.at(
+        node.span,
         f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",
-        node.span.place,
         expected="expected a formula about one state",
         help="put the operator around it, or give the rule a variable",
     )
@@ -317,10 +338,9 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
 def unused_variable(node: tree.Aggregate) -> Diagnostic:
     """A count's variable that its body says nothing about."""
     name = node.variable.name.text
-    return Diagnostic(
-        "R0207",
+    return UNUSED_VARIABLE.at(
+        node.variable.span,
         f"the formula says nothing about `{name}`",
-        node.variable.span.place,
         expected="not used behind it",
         help="speak of it, or leave the variable out",
         severity="warning",

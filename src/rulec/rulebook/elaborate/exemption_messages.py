@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE, UNFITTING_SCOPE
 from rulec.syntax import tree
 
 
@@ -10,11 +11,10 @@ def no_stretch(unless: tree.Unless, scope: str, require: Span | None) -> Diagnos
     """A scope of an exception to a formula that guards no stretch of time."""
     written = f"`{scope}`" if unless.scope else "this exception"
     labels = () if require is None else (Label(require.place, "this is what the rule requires"),)
-    return Diagnostic(
-        "R0318",
+    return UNFITTING_SCOPE.at(
+        unless.span,
         f"{written} speaks of a sequence, and the rule guards none: it does not begin with "
         "`never` or `always`",
-        unless.span.place,
         expected="expected `initially`",
         help="write `initially`, which looks at the first state, or say what must `never` happen",
         labels=labels,
@@ -23,10 +23,9 @@ def no_stretch(unless: tree.Unless, scope: str, require: Span | None) -> Diagnos
 
 def bounded_phase(unless: tree.Unless) -> Diagnostic:
     """``throughout`` phases whose length is bounded."""
-    return Diagnostic(
-        "R0318",
+    return UNFITTING_SCOPE.at(
+        unless.span,
         "an exception cannot hold `throughout` phases whose length is bounded",
-        unless.span.place,
         expected="expected another scope",
         help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
     )
@@ -34,10 +33,9 @@ def bounded_phase(unless: tree.Unless) -> Diagnostic:
 
 def too_many_exceptions(unless: tree.Unless) -> Diagnostic:
     """More exceptions that hold throughout than a formula can take."""
-    return Diagnostic(
-        "R0323",
+    return FORMULA_TOO_LARGE.at(
+        unless.span,
         "with this one, too many exceptions of the rule have to hold `throughout` its phases: "
         "each multiplies the formula",
-        unless.span.place,
         help="join some of them by `or` in one `unless`, if one of them may follow the other",
     )

@@ -20,6 +20,7 @@ from rulec.rulebook.elaborate.exemptions import (
 )
 from rulec.rulebook.elaborate.linear_arithmetic import negated
 from rulec.rulebook.elaborate.literals import exact_value
+from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE
 from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, excess
 from rulec.rulebook.elaborate.step_messages import no_multiple
 from rulec.rulebook.examples.example_elaboration import example_of
@@ -198,10 +199,9 @@ def _guards_a_stretch(formula: Formula) -> bool:
 def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
     for one in item.variables:
         if one.name.text not in scope.used:
-            yield Diagnostic(
-                "R0207",
+            yield UNUSED_VARIABLE.at(
+                one.span,
                 f"the formula of `{item.name.text}` says nothing about `{one.name.text}`",
-                one.span.place,
                 expected="not used in `require`",
                 help="leave the variable out, or speak of it",
                 severity="warning",

@@ -3,30 +3,112 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
+from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS
 from rulec.syntax import tree
+from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
+
+UNUSED_VARIABLE = Code(
+    "R0207",
+    title="a variable is not used",
+    why="The rule is judged for every choice of objects for its variables. A variable that the "
+    "formula never speaks of makes more choices and changes no verdict, except where there "
+    "is no such object: then the rule is not judged at all.",
+    bad="rulebook example\nuse paper\n"
+    "hard rule r (v: vehicle, p: pedestrian) { require always not r(v) }\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
+)
+
+UNUSED_CONSTANT = Code(
+    "R0208",
+    title="an option, a parameter or a definition is not used",
+    why="No rule, parameter or definition of the rulebook speaks of it, so it changes nothing.",
+    bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require not wet }\n",
+    good="rulebook example\nsignal wet\noption strict = on\n"
+    "hard rule r { require strict implies not wet }\n",
+)
+
+UNKNOWN_PRIORITY = Code(
+    "R0215",
+    title="a level of priority is unknown",
+    why="A rule's place, such as `in legal`, is one of the levels that the `priority` lines of the "
+    "rulebook, or of those that it extends, put in order.",
+    bad="rulebook example\npriority safety > legal\nsignal wet\n"
+    "hard rule r in lawful { require not wet }\n",
+    good="rulebook example\npriority safety > legal\nsignal wet\n"
+    "hard rule r in legal { require not wet }\n",
+)
+
+UNFITTING_SCOPE = Code(
+    "R0318",
+    title="an exception's scope does not fit the rule",
+    why="Exceptions `at start`, `throughout`, `at some point` and `at end` speak of the stretch of "
+    "time that a rule guards, which begins with `never` or `always`. Other rules can except "
+    "what holds `initially`. What holds `throughout` phases whose length is bounded cannot "
+    "be said.",
+    bad="rulebook example\nsignal wet, fog\n"
+    "hard rule r { require eventually wet unless fog throughout }\n",
+    good="rulebook example\nsignal wet, fog\n"
+    "hard rule r { require eventually wet unless fog initially }\n",
+)
+
+NOT_ABOVE_ZERO = Code(
+    "R0322",
+    title="a weight or a step is not above 0",
+    why="A weight says how much a rule counts beside others of its level, a step how far the "
+    "states "
+    "of examples are apart in time.",
+    bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require not wet }\n",
+    good="rulebook example\nsignal wet\nsoft rule r weight 1 { require not wet }\n",
+)
+
+FORMULA_TOO_LARGE = Code(
+    "R0323",
+    title="a formula grows too large when definitions, conditions and exceptions are put in",
+    why="Each is put in the place where it is used. Definitions that use others twice, conditional "
+    "numbers beside each other, and exceptions that hold throughout multiply.",
+    bad="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
+    "not wet)\n"
+    "  unless a throughout unless b throughout unless c throughout\n"
+    "  unless d throughout unless e throughout\n}\n",
+    good="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
+    "not wet)\n"
+    "  unless a or b or c or d or e throughout\n}\n",
+)
+
+NOT_A_MULTIPLE = Code(
+    "R0407",
+    title="a bound is not a multiple of the step",
+    why="A bound in seconds becomes a number of states, with the time from one state of a trace "
+    "to the next, its step. If a bound falls between two states, nobody knows what held "
+    "there. Choose a bound that is a multiple of the step, or traces with a finer one.",
+    bad="rulebook example\nsignal wet default false\n"
+    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+    good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
+    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+    kind="compiled",
+)
 
 
 def too_deep(what: str, name: tree.Name) -> Diagnostic:
     """A formula, definition or parameter that is too deep once definitions are put in."""
-    return Diagnostic(
-        "R0111",
+    return FORMULA_TOO_DEEP.at(
+        name.span,
         f"the {what}{_of(what)} `{name.text}` is nested more than {DEEPEST} levels deep, with "
         "definitions put in",
-        name.span.place,
         help="say its parts in rules of their own",
     )
 
 
 def too_large(what: str, name: tree.Name) -> Diagnostic:
     """One that is too large once definitions are put in."""
-    return Diagnostic(
-        "R0323",
+    return FORMULA_TOO_LARGE.at(
+        name.span,
         f"the {what}{_of(what)} `{name.text}` has more than {MOST_PARTS:,} parts, with definitions "
         "put in",
-        name.span.place,
         help="definitions that use another one twice double it each time: make them simpler",
     )
 
@@ -42,10 +124,9 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
     else:
         lower = level.text if level.text != "safety" else "courtesy"
         way_out = f"name it in the header, such as `priority safety > {lower}`"
-    return Diagnostic(
-        "R0215",
+    return UNKNOWN_PRIORITY.at(
+        level.span,
         f"there is no level of priority `{level.text}`",
-        level.span.place,
         expected="expected a level of a `priority` line",
         help=way_out,
     )
@@ -53,10 +134,11 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
     """Inherited examples that do not fit the rule any more as it has been changed."""
-    return Diagnostic(
-        first.code,
-        f"the examples that `{changed.text}` inherits do not fit it any more: {first.message}",
-        changed.span.place,
+    return replace(
+        first,
+        message=f"the examples that `{changed.text}` inherits do not fit it any more: "
+        f"{first.message}",
+        place=changed.span.place,
         expected="the rule is changed here",
         help="give it examples of its own, by `accept { … }` and `reject { … }`",
         labels=() if first.place is None else (Label(first.place, "an inherited example"),),
@@ -65,10 +147,9 @@ def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
 
 def weightless(weight: tree.Number) -> Diagnostic:
     """A weight of 0."""
-    return Diagnostic(
-        "R0322",
+    return NOT_ABOVE_ZERO.at(
+        weight.span,
         f"a weight of {weight.text} says that the rule does not count",
-        weight.span.place,
         expected="expected a number above 0",
         help="leave the rule out, or give it a weight",
     )
@@ -76,10 +157,9 @@ def weightless(weight: tree.Number) -> Diagnostic:
 
 def no_step(line: tree.StepLine) -> Diagnostic:
     """A step that is no time above 0."""
-    return Diagnostic(
-        "R0322",
+    return NOT_ABOVE_ZERO.at(
+        line.amount.span,
         "the step is no time above 0",
-        line.amount.span.place,
         expected="expected a time",
         help="write a time, such as `step 0.5 s`",
     )
@@ -87,10 +167,9 @@ def no_step(line: tree.StepLine) -> Diagnostic:
 
 def unused_parameter(item: tree.DefineItem, parameter: tree.Parameter) -> Diagnostic:
     """A definition's parameter that its body says nothing about."""
-    return Diagnostic(
-        "R0207",
+    return UNUSED_VARIABLE.at(
+        parameter.span,
         f"the definition of `{item.name.text}` says nothing about `{parameter.name.text}`",
-        parameter.span.place,
         expected="not used behind `=`",
         help="leave it out, or speak of it",
         severity="warning",
@@ -99,10 +178,9 @@ def unused_parameter(item: tree.DefineItem, parameter: tree.Parameter) -> Diagno
 
 def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
     """An option, a parameter or a definition that nothing uses."""
-    return Diagnostic(
-        "R0208",
+    return UNUSED_CONSTANT.at(
+        name.span,
         f"no rule uses the {kind} `{name.text}`",
-        name.span.place,
         expected="not used",
         help="leave it out, or speak of it in a rule",
         severity="warning",

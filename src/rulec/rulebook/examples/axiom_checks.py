@@ -12,6 +12,7 @@ from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import in_words
 from rulec.logic.renaming import renamed
 from rulec.logic.required_inputs import asked
+from rulec.rulebook.examples.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.model import Axiom, Example, ExampleState, Rule
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
@@ -72,10 +73,9 @@ def _broken(state: Told, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
 
 def _no_state(example: Example, number: int, fact: Axiom, said: str) -> Diagnostic:
     spans = example.state_spans
-    return Diagnostic(
-        "R0306",
-        f"this state cannot be: `{said}` holds in every state",
+    return CONTRADICTORY_STATE.at(
         spans[number].place if spans else at(example.span),
+        f"this state cannot be: `{said}` holds in every state",
         help="correct the state; or the fact, if there can be such states",
         labels=(Label(fact.span.place, "what holds in every state"),) if fact.span else (),
     )

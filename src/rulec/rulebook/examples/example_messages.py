@@ -3,14 +3,52 @@
 from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of
+from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom, Quantity
 from rulec.logic.printing import term_in_words
 from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
+from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.units import Unit
+
+CONTRADICTORY_STATE = Code(
+    "R0306",
+    title="a state of an example contradicts itself or a fact",
+    why="In one state a signal is true or false, an enumeration has one value, and what the "
+    "vocabulary calls a `fact` holds. What a state does not say has its default, if the rule "
+    "reads it. Two states, one after the other, are separated by `;`.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  accept { b(v) and l(v) }\n}\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  accept { b(v); l(v) }\n}\n",
+)
+
+INCOMPLETE_STATE = Code(
+    "R0307",
+    title="a state leaves open what has no default",
+    why="What an example does not say takes the default of its declaration. Without a default "
+    "every state has to say it if the formula needs it: a missing value is never taken for "
+    "false.",
+    bad="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
+    "  accept { wet }\n}\n",
+    good="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
+    "  accept { wet and not fog }\n}\n",
+)
+
+DENIED_VALUE = Code(
+    "R0310",
+    title="a state denies a value instead of naming one",
+    why="In a state of an example an enumeration has exactly one value, so the state names it. "
+    "That it is not one of them would leave open which it is.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  accept { not r(v) }\n}\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  accept { l(v) }\n}\n",
+)
 
 
 def denied(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
@@ -22,10 +60,9 @@ def denied(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagno
         for value in item.values
         if value != atom.value
     ]
-    return Diagnostic(
-        "R0310",
+    return DENIED_VALUE.at(
+        fact.span,
         f"a state says which value `{_subject(atom)}` has, not which it lacks",
-        fact.span.place,
         expected="expected a value",
         help=f"write {any_of(others)}" if others else f"`{atom}` always holds",
         labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
@@ -38,10 +75,9 @@ def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -
         message = f"`{what}` cannot be both true and false in one state"
     else:
         message = f"`{_subject(what)}` cannot have two values in one state"
-    return Diagnostic(
-        "R0306",
+    return CONTRADICTORY_STATE.at(
+        fact.span,
         message,
-        fact.span.place,
         expected="this contradicts what was said before",
         help="keep one of them, or put a `;` between two states",
         labels=(Label(first.place, "said before"),),
@@ -57,10 +93,9 @@ def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: SymbolT
         ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
     else:
         ways = [f"`{what}`", f"`not {what}`"]
-    return Diagnostic(
-        "R0307",
+    return INCOMPLETE_STATE.at(
+        state.span,
         f"this state leaves open `{_subject(what)}`, which the formula needs",
-        state.span.place,
         expected=f"expected {any_of(ways)}",
         help="say it in this state, or give its declaration a default",
         labels=(Label(declared.spans[what.name].place, f"`{what.name}` has no default"),),
@@ -69,11 +104,10 @@ def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: SymbolT
 
 def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
     """An option, a parameter or a definition in a state."""
-    return Diagnostic(
-        "R0303",
+    return NOT_BOOLEAN.at(
+        use.span,
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} of the rulebook, no fact "
         "about a state",
-        use.span.place,
         expected="expected a signal, a value or a quantity",
         help="name the facts themselves",
         labels=(Label(declared.span.place, f"`{use.name.text}` is declared here"),),
@@ -83,10 +117,9 @@ def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
 def without_number(fact: tree.StateLiteral, what: Quantity, declared: SymbolTable) -> Diagnostic:
     """A quantity without a value."""
     unit = declared.unit_text(what.name)
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        fact.span,
         f"`{term_in_words(what)}` is a number (in {unit}) and cannot be true or false",
-        fact.span.place,
         expected="expected its value",
         help=f"write `{term_in_words(what)} = 5 {unit}`",
         labels=(Label(declared.spans[what.name].place, f"`{what.name}` is declared here"),),
@@ -95,10 +128,9 @@ def without_number(fact: tree.StateLiteral, what: Quantity, declared: SymbolTabl
 
 def not_a_number(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
     """A number for what is true or false."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        fact.span,
         f"`{atom}` is true or false and has no number",
-        fact.span.place,
         expected=f"expected `{atom}`",
         help=f"write `{atom}` or, for a signal, `not {atom}`",
         labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
@@ -111,11 +143,10 @@ def other_dimension(
     """A value in a unit of another dimension."""
     assert fact.value is not None, "only a value has a unit"
     found = given.dimension.name if given.dimension else "number"
-    return Diagnostic(
-        "R0312",
+    return MIXED_DIMENSIONS.at(
+        fact.value.span,
         f"`{term_in_words(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {found}",
-        fact.value.span.place,
         expected=f"expected a {unit.dimension.name}",
         help=f"write it in {unit.text}",
     )
@@ -124,10 +155,9 @@ def other_dimension(
 def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic:
     """A value beyond all numbers that a trace can have."""
     assert fact.value is not None, "only a value can be too large"
-    return Diagnostic(
-        "R0112",
+    return NUMBER_TOO_LARGE.at(
+        fact.value.span,
         f"this number is too large for `{term_in_words(what)}`, which counts in {unit.text}",
-        fact.value.span.place,
         help=f"write a number below 1e308 {unit.text}",
     )
 

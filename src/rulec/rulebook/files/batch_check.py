@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import NoReturn
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.file_messages import UNREADABLE_FILE
 from rulec.rulebook.files.check_cache import CheckQuestion, recall, remember
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.search_path import (
     BY_PATH,
     available_rulebooks,
@@ -139,19 +141,19 @@ def _in_folder(folder: str) -> list[Path]:
     if not found:
         message = "there is no rulebook and no vocabulary in this folder"
         way_out = "give a folder with files whose names end in `.rules`"
-        raise RulecError(Diagnostic("R0701", message, SourceLocation(folder), help=way_out))
+        raise UNREADABLE_FILE.error(SourceLocation(folder), message, help=way_out)
     return found
 
 
 def _locked(problem: OSError) -> NoReturn:
     message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
     place = SourceLocation(os.fsdecode(problem.filename))
-    raise RulecError(Diagnostic("R0701", message, place, help="check its permissions"))
+    raise UNREADABLE_FILE.error(place, message, help="check its permissions")
 
 
 def _nothing_called(name: str, known: Sequence[str]) -> Diagnostic:
-    return Diagnostic(
-        "R0703",
+    return NAME_NOT_FOUND.at(
+        None,
         f"there is no rulebook, vocabulary or folder `{name}`",
         help=suggest(name, known),
         notes=(BY_PATH,),

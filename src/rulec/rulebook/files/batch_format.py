@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
 from rulec.files import written_whole
 from rulec.rulebook.files.batch_check import find_sources
 from rulec.rulebook.files.search_path import read_bytes
@@ -67,7 +68,7 @@ def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
         if elsewhere is not None:
             message = "there is no such file or folder, only a name"
             way_out = f"give the path that it stands for, `{elsewhere}`"
-            raise RulecError(Diagnostic("R0701", message, SourceLocation(reference), help=way_out))
+            raise UNREADABLE_FILE.error(SourceLocation(reference), message, help=way_out)
     if "/" in reference:
         return find_sources(reference)
     is_folder = os.path.isdir(reference)  # noqa: PTH112 - Path raises on a null character
@@ -104,6 +105,6 @@ def _replace(path: Path, data: bytes) -> None:
     if not path.is_file():
         way_out = "give `-` to have standard input formatted to standard output"
         message = "the file cannot be written: it is no ordinary file"
-        raise RulecError(Diagnostic("R0702", message, SourceLocation(str(path)), help=way_out))
+        raise UNWRITABLE_FILE.error(SourceLocation(str(path)), message, help=way_out)
     with written_whole(path) as stream:
         stream.write(data)

@@ -8,6 +8,8 @@ from hashlib import sha256
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, Label, RulecError
+from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, WRONG_KIND_OF_FILE
 from rulec.rulebook.files.search_path import Dependency, find_base, is_same_file, read_bytes
 from rulec.rulebook.model import SourceFile
 from rulec.syntax import decode, parse, tree
@@ -91,10 +93,9 @@ def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
     names = [f"`{one.file.name.text}`" if one.file.name else "a rulebook" for one in way]
     chain = " extends ".join([*names, f"`{line.name.text}`"])
     others = [one.file.extends for one in way if one.file.extends not in (None, line)]
-    return Diagnostic(
-        "R0213",
+    return EXTENDS_CIRCLE.at(
+        line.name.span,
         f"the rulebooks go round in a circle: {chain}",
-        line.name.span.place,
         expected="this closes the circle",
         help="the most general of them extends no other: leave its `extends` line out",
         labels=tuple(
@@ -104,19 +105,17 @@ def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
 
 
 def _too_many(line: tree.ExtendsLine) -> Diagnostic:
-    return Diagnostic(
-        "R0323",
+    return FORMULA_TOO_LARGE.at(
+        line.span,
         f"more than {MOST_BASES} rulebooks build upon one another",
-        line.span.place,
         help="let a rulebook extend a more general one directly",
     )
 
 
 def _is_a_vocabulary(line: tree.ExtendsLine) -> Diagnostic:
-    return Diagnostic(
-        "R0206",
+    return WRONG_KIND_OF_FILE.at(
+        line.name.span,
         f"`{line.name.text}` is a vocabulary, not a rulebook",
-        line.name.span.place,
         expected="expected the name of a rulebook",
         help=f"a rulebook takes its words from it by `use {line.name.text}`",
     )

@@ -11,6 +11,7 @@ from typing import Literal
 from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 
 _SUFFIX = ".rules"
 _LEAD = re.compile(r"(?:\s+|#[^\n]*)*(\w*)")
@@ -86,14 +87,11 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     if found is not None:
         return found
     known = [path.stem for path in _vocabularies_in(_vocabulary_folders(user, search_path))]
-    raise RulecError(
-        Diagnostic(
-            "R0703",
-            f"there is no vocabulary `{name}`",
-            use.place,
-            expected="expected the name of a vocabulary",
-            help=_suggest(name, known),
-        )
+    raise NAME_NOT_FOUND.error(
+        use.place,
+        f"there is no vocabulary `{name}`",
+        expected="expected the name of a vocabulary",
+        help=_suggest(name, known),
     )
 
 
@@ -198,11 +196,7 @@ def _lead(path: Path) -> str:
 
 
 def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
-    return Diagnostic(
-        "R0703",
-        f"there is no rulebook `{name}`",
-        help=_suggest(name, known),
-    )
+    return NAME_NOT_FOUND.at(None, f"there is no rulebook `{name}`", help=_suggest(name, known))
 
 
 def suggest(name: str, known: Sequence[str]) -> str:

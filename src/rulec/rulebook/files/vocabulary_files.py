@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.files.extends import source_file
+from rulec.rulebook.files.reference_messages import WRONG_KIND_OF_FILE
 from rulec.rulebook.files.search_path import Dependency, find_vocabulary, is_same_file, read_bytes
 from rulec.rulebook.model import SourceFile
 from rulec.syntax import decode, parse, tree
@@ -60,10 +61,9 @@ def _not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagn
         message = f"`{path.name}` is a rulebook, not a vocabulary"
     else:
         message = f"`{path.name}` holds another vocabulary, `{file.name.text}`"
-    return Diagnostic(
-        "R0206",
+    return WRONG_KIND_OF_FILE.at(
+        use.name.span,
         message,
-        use.name.span.place,
         expected="expected the name of a vocabulary",
         help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",
     )

@@ -3,100 +3,194 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
+from rulec.diagnostics.code import Code
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
 
-if TYPE_CHECKING:
-    from rulec.rulebook.names.scope import Scope
+UNKNOWN_NAME = Code(
+    "R0202",
+    title="a name in a formula or a state is unknown",
+    why="A formula speaks of signals and of the values of enumerations. They have to be declared "
+    "in the rulebook or in a vocabulary that it uses.",
+    bad="rulebook example\nuse paper\nhard rule r { require always not CONGESTD }\n",
+    good="rulebook example\nuse paper\nhard rule r { require always not CONGESTED }\n",
+)
+
+UNKNOWN_VARIABLE = Code(
+    "R0203",
+    title="a variable is unknown",
+    why="The variables of a rule are those in the parentheses behind its name, each with a type.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(w) and b(v) "
+    "}\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) and b(v) "
+    "}\n",
+)
+
+UNKNOWN_SIDE = Code(
+    "R0211",
+    title="the near or the far side is not known",
+    why="The near side is the one of the kerb: the right one where traffic drives on the right. "
+    "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
+    "extends, and a vocabulary with `left_of` and `right_of`.",
+    bad="rulebook example\nuse road\n"
+    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
+    good="rulebook example\ntraffic right\nuse road\n"
+    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
+)
+
+WRONG_ARITY = Code(
+    "R0301",
+    title="an atom has the wrong number of arguments",
+    why="A signal or an enumeration is about the world, or about as many objects as its "
+    "declaration has parameters; in a formula it stands with as many variables.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED(v) }\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED }\n",
+)
+
+WRONG_ARGUMENT_TYPE = Code(
+    "R0302",
+    title="an argument is of the wrong type",
+    why="What is declared for one type can be said of its subtypes, and of no other objects.",
+    bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
+    "hard rule r (p: pedestrian) { require not braking(p) }\n",
+    good="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
+    "hard rule r (c: car) { require not braking(c) }\n",
+)
+
+NOT_BOOLEAN = Code(
+    "R0303",
+    title="a name stands for something that cannot be true or false",
+    why="Formulas are made of what is true or false in a state: signals, and values of "
+    "enumerations. Quantities, types, objects and an enumeration as a whole are neither.",
+    bad="rulebook example\nsurface is one of road, crossing\nhard rule r { require not surface }\n",
+    good="rulebook example\nsurface is one of road, crossing\n"
+    "hard rule r { require not crossing }\n",
+)
+
+AMBIGUOUS_NAME = Code(
+    "R0309",
+    title="a name can be read in two ways",
+    why="The name `b_v` is short for `b(v)`. Where the underscores of a name can be read in two "
+    "ways, parentheses say which is meant.",
+    bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
+    "hard rule r (b_c: t, c: t) { require a_b_c and a(c) and a(b_c) }\n",
+    good="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
+    "hard rule r (b_c: t, c: t) { require a_b(c) and a(c) and a(b_c) }\n",
+)
+
+
+MIXED_DIMENSIONS = Code(
+    "R0312",
+    title="numbers of two kinds are put together",
+    why="A length is not compared with a speed, and a number without a unit not with either. Only "
+    "a bare 0 fits every kind.",
+    bad="rulebook example\nquantity speed in km/h default 0\n"
+    "hard rule r { require always speed <= 50 }\n",
+    good="rulebook example\nquantity speed in km/h default 0\n"
+    "hard rule r { require always speed <= 50 km/h }\n",
+)
+
+NUMBER_OR_FORMULA = Code(
+    "R0313",
+    title="a number stands where something true or false is needed, or the other way round",
+    why="Formulas are made of what is true or false: signals, values and comparisons. Comparisons "
+    "are made of numbers: quantities, parameters, counts, and numbers with their units.",
+    bad="rulebook example\nquantity speed in km/h default 0\n"
+    "hard rule r { require always not speed }\n",
+    good="rulebook example\nquantity speed in km/h default 0\n"
+    "hard rule r { require always not speed > 0 }\n",
+)
 
 _ATOM = "expected a signal or a value"
 _GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
 _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
 
 
-def explain(use: tree.AtomUse, scope: Scope) -> Diagnostic:
-    """Why a name is no atom: it is something else, or it is not known."""
-    name, declared = use.name.text, scope.declared
+def explain(
+    use: tree.AtomUse,
+    declared: SymbolTable,
+    variables: Mapping[str, str | None],
+    others: Collection[str],
+) -> Diagnostic:
+    """Why a name is no atom: it is something else, or it is not known.
+
+    ``variables`` have types, None if not known; ``others`` are names that a formula may use too.
+    """
+    name = use.name.text
     item = declared.items.get(name)
     if isinstance(item, Enumeration):
         values = any_of([f"`{_call(value, item)}`" for value in item.values])
         return _not_an_atom(use, declared, "has several values", f"write {values}")
     if name in declared.types:
-        return Diagnostic(
-            "R0303",
+        return NOT_BOOLEAN.at(
+            use.name.span,
             f"`{name}` is a type of objects and cannot be true or false",
-            use.name.span.place,
             expected=_ATOM,
             help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
             labels=(Label(declared.type_spans[name].place, f"`{name}` is declared here"),),
         )
-    return _unknown(use, scope)
+    return _unknown(use, declared, variables, others)
 
 
 def _not_an_atom(use: tree.AtomUse, declared: SymbolTable, why: str, help_: str) -> Diagnostic:
     name = use.name.text
-    return Diagnostic(
-        "R0303",
+    return NOT_BOOLEAN.at(
+        use.name.span,
         f"`{name}` {why} and cannot be true or false",
-        use.name.span.place,
         expected=_ATOM,
         help=help_,
         labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
     )
 
 
-def _unknown(use: tree.AtomUse, scope: Scope) -> Diagnostic:
-    name, declared = use.name.text, scope.declared
+def _unknown(
+    use: tree.AtomUse,
+    declared: SymbolTable,
+    variables: Mapping[str, str | None],
+    others: Collection[str],
+) -> Diagnostic:
+    name = use.name.text
     atoms = declared.atoms()
-    quantities = [one for one, item in declared.items.items() if isinstance(item, Quantity)]
-    known = [*atoms, *quantities, *scope.provisions.names(), *scope.relations]
+    quantities = [item.name for item in declared.items.values() if isinstance(item, Quantity)]
+    known = [*atoms, *quantities, *others]
     glued = _glued(name, set(atoms))
     if name == "if":
         way_out = "write `p implies q` for `if p then q`"
     elif glued:
         way_out = f"write `{glued}`"
     else:
-        variables = list(scope.variables)
         way_out = (
-            ("" if use.arguments else _short_form(name, declared, variables))
+            ("" if use.arguments else _short_form(name, declared, list(variables)))
             or did_you_mean(name, known)
-            or f"declare it, such as `signal {_as_used(use, scope)}`, "
+            or f"declare it, such as `signal {_as_used(use, variables)}`, "
             "or `use` a vocabulary that has it"
         )
-    return Diagnostic(
-        "R0202",
-        f"nothing is called `{name}`",
-        use.name.span.place,
-        expected=_ATOM,
-        help=way_out,
+    return UNKNOWN_NAME.at(
+        use.name.span, f"nothing is called `{name}`", expected=_ATOM, help=way_out
     )
 
 
-def _as_used(use: tree.AtomUse, scope: Scope) -> str:
+def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
     """How a signal would be declared that fits its use: `braking(v: vehicle)` for `braking(v)`."""
-    variables = [scope.variables.get(one.text) for one in use.arguments]
-    if not variables or not all(one is not None and one.type for one in variables):
+    types = [variables.get(argument.text) for argument in use.arguments]
+    if not types or None in types:
         return use.name.text
     parameters = (
-        f"{argument.text}: {variable.type}"
-        for argument, variable in zip(use.arguments, variables, strict=True)
-        if variable is not None
+        f"{argument.text}: {kind}" for argument, kind in zip(use.arguments, types, strict=True)
     )
     return f"{use.name.text}({', '.join(parameters)})"
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
     """``near_side_of`` in a rulebook that does not say on which side traffic drives."""
-    return Diagnostic(
-        "R0211",
+    return UNKNOWN_SIDE.at(
+        use.name.span,
         f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
-        use.name.span.place,
         expected="left or right?",
         help="write `traffic right` or `traffic left` in the rulebook's header",
     )
@@ -104,10 +198,9 @@ def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
 
 def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
     """``near_side_of`` with a vocabulary that has no sides."""
-    return Diagnostic(
-        "R0211",
+    return UNKNOWN_SIDE.at(
+        use.name.span,
         f"`{name}` means `{side}` here, which the vocabulary does not have",
-        use.name.span.place,
         expected=_ATOM,
         help="`use` a vocabulary that has `left_of` and `right_of`, such as `road`",
     )
@@ -142,31 +235,34 @@ def _glued(name: str, atoms: set[str]) -> str:
 
 
 def wrong_number(
-    use: tree.AtomUse, name: str, item: Signal | Enumeration | Quantity, scope: Scope
+    use: tree.AtomUse,
+    item: Signal | Enumeration | Quantity,
+    declared: SymbolTable,
+    variables: Iterable[str],
+    *,
+    name: str,
 ) -> Diagnostic:
     """A known atom with too few or too many objects."""
     needed, given = len(item.parameters), len(use.arguments)
     objects = {0: "no object", 1: "one object"}.get(needed, f"{needed} objects")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    arguments = (list(scope.variables) + ["…"] * needed)[:needed]
+    arguments = ([*variables] + ["…"] * needed)[:needed]
     written = f"{name}({', '.join(arguments)})" if needed else name
-    return Diagnostic(
-        "R0301",
+    return WRONG_ARITY.at(
+        use.span,
         f"`{name}` is about {objects}, and {has} given",
-        use.span.place,
         expected=f"expected {objects}",
         help=f"write `{written}`",
-        labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
+        labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
     )
 
 
 def two_readings(use: tree.AtomUse, readings: Sequence[tuple[str, str]]) -> Diagnostic:
     """``a_b_c`` where both ``a(b_c)`` and ``a_b(c)`` make sense."""
     ways = any_of([f"`{head}({variable})`" for head, variable in readings])
-    return Diagnostic(
-        "R0309",
+    return AMBIGUOUS_NAME.at(
+        use.span,
         f"`{use.name.text}` can mean {ways}",
-        use.span.place,
         expected="expected a name with one meaning",
         help="write the one you mean with parentheses",
     )
@@ -174,3 +270,36 @@ def two_readings(use: tree.AtomUse, readings: Sequence[tuple[str, str]]) -> Diag
 
 def _call(value: str, item: Enumeration) -> str:
     return f"{value}({', '.join('…' for _ in item.parameters)})" if item.parameters else value
+
+
+def unknown_variable(
+    name: tree.Name,
+    declared: SymbolTable,
+    variables: Sequence[str],
+    *,
+    known: Iterable[str],
+    owner: str,
+) -> Diagnostic:
+    """A variable that its ``owner``, a rule or a definition, does not have."""
+    if variables:
+        way_out = f"the {owner}'s variables are {named(variables)}"
+    else:
+        kind = next(iter(declared.types), "vehicle")
+        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
+    return UNKNOWN_VARIABLE.at(
+        name.span,
+        f"the {owner} has no variable `{name.text}`",
+        expected=f"expected a variable of the {owner}",
+        help=did_you_mean(name.text, known) or way_out,
+    )
+
+
+def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Label]) -> Diagnostic:
+    """An object of a type that the declaration is not about."""
+    return WRONG_ARGUMENT_TYPE.at(
+        argument.span,
+        f"`{argument.text}` is of type `{kind}`, which is no `{wanted}`",
+        expected=f"expected a variable of type `{wanted}`",
+        help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
+        labels=tuple(labels),
+    )

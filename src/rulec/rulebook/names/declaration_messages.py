@@ -6,8 +6,83 @@ from collections.abc import Sequence
 from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
+from rulec.diagnostics.code import Code
 from rulec.syntax import tree
 from rulec.vocabulary.units import known_unit_names, unit_refusal
+
+UNKNOWN_TYPE = Code(
+    "R0201",
+    title="a type is unknown",
+    why="A type has to be declared in the rulebook or in a vocabulary that it uses. Names are the "
+    "same only if their letters are, capitals included.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicel) { require always not r(v) }\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
+)
+
+DECLARED_TWICE = Code(
+    "R0204",
+    title="a name is declared twice",
+    why="Types, signals, quantities, enumerations and their values share one set of names, with "
+    "those of the vocabularies that are used. Give one of the two another name. Two "
+    "vocabularies that share names cannot be used together.",
+    bad="rulebook example\nsignal wet\nsurface is one of dry, wet\nhard rule r { require dry }\n",
+    good="rulebook example\nsignal raining\nsurface is one of dry, wet\nhard rule r { require dry }"
+    "\n",
+)
+
+UNKNOWN_UNIT = Code(
+    "R0209",
+    title="a unit of measure is unknown",
+    why="Numbers carry units, and those of quantities, parameters and comparisons have to be known "
+    "so that they can be converted into one another exactly. Capitals matter.",
+    bad="rulebook example\nquantity speed in KMH default 0\n"
+    "hard rule r { require always speed <= 50 KMH }\n",
+    good="rulebook example\nquantity speed in km/h default 0\n"
+    "hard rule r { require always speed <= 50 km/h }\n",
+)
+
+UNKNOWN_DIMENSION = Code(
+    "R0210",
+    title="a kind of number is unknown",
+    why="Behind its colon a parameter says what kind of number it is: a length, a time, a speed, "
+    "an acceleration, a mass, an angle, an area, a frequency, or just a number.",
+    bad="rulebook example\nquantity speed in km/h default 0\nparam pace : velocity = 7 km/h\n"
+    "hard rule r { require always speed <= pace }\n",
+    good="rulebook example\nquantity speed in km/h default 0\nparam pace : speed = 7 km/h\n"
+    "hard rule r { require always speed <= pace }\n",
+)
+
+TYPE_CIRCLE = Code(
+    "R0304",
+    title="types are subtypes of one another in a circle",
+    why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
+    bad="rulebook example\ntype bus is vehicle\ntype vehicle is bus\nsignal p\n"
+    "hard rule r { require p }\n",
+    good="rulebook example\ntype vehicle\ntype bus is vehicle\nsignal p\n"
+    "hard rule r { require p }\n",
+)
+
+UNFITTING_DEFAULT = Code(
+    "R0305",
+    title="a default is not one of the values",
+    why="An enumeration's default is what holds where nothing is said, so it has to be one of "
+    "the values.",
+    bad="rulebook example\nlight is one of red, green default grean\nhard rule r { require red }\n",
+    good="rulebook example\nlight is one of red, green default green\n"
+    "hard rule r { require red }\n",
+)
+
+PARAMETER_WITHOUT_TYPE = Code(
+    "R0308",
+    title="a parameter's type is left out where it is not clear",
+    why="Without a type, `signal near(o)` is about objects of the one type that has no parent. If "
+    "there are several such types, or none, the type has to be written.",
+    bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o)\n"
+    "hard rule r (v: vehicle) { require not near(v) }\n",
+    good="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o: vehicle)\n"
+    "hard rule r (v: vehicle) { require not near(v) }\n",
+)
+
 
 _OTHER_DIMENSIONS: Final = {
     "velocity": "speed",
@@ -25,10 +100,9 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
         way_out = f"known are {named(known)}; declare another by `type {name.text}`"
     else:
         way_out = f"declare it by `type {name.text}`, or `use` a vocabulary that has types"
-    return Diagnostic(
-        "R0201",
+    return UNKNOWN_TYPE.at(
+        name.span,
         f"there is no type `{name.text}`",
-        name.span.place,
         expected="expected a type",
         help=did_you_mean(name.text, known) or way_out,
     )
@@ -38,10 +112,9 @@ def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
     """A parameter without a type, where there is more than one possibility or none."""
     why = any_of([f"`{root}`" for root in roots]) if roots else "no type is declared"
     example = roots[0] if roots else "road_user"
-    return Diagnostic(
-        "R0308",
+    return PARAMETER_WITHOUT_TYPE.at(
+        parameter.span,
         f"it is not clear which objects `{parameter.name.text}` stands for: {why}",
-        parameter.span.place,
         expected="expected a type behind the name",
         help=f"write `{parameter.name.text}: {example}`",
     )
@@ -49,10 +122,9 @@ def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
 
 def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -> Diagnostic:
     """A default that is none of its enumeration's values."""
-    return Diagnostic(
-        "R0305",
+    return UNFITTING_DEFAULT.at(
+        chosen.span,
         f"`{chosen.text}` is not a value of `{name.text}`",
-        chosen.span.place,
         expected="expected one of its values",
         help=did_you_mean(chosen.text, values) or f"its values are {named(values)}",
     )
@@ -60,10 +132,9 @@ def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -
 
 def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
     """A type, a name, a parameter or a variable declared a second time."""
-    return Diagnostic(
-        "R0204",
+    return DECLARED_TWICE.at(
+        again.span,
         f"the {what} `{again.text}` is declared twice",
-        again.span.place,
         expected="declared again here",
         help="give it another name, or leave it out",
         labels=(Label(first.place, "first declared here"),),
@@ -73,10 +144,9 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
 def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:
     """Two vocabularies that cannot be used together, since they share names."""
     one, other = first.name.text, again.name.text
-    return Diagnostic(
-        "R0204",
+    return DECLARED_TWICE.at(
+        again.span,
         f"the vocabularies `{one}` and `{other}` both declare {named(sorted(set(names)))}",
-        again.span.place,
         expected=f"cannot be used beside `{one}`",
         help="use one of them, and declare here what you miss of the other",
         labels=(Label(first.span.place, f"`{one}` is used here"),),
@@ -88,16 +158,10 @@ def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
     refusal = unit_refusal(item.unit)
     if refusal is not None:
         message = f"the unit `{item.unit}` of `{name.text}` cannot be used: {refusal.why}"
-        return Diagnostic(
-            "R0209",
-            message,
-            item.unit_span.place,
-            help=refusal.instead,
-        )
-    return Diagnostic(
-        "R0209",
+        return UNKNOWN_UNIT.at(item.unit_span, message, help=refusal.instead)
+    return UNKNOWN_UNIT.at(
+        item.unit_span,
         f"there is no unit `{item.unit}`",
-        item.unit_span.place,
         expected="expected a unit of measure",
         help=unit_help(item.unit),
     )
@@ -115,10 +179,9 @@ def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
     """A kind of number that nobody knows."""
     other = _OTHER_DIMENSIONS.get(name.text.casefold())
     way_out = f"write `{other}`" if other else did_you_mean(name.text, known)
-    return Diagnostic(
-        "R0210",
+    return UNKNOWN_DIMENSION.at(
+        name.span,
         f"there is no kind of number `{name.text}`",
-        name.span.place,
         expected="expected a kind of number",
         help=way_out or f"known are {named(known)}",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.logic.formula import Atom, Quantity
 from rulec.rulebook.names import atom_messages
 from rulec.rulebook.names.symbol_table import SymbolTable
@@ -144,7 +144,9 @@ class Scope:
                 head, variable = readings[0]
                 return self._checked(use, head, (tree.Name(variable, use.span),))
         if not self.provisions.may_know(name) and not self.declared.may_know(name):
-            self.report(atom_messages.explain(use, self))
+            types = {variable: bound.type for variable, bound in self.variables.items()}
+            others = [*self.provisions.names(), *self.relations]
+            self.report(atom_messages.explain(use, self.declared, types, others))
         return None
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
@@ -164,7 +166,9 @@ class Scope:
         assert item is not None, "only called for known names"
         if len(arguments) != len(item.parameters):
             self.used |= {one.text for one in arguments}
-            self.report(atom_messages.wrong_number(use, name, item, self))
+            self.report(
+                atom_messages.wrong_number(use, item, self.declared, self.variables, name=name)
+            )
             return None
         actual = [
             self.object(one, wanted, (item.name, position))
@@ -194,45 +198,23 @@ class Scope:
             return argument.text
         variable = self.variables.get(argument.text)
         if variable is None:
-            known = [*self.variables, *relations]
-            self.report(_unknown_variable(argument, self, known))
+            variables = list(self.variables)
+            self.report(
+                atom_messages.unknown_variable(
+                    argument,
+                    self.declared,
+                    variables,
+                    known=[*variables, *relations],
+                    owner="definition" if self.of_definition else "rule",
+                )
+            )
             return None
         if wanted is None or variable.type is None or self.declared.fits(variable.type, wanted):
             return variable.actual
         where = None if parameter is None else self.declared.parameter_spans.get(parameter)
-        name = "" if parameter is None else parameter[0]
-        self.report(_wrong_type(argument, variable, wanted, name, where))
+        labels = [Label(variable.span.place, f"`{argument.text}` is declared here")]
+        if parameter is not None and where is not None:
+            about = f"`{parameter[0]}` is about objects of type `{wanted}`"
+            labels.append(Label(where.place, about))
+        self.report(atom_messages.wrong_type(argument, variable.type, wanted, labels))
         return None
-
-
-def _unknown_variable(name: tree.Name, scope: Scope, known: Sequence[str]) -> Diagnostic:
-    owner = "definition" if scope.of_definition else "rule"
-    variables = list(scope.variables)
-    if variables:
-        way_out = f"the {owner}'s variables are {named(variables)}"
-    else:
-        kind = next(iter(scope.declared.types), "vehicle")
-        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
-    return Diagnostic(
-        "R0203",
-        f"the {owner} has no variable `{name.text}`",
-        name.span.place,
-        expected=f"expected a variable of the {owner}",
-        help=did_you_mean(name.text, known) or way_out,
-    )
-
-
-def _wrong_type(
-    argument: tree.Name, variable: BoundVariable, wanted: str, item: str, parameter: Span | None
-) -> Diagnostic:
-    labels = [Label(variable.span.place, f"`{argument.text}` is declared here")]
-    if parameter is not None:
-        labels.append(Label(parameter.place, f"`{item}` is about objects of type `{wanted}`"))
-    return Diagnostic(
-        "R0302",
-        f"`{argument.text}` is of type `{variable.type}`, which is no `{wanted}`",
-        argument.span.place,
-        expected=f"expected a variable of type `{wanted}`",
-        help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
-        labels=tuple(labels),
-    )

@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.rulebook.names.declaration_messages import (
+    TYPE_CIRCLE,
     both_declare,
     no_such_value,
     twice,
@@ -187,10 +188,9 @@ def _break_circle(declared: SymbolTable, item: tree.TypeItem) -> None:
         return
     chain = " is ".join(f"`{name}`" for name in [*above, top])
     declared.mistakes.append(
-        Diagnostic(
-            "R0304",
+        TYPE_CIRCLE.at(
+            item.parent.span,
             f"the types go round in a circle: {chain}",
-            item.parent.span.place,
             expected="this closes the circle"
             if len(above) > 1
             else "a type cannot be above itself",

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
 from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
 from rulec.vocabulary.units import Dimension
@@ -15,13 +17,38 @@ from rulec.vocabulary.units import Dimension
 if TYPE_CHECKING:
     from rulec.rulebook.names.scope import Scope
 
+CIRCULAR_DEFINITION = Code(
+    "R0316",
+    title="a definition or a parameter is made of itself",
+    why="A definition is put in the place of its name, so it cannot contain itself, not even by "
+    "way "
+    "of another.",
+    bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
+    "hard rule r { require not slippery }\n",
+    good="rulebook example\nsignal wet\ndefine slippery = wet\nhard rule r { require not slippery "
+    "}\n",
+)
+
+NO_SINGLE_VALUE = Code(
+    "R0320",
+    title="a parameter has no value on the day in question, or two",
+    why="Values can be dated by `in force from … until …`. The day is the one asked for, else that "
+    "of the rulebook's `law` line, else today. On it there has to be one value.",
+    bad='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
+    "param least : length = 1.5 m in force from 2020-04-28\n"
+    "hard rule r { require always gap >= least }\n",
+    good='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
+    "param least : length = 1 m in force until 2020-04-27\n"
+    "param least : length = 1.5 m in force from 2020-04-28\n"
+    "hard rule r { require always gap >= least }\n",
+)
+
 
 def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
     """An option or a parameter with objects in parentheses."""
-    return Diagnostic(
-        "R0301",
+    return WRONG_ARITY.at(
+        use.span,
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} and about no object",
-        use.span.place,
         expected="expected no parentheses",
         help=f"write `{use.name.text}`",
         labels=tuple(origins(use, scope)),
@@ -35,10 +62,9 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     said = (
         "is an object" if variable.actual == name else f"stands for the object `{variable.actual}`"
     )
-    return Diagnostic(
-        "R0303",
+    return NOT_BOOLEAN.at(
+        use.span,
         f"`{name}` {said} and cannot be said of another one",
-        use.span.place,
         expected="expected a signal, a value or a definition before `(`",
         help=f"write such as `near({name})`, or give the definition a relation for it",
         labels=(Label(variable.span.place, f"`{variable.actual}` comes from here"),),
@@ -52,10 +78,9 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    return Diagnostic(
-        "R0301",
+    return WRONG_ARITY.at(
+        use.span,
         f"`{item.name.text}` takes {things}, and {has} given",
-        use.span.place,
         expected=f"expected `{shape}`",
         help="give it as many as its definition has",
         labels=(Label(item.name.span.place, f"`{item.name.text}` is defined here"),),
@@ -67,10 +92,9 @@ def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
     name = use.name.text
     first = next(at for at, call in enumerate(scope.calls) if call.name == name)
     chain = [f"`{call.name}`" for call in scope.calls[first:]]
-    return Diagnostic(
-        "R0316",
+    return CIRCULAR_DEFINITION.at(
+        use.span,
         f"the {kind} `{name}` is made of itself: {' uses '.join([*chain, f'`{name}`'])}",
-        use.span.place,
         expected="this closes the circle",
         help="say it without itself",
     )
@@ -79,10 +103,9 @@ def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
 def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> Diagnostic:
     """A parameter that has no value on the day."""
     name = use.name.text
-    return Diagnostic(
-        "R0320",
+    return NO_SINGLE_VALUE.at(
+        use.span,
         f"the parameter `{name}` has no value that is in force on {day}",
-        use.span.place,
         expected="a value is needed here",
         help=f"give it one for that day, such as `param {name} = … in force from DATE`, "
         "or ask for another day",
@@ -93,10 +116,9 @@ def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> D
 def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnostic:
     """A parameter with two values on one day."""
     first, second, *_ = values
-    return Diagnostic(
-        "R0320",
+    return NO_SINGLE_VALUE.at(
+        second.item.span,
         f"the parameter `{name}` has two values that are in force on {day}",
-        second.item.span.place,
         expected="the second one",
         help="end the first one by `in force until` the day before",
         labels=(Label(first.item.span.place, "the first one"),),
@@ -108,11 +130,10 @@ def parameter_of_another_kind(
 ) -> Diagnostic:
     """A parameter's value of another dimension than it has."""
     assert not isinstance(item.value, bool), "only an option is on or off"
-    return Diagnostic(
-        "R0312",
+    return MIXED_DIMENSIONS.at(
+        item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "
         f"{kind_of(found.dimension)}",
-        item.value.span.place,
         expected=f"expected a {wanted.name}",
         help="check the unit",
         labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
-from rulec.rulebook.names.declaration_messages import twice
+from rulec.diagnostics.code import Code
+from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
+from rulec.rulebook.names.declaration_messages import DECLARED_TWICE, twice
 from rulec.syntax import tree
 from rulec.syntax.printer import print_parameters
 
@@ -26,15 +28,69 @@ __all__ = [
     "twice",
 ]
 
+RULE_TWICE = Code(
+    "R0205",
+    title="two rules have the same name",
+    why="Verdicts name the rule that is violated, and each has a file of its own when it is "
+    "compiled; so every rule needs a name of its own.",
+    bad="rulebook example\nsignal p, q\nhard rule a { require p }\nhard rule a { require q }\n",
+    good="rulebook example\nsignal p, q\nhard rule a { require p }\nhard rule b { require q }\n",
+)
+
+NOT_INHERITED = Code(
+    "R0212",
+    title="there is nothing to override, drop, soften, set or redefine",
+    why="These words change what a rulebook inherits from the one that it extends. If that has "
+    "nothing of the name, the line would have no effect.",
+    bad='rulebook example\nextends esterle2019\ndrop rule R4 because "not in this country"\n',
+    good='rulebook example\nextends esterle2019\ndrop rule R3 because "not in this country"\n',
+)
+
+INHERITED_ALREADY = Code(
+    "R0214",
+    title="a name is inherited already",
+    why="A rulebook has all rules, options, parameters and definitions of the one that it extends. "
+    "To change one of them says so: `override rule`, `set`, `redefine`.",
+    bad="rulebook example\nextends esterle2019\n"
+    "hard rule R3 (p: pedestrian) { require always not (R_pc and l_p) }\n",
+    good="rulebook example\nextends esterle2019\n"
+    "override rule R3 (p: pedestrian) {\n"
+    "  require always not (R_pc and l_p)\n"
+    "  accept { l_p and R_cw }\n  reject { l_p and R_pc }\n}\n",
+)
+
+PRIORITY_CIRCLE = Code(
+    "R0321",
+    title="levels of priority go round in a circle",
+    why="With `a > b` level a is above level b. Levels of one rank are written `a = b`.",
+    bad="rulebook example\npriority safety > legal\npriority legal > safety\nsignal wet\n"
+    "hard rule r in legal { require not wet }\n",
+    good="rulebook example\npriority safety > legal\nsignal wet\n"
+    "hard rule r in legal { require not wet }\n",
+)
+
+NEVER_IN_FORCE = Code(
+    "R0324",
+    title="something is in force until a day before it begins",
+    why="What is `in force from` one day `until` another is in force on both and on all between "
+    "them. If the second day comes first there is none.",
+    bad="rulebook example\nsignal wet\nhard rule r {\n"
+    "  in force from 2024-07-01 until 2020-06-30\n"
+    "  require not wet\n}\n",
+    good="rulebook example\nsignal wet\nhard rule r {\n"
+    "  in force from 2020-07-01 until 2024-06-30\n"
+    "  require not wet\n}\n",
+)
+
+
 _CHANGES = {"option": "set", "parameter": "set", "definition": "redefine"}
 
 
 def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
     """An option, parameter or definition that the rulebook inherits already."""
-    return Diagnostic(
-        "R0214",
+    return INHERITED_ALREADY.at(
+        name.span,
         f"`{name.text}` is inherited already",
-        name.span.place,
         expected="declared again here",
         help=f"change an inherited {kind} by `{_CHANGES[kind]} {name.text} = …`",
         labels=(Label(known.span.place, "inherited from here"),),
@@ -43,10 +99,9 @@ def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
 
 def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
     """A rule by the name of an inherited one."""
-    return Diagnostic(
-        "R0214",
+    return INHERITED_ALREADY.at(
+        item.name.span,
         f"a rule `{item.name.text}` is inherited already",
-        item.name.span.place,
         expected="named again here",
         help=f"write `override rule {item.name.text}` to change it, or choose another name",
         labels=(Label(known.name.span.place, "inherited from here"),),
@@ -55,10 +110,9 @@ def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
 
 def rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
     """Two rules of one name in one rulebook."""
-    return Diagnostic(
-        "R0205",
+    return RULE_TWICE.at(
+        again.name.span,
         f"there are two rules `{again.name.text}`",
-        again.name.span.place,
         expected="named again here",
         help="give each rule a name of its own",
         labels=(Label(first.name.span.place, "first named here"),),
@@ -74,10 +128,9 @@ def nothing_to(
     else:
         listed = f"`{extends}` has {named(known)}" if known else f"`{extends}` has none"
         way_out = did_you_mean(name.text, known) or listed
-    return Diagnostic(
-        "R0212",
+    return NOT_INHERITED.at(
+        name.span,
         f"there is no {kind} `{name.text}` to {verb}",
-        name.span.place,
         expected=f"expected an inherited {kind}",
         help=way_out,
     )
@@ -85,10 +138,9 @@ def nothing_to(
 
 def own_rule(name: tree.Name, verb: str, known: tree.RuleItem) -> Diagnostic:
     """``override``, ``drop``, ``soften`` of a rule of the same rulebook."""
-    return Diagnostic(
-        "R0212",
+    return NOT_INHERITED.at(
+        name.span,
         f"`{name.text}` is a rule of this rulebook, not an inherited one to {verb}",
-        name.span.place,
         expected="expected an inherited rule",
         help="change the rule itself",
         labels=(Label(known.name.span.place, "the rule is here"),),
@@ -98,10 +150,9 @@ def own_rule(name: tree.Name, verb: str, known: tree.RuleItem) -> Diagnostic:
 def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
     """``set`` or ``redefine`` of something of the same rulebook."""
     article = "an" if kind == "option" else "a"
-    return Diagnostic(
-        "R0212",
+    return NOT_INHERITED.at(
+        name.span,
         f"`{name.text}` is {article} {kind} of this rulebook, not an inherited one to {verb}",
-        name.span.place,
         expected=f"expected an inherited {kind}",
         help=f"change the {kind} itself",
         labels=(Label(known.span.place, f"the {kind} is here"),),
@@ -110,10 +161,9 @@ def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
 
 def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
     """A second line that changes the same thing in one rulebook."""
-    return Diagnostic(
-        "R0204",
+    return DECLARED_TWICE.at(
+        name.span,
         f"the {kind} `{name.text}` is changed twice in this rulebook",
-        name.span.place,
         expected="changed again here",
         help="say all of it in one place",
         labels=(Label(before.span.place, "first changed here"),),
@@ -125,11 +175,10 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
     name = item.name.text
     needed, given = len(before.parameters), len(item.parameters)
     things = {0: "nothing", 1: "one thing"}
-    return Diagnostic(
-        "R0301",
+    return WRONG_ARITY.at(
+        item.name.span,
         f"`{name}` takes {things.get(needed, f'{needed} things')} where it comes from, "
         f"and {things.get(given, f'{given} things')} here",
-        item.name.span.place,
         expected=f"expected `{name}{print_parameters(before.parameters)}`",
         help="redefine it with the same parameters, or define something new by another name",
         labels=(Label(before.name.span.place, f"`{name}` is defined here"),),
@@ -140,10 +189,9 @@ def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagn
     """An override without variables that the clauses which it inherits speak of."""
     names = " and ".join(f"`{one.name.text}`" for one in lost)
     first, last = item.variables[0].span, item.variables[-1].span
-    return Diagnostic(
-        "R0203",
+    return UNKNOWN_VARIABLE.at(
+        Span(first.source, first.start, last.end),
         f"what `{item.name.text}` inherits speaks of {names}, and here is no such variable",
-        Span(first.source, first.start, last.end).place,
         expected=f"expected {names}",
         help="call variables as they are called there, or write every clause and example anew",
         labels=tuple(Label(one.span.place, f"`{one.name.text}` comes from here") for one in lost),
@@ -152,10 +200,9 @@ def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagn
 
 def never_in_force(dates: tree.InForce) -> Diagnostic:
     """``in force from 2024-01-01 until 2020-01-01``."""
-    return Diagnostic(
-        "R0324",
+    return NEVER_IN_FORCE.at(
+        dates.span,
         f"this is never in force: {dates.until} comes before {dates.since}",
-        dates.span.place,
         expected="expected the earlier day first",
         help="exchange the days, or correct one of them",
     )
@@ -163,10 +210,9 @@ def never_in_force(dates: tree.InForce) -> Diagnostic:
 
 def option_is_on_or_off(item: tree.SetItem) -> Diagnostic:
     """An option set to something else."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        item.span,
         f"`{item.name.text}` is an option, which is on or off",
-        item.span.place,
         expected="expected `on` or `off`",
         help=f"write `set {item.name.text} = on` or `set {item.name.text} = off`",
     )
@@ -174,10 +220,9 @@ def option_is_on_or_off(item: tree.SetItem) -> Diagnostic:
 
 def parameter_is_a_number(item: tree.SetItem) -> Diagnostic:
     """A parameter set to on or off."""
-    return Diagnostic(
-        "R0313",
+    return NUMBER_OR_FORMULA.at(
+        item.span,
         f"`{item.name.text}` is a parameter, which is a number",
-        item.span.place,
         expected="expected a number",
         help="only an option is on or off",
     )
@@ -185,10 +230,9 @@ def parameter_is_a_number(item: tree.SetItem) -> Diagnostic:
 
 def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
     """``soften`` of a soft rule, without a new place or weight."""
-    return Diagnostic(
-        "R0212",
+    return NOT_INHERITED.at(
+        item.name.span,
         f"rule `{item.name.text}` is soft already",
-        item.name.span.place,
         expected="nothing changes",
         help="leave the line out",
         labels=(Label(known.name.span.place, "inherited from here"),),

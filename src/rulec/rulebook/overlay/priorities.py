@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from rulec.diagnostics import Diagnostic, Label
+from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.overlay.overlay_messages import PRIORITY_CIRCLE
 from rulec.syntax import tree
 
 Order = frozenset[tuple[str, str]]
@@ -57,10 +59,9 @@ def _with_pair(order: set[tuple[str, str]], pair: tuple[str, str]) -> set[tuple[
 
 
 def _too_many(line: tree.PriorityLine) -> Diagnostic:
-    return Diagnostic(
-        "R0323",
+    return FORMULA_TOO_LARGE.at(
+        line.span,
         f"there are more than {MOST_LEVELS} levels of priority",
-        line.span.place,
         help="use fewer levels, and weights among the rules of one level",
     )
 
@@ -71,11 +72,10 @@ def _contradiction(
     named = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
     labels = tuple(Label(levels[name].span.place, f"`{name}` was placed here") for name in named)
     same = higher.text == lower.text
-    return Diagnostic(
-        "R0321",
+    return PRIORITY_CIRCLE.at(
+        lower.span,
         f"`{higher.text} {sign} {lower.text}` contradicts "
         + ("itself" if same else "the order so far"),
-        lower.span.place,
         expected="this closes a circle" if not same else "a level compared with itself",
         help="leave one of the lines out; levels of one rank are written `a = b`",
         labels=labels,

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.scenario.commonroad.commonroad_participants import (
     commonroad_participants,
     planning_problem,
@@ -34,6 +34,7 @@ from rulec.scenario.recorded.recording import (
     Points,
     Recording,
 )
+from rulec.scenario.scenario_messages import COMMONROAD_MISSING
 
 _MARKS: Mapping[str, LaneMark] = MappingProxyType(
     {
@@ -72,13 +73,10 @@ def _library(path: Path) -> Callable[[Path], Any]:
     try:
         from commonroad.common.file_reader import CommonRoadFileReader
     except ImportError:
-        raise RulecError(
-            Diagnostic(
-                "R0611",
-                "CommonRoad scenarios take the package `commonroad-io`, which is not installed",
-                SourceLocation(str(path)),
-                help="`pip install 'rulec[commonroad]'`, some 370 MB with what it needs",
-            )
+        raise COMMONROAD_MISSING.error(
+            SourceLocation(str(path)),
+            "CommonRoad scenarios take the package `commonroad-io`, which is not installed",
+            help="`pip install 'rulec[commonroad]'`, some 370 MB with what it needs",
         ) from None
     reader: Callable[[Path], Any] = CommonRoadFileReader
     return reader

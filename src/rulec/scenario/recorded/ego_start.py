@@ -8,7 +8,7 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
+from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.scenario.recorded.recording import (
     Participant,
     PlanningProblem,
@@ -18,6 +18,7 @@ from rulec.scenario.recorded.recording import (
 )
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 
 _SAME_PLACE_M = 0.1
 
@@ -133,4 +134,4 @@ def named_ids(ids: Iterable[str]) -> str:
 
 def choice_error(message: str, way_out: str, file: str) -> RulecError:
     """What is chosen is not in the file."""
-    return RulecError(Diagnostic("R0612", message, SourceLocation(file), help=way_out))
+    return NOT_IN_RECORDING.error(SourceLocation(file), message, help=way_out)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from html import unescape
 from pathlib import Path, PurePosixPath
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
+from rulec.diagnostics import SourceLocation, named
+from rulec.scenario.scenario_messages import NET_MISSING
 
 _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 
@@ -54,13 +55,10 @@ def net_beside(path: Path, head: FcdHead) -> Path:
         why = f"`{_name(head.net)}`, which it was made with, is not beside it"
     else:
         why = "there is no net beside it"
-    raise RulecError(
-        Diagnostic(
-            "R0614",
-            f"SUMO's floating-car data do not say where the roads are, and {why}",
-            SourceLocation(str(path)),
-            help="name SUMO's net with --net FILE",
-        )
+    raise NET_MISSING.error(
+        SourceLocation(str(path)),
+        f"SUMO's floating-car data do not say where the roads are, and {why}",
+        help="name SUMO's net with --net FILE",
     )
 
 

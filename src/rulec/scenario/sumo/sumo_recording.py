@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy import int64
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
 from rulec.scenario.safe_xml import short
+from rulec.scenario.scenario_messages import OTHER_NET
 from rulec.scenario.sumo.companion_files import demand_beside, net_beside
 from rulec.scenario.sumo.fcd import FCD, FloatingCarData, read_fcd
 from rulec.scenario.sumo.fcd_participants import fcd_participants, time_step
@@ -90,13 +91,10 @@ def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNe
     """Has the net all lanes and edges that the data name? Raises RulecError R0615."""
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):
-            raise RulecError(
-                Diagnostic(
-                    "R0615",
-                    f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
-                    SourceLocation(str(path), line),
-                    help="name with --net the net that the data were made with",
-                )
+            raise OTHER_NET.error(
+                SourceLocation(str(path), line),
+                f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
+                help="name with --net the net that the data were made with",
             )
 
 
@@ -110,13 +108,10 @@ def _check_near(
         state = one.states[next(iter(one.states))]
         place = np.array([state.x, state.y])
         if (place < low).any() or (place > high).any():
-            raise RulecError(
-                Diagnostic(
-                    "R0615",
-                    f"`{short(one.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all roads "
-                    "of the net",
-                    SourceLocation(str(path)),
-                    help="have SUMO write places in the net's own metres, without "
-                    "--fcd-output.geo and --fcd-output.utm",
-                )
+            raise OTHER_NET.error(
+                SourceLocation(str(path)),
+                f"`{short(one.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all roads "
+                "of the net",
+                help="have SUMO write places in the net's own metres, without "
+                "--fcd-output.geo and --fcd-output.utm",
             )

@@ -9,6 +9,7 @@ from math import isfinite
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.motion import swept
+from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO, UNFITTING_FIELD
 from rulec.scenario.toml.field_check import Findings, quoted, shown
 from rulec.scenario.toml.field_locations import TomlTable
 
@@ -24,7 +25,7 @@ def check_interval(
     if value is None or value[1] - value[0] >= NARROWEST_M:
         return True
     findings.add(
-        "R0605",
+        INCONSISTENT_SCENARIO,
         f"{table.words}: `{key}` runs from {value[0]:g} to {value[1]:g}",
         table,
         key,
@@ -39,7 +40,7 @@ def check_lanes(lanes: Sequence[float], table: TomlTable, findings: Findings) ->
     for right, left in pairwise(lanes):
         if left - right < NARROWEST_M:
             findings.add(
-                "R0605",
+                INCONSISTENT_SCENARIO,
                 f"{table.words}: in `lanes`, {left:g} follows {right:g}",
                 table,
                 "lanes",
@@ -55,7 +56,7 @@ def check_ego(ego: Ego, road: Road, table: TomlTable, findings: Findings) -> Non
     """Is ego on the road?"""
     if not road.outline.covers(ego.s, ego.d):
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"ego is off the road, at s = {ego.s:g}, d = {ego.d:g}",
             table,
             expected=f"a place within {road.outline}",
@@ -63,7 +64,7 @@ def check_ego(ego: Ego, road: Road, table: TomlTable, findings: Findings) -> Non
         )
     elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"ego is where the road has no lane, at s = {ego.s:g}, d = {ego.d:g}",
             table,
             expected="a place outside every `[[road.missing]]`",
@@ -76,7 +77,7 @@ def check_collision(ego: Ego, obstacle: Obstacle, table: TomlTable, findings: Fi
     body = swept(obstacle, 0.0, 0.0)
     if body is not None and body.overlaps(ego.body):
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"ego stands inside {table.words}",
             TomlTable("ego", None, "ego"),
             expected=f"a place outside {body} at time 0",
@@ -92,7 +93,7 @@ def check_signals(
     for name, value in raw.items():
         if name in RESERVED:
             findings.add(
-                "R0605",
+                INCONSISTENT_SCENARIO,
                 f"{table.words} sets {quoted(name)}, which the partition supplies",
                 table,
                 name,
@@ -104,7 +105,7 @@ def check_signals(
             signals[name] = float(value)
         else:
             findings.add(
-                "R0604",
+                UNFITTING_FIELD,
                 f"{table.words}: {quoted(name)} is {shown(value)}",
                 table,
                 name,

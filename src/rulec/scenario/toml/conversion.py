@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import RulecError
 from rulec.scenario.geometry import Box
 from rulec.scenario.model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
+from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
 from rulec.scenario.time_grid import timing
 from rulec.scenario.toml.consistency import (
     check_collision,
@@ -86,7 +88,7 @@ def _stretches(raw: object, findings: Findings) -> tuple[Stretch, ...]:
             apart = table.s[1] <= other.s[0] or other.s[1] <= table.s[0]
             if not apart and table.type != other.surface:
                 findings.add(
-                    "R0605",
+                    INCONSISTENT_SCENARIO,
                     f"{place.words} is {table.type} where another one is {other.surface}",
                     place,
                     "s",
@@ -105,7 +107,7 @@ def _missing(raw: object, road: RawRoad | None, findings: Findings) -> tuple[Mis
             continue
         if road is not None and table.lane >= len(road.lanes):
             findings.add(
-                "R0605",
+                INCONSISTENT_SCENARIO,
                 f"{place.words}: `lane` is {table.lane}",
                 place,
                 "lane",
@@ -138,7 +140,7 @@ def _goal(raw: object, road: Road | None, findings: Findings) -> Box | None:
     goal = Box(*(table.s or road.s), *(table.d or (outline.d_min, outline.d_max)))
     if not goal.overlaps(outline):
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             "the goal is off the road",
             _GOAL,
             expected=f"a region that has some area within {outline}",
@@ -154,7 +156,7 @@ def _signals(
         for name in obstacle.signals:
             if name in signals:
                 findings.add(
-                    "R0605",
+                    INCONSISTENT_SCENARIO,
                     f"{table.words} sets {quoted(name)}, and so does `[signals]`",
                     table,
                     "signals",
@@ -168,7 +170,4 @@ def _check_timing(top: RawScenario, findings: Findings) -> None:
         timing(top.horizon_s, top.step_s)
     except RulecError as error:
         place = findings.text.place(_TOP, "step_s")
-        findings.errors.extend(
-            Diagnostic(d.code, d.message, place, expected=d.expected, help=d.help)
-            for d in error.diagnostics
-        )
+        findings.errors.extend(replace(diagnostic, place=place) for diagnostic in error.diagnostics)

@@ -10,6 +10,8 @@ from typing import Any, TypeVar, get_args
 import msgspec
 
 from rulec.diagnostics import Diagnostic, did_you_mean, nearest_name
+from rulec.diagnostics.code import Code
+from rulec.scenario.scenario_messages import MISSING_OR_UNKNOWN_FIELD, UNFITTING_FIELD
 from rulec.scenario.toml.field_locations import TomlTable, TomlText
 
 T = TypeVar("T", bound=msgspec.Struct)
@@ -24,7 +26,7 @@ class Findings:
 
     def add(
         self,
-        code: str,
+        code: Code,
         message: str,
         table: TomlTable,
         key: str | None = None,
@@ -35,13 +37,15 @@ class Findings:
         """Note one mistake in a table, or in one of its fields; ``expected`` is a thing."""
         place = self.text.place(table, key)
         expected = expected and f"expected {expected}"
-        self.errors.append(Diagnostic(code, message, place, expected=expected, help=way_out))
+        self.errors.append(code.at(place, message, expected=expected, help=way_out))
 
 
 def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings) -> T | None:
     """A table as a ``kind``; None if it had mistakes, which are then in ``findings``."""
     if not isinstance(raw, Mapping):
-        findings.add("R0604", f"{table.words} is {shown(raw)}", table, expected="a table of fields")
+        findings.add(
+            UNFITTING_FIELD, f"{table.words} is {shown(raw)}", table, expected="a table of fields"
+        )
         return None
     known = {info.name: info for info in msgspec.structs.fields(kind)}
     values: dict[str, Any] = {}
@@ -56,7 +60,7 @@ def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings)
         except msgspec.ValidationError as error:
             where = _inside(str(error))
             findings.add(
-                "R0604",
+                UNFITTING_FIELD,
                 f"{table.words}: `{key}`{where} is {shown(_at(value, str(error)))}",
                 table,
                 key,
@@ -65,7 +69,7 @@ def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings)
     for key, info in known.items():
         if info.required and key not in raw and key not in misspelt:
             findings.add(
-                "R0603",
+                MISSING_OR_UNKNOWN_FIELD,
                 f"{table.words} has no `{key}`",
                 table,
                 expected=words_of(info.type),
@@ -115,7 +119,7 @@ def words_of(kind: object) -> str:
 def _unknown_field(key: str, known: list[str], table: TomlTable, findings: Findings) -> str | None:
     """Report a field; the known one that is probably meant, if there is one close by."""
     findings.add(
-        "R0603",
+        MISSING_OR_UNKNOWN_FIELD,
         f"{table.words} has a field {quoted(key)} that does not exist",
         table,
         key,

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
+from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO, MISSING_OR_UNKNOWN_FIELD
 from rulec.scenario.toml.consistency import check_signals
 from rulec.scenario.toml.field_check import Findings, quoted, read_table
 from rulec.scenario.toml.field_locations import TomlTable
@@ -70,7 +71,7 @@ def _check_unique(
     first = numbers.setdefault(name, number)
     if first != number:
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"obstacles {first} and {number} are both called {quoted(name)}",
             place,
             "id",
@@ -83,7 +84,7 @@ def _check_direction(obstacle: Obstacle, place: TomlTable, findings: Findings) -
     standing = obstacle.walking_direction is None and any(map(stands_forever, motions))
     if obstacle.type == PEDESTRIAN and standing:
         findings.add(
-            "R0603",
+            MISSING_OR_UNKNOWN_FIELD,
             f"{place.words} stands still and has no `walking_direction`",
             place,
             expected="a pedestrian's direction, because its regions depend on it",
@@ -100,7 +101,7 @@ def _motion(
         for key in ("s", "d"):
             if getattr(table, key) is None:
                 findings.add(
-                    "R0603",
+                    MISSING_OR_UNKNOWN_FIELD,
                     f"{place.words} has no `{key}`",
                     place,
                     expected="its centre at time 0 in metres: s along the road, d across it",
@@ -110,7 +111,7 @@ def _motion(
     sideways, until = table.lateral_speed, table.until_d
     if until is not None and (until - table.d) * sideways <= 0:
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"{place.words} never comes to `until_d = {until:g}`",
             place,
             "until_d",
@@ -130,7 +131,7 @@ def _trajectory(
     both = [key for key in _PREDICTED if key in item]
     if both:
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"{place.words} has a `trajectory` and also {', '.join(map(quoted, both))}",
             place,
             both[0],
@@ -141,7 +142,7 @@ def _trajectory(
     for before, after in pairwise(points):
         if after[0] <= before[0]:
             findings.add(
-                "R0605",
+                INCONSISTENT_SCENARIO,
                 f"{place.words}: in `trajectory`, time {after[0]:g} follows {before[0]:g}",
                 place,
                 "trajectory",

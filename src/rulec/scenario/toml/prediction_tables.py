@@ -9,6 +9,7 @@ import msgspec
 
 from rulec.scenario.alternatives import Weighted, is_distribution, weighted
 from rulec.scenario.model import Motion
+from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
 from rulec.scenario.toml.field_check import Findings, read_table
 from rulec.scenario.toml.field_locations import TomlTable
 from rulec.scenario.toml.schema import RawObstacle, RawPrediction
@@ -34,7 +35,7 @@ def read_predictions(
         return None if motion is None else Weighted(motion)
     if table.trajectory is not None:
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"{place.words} has a `trajectory` and also predictions",
             place,
             "trajectory",
@@ -62,7 +63,7 @@ def read_predictions(
     total = sum((weight for weight, _ in found), Fraction(0))
     if not is_distribution(total):
         findings.add(
-            "R0605",
+            INCONSISTENT_SCENARIO,
             f"the weights of {place.words}'s predictions add up to {float(total):g}",
             place,
             expected="weights that add up to 1",

@@ -9,6 +9,12 @@ from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.grammar import Branch, Leaf
 from rulec.syntax.literals import misleads, why_not_a_day
+from rulec.syntax.messages.literal_values import (
+    control_character,
+    no_such_date,
+    number_too_large,
+    unknown_escape,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +46,12 @@ class Values:
             if character == "\\":
                 _, escaped = next(characters)
                 if escaped not in '"\\':
-                    self._mistake("R0106", position, 2, f"`\\{escaped}` means nothing in a text")
+                    place = Span(self.source, position, position + 2)
+                    self.mistakes.append(unknown_escape(place, escaped))
                 value.append(escaped)
             elif misleads(character):
-                self._mistake("R0107", position, 1, "a text may not hold this invisible character")
+                place = Span(self.source, position, position + 1)
+                self.mistakes.append(control_character(place))
             else:
                 value.append(character)
         return tree.Text("".join(value), span)
@@ -52,26 +60,16 @@ class Values:
         """ISO text of a date that exists."""
         wrong = why_not_a_day(leaf.text)
         if wrong:
-            why = f"`{leaf.text}` is no date"
-            self._mistake("R0110", leaf.start, len(leaf.text), why, wrong)
+            self.mistakes.append(no_such_date(self.span(leaf), leaf.text, wrong))
         return "" if wrong else leaf.text
 
     def number(self, leaf: Leaf) -> float:
         """A finite number; 0 in place of one that is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
-            self._mistake("R0112", leaf.start, len(leaf.text), "this number is too large")
+            self.mistakes.append(number_too_large(self.span(leaf)))
             return 0.0
         return number
-
-    def _mistake(self, code: str, position: int, length: int, message: str, hint: str = "") -> None:
-        helps = {
-            "R0106": '`\\"` is a quote and `\\\\` a backslash',
-            "R0107": "delete it, or type it as words",
-            "R0112": "write a number below 1e308",
-        }
-        place = Span(self.source, position, position + length).place
-        self.mistakes.append(Diagnostic(code, message, place, help=hint or helps.get(code, "")))
 
 
 def leaves(node: Branch, kind: str) -> list[Leaf]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
+from rulec.diagnostics.code import Code
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
 from rulec.syntax.keywords import (
@@ -20,6 +21,47 @@ from rulec.syntax.messages.in_items import other_word
 from rulec.syntax.messages.in_rules import other_clause
 from rulec.syntax.messages.parse_context import ParseContext
 from rulec.syntax.scanner import Token
+
+UNEXPECTED_WORD = Code(
+    "R0104",
+    title="something stands where the language has no place for it",
+    why="Up to the underlined place the text can be read, and there it cannot go on. Beside the "
+    "place stands what could have come; often an operator is spelt otherwise, a word is "
+    "misspelt, or a separator is missing. Of two comparisons in a row each is written out: "
+    "`1 m < gap(v) and gap(v) < 2 m`; a conditional inside a formula stands in parentheses; a "
+    "bound's numbers have a unit.",
+    bad="rulebook example\nsignal rain, wet\nhard rule r { require rain => wet }\n",
+    good="rulebook example\nsignal rain, wet\nhard rule r { require rain implies wet }\n",
+)
+
+UNTERMINATED_TEXT = Code(
+    "R0105",
+    title="a text has no closing quote",
+    why="A text stands in straight double quotes and ends on the line on which it begins. A long "
+    'sentence stays on one line; a quote inside is written `\\"`.',
+    bad='rulebook example\ntitle "An example\nsignal p\nhard rule r { require p }\n',
+    good='rulebook example\ntitle "An example"\nsignal p\nhard rule r { require p }\n',
+)
+
+FORMULA_TOO_DEEP = Code(
+    "R0111",
+    title="a formula is too deep or too long",
+    why="A formula may be nested 200 levels deep and have 10,000 words and signs. Nobody can read "
+    "more, and such a formula comes from a program; say its parts in rules of their own.",
+    bad=f"rulebook example\nsignal p\nhard rule r {{\n  require\n{'    ' + '!' * 67}\n"
+    f"{'    ' + '!' * 67}\n{'    ' + '!' * 67} p\n}}\n",
+    good="rulebook example\nsignal p\nhard rule r { require not p }\n",
+)
+
+RESERVED_WORD = Code(
+    "R0113",
+    title="a word of the language is used as a name",
+    why="Words such as `rule`, `always` and `G` have a meaning of their own wherever they stand. "
+    "Letters' case makes names different: `g` can be a name.",
+    bad="rulebook example\nsignal always\nhard rule r { require true }\n",
+    good="rulebook example\nsignal at_all_times\nhard rule r { require true }\n",
+)
+
 
 _WHAT = {
     "title": "the `title` line",
@@ -86,10 +128,9 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         message = f"{what} cannot begin with `{_short(found.text)}`"
     else:
         message = f"{what} cannot go on with `{_short(found.text)}`"
-    return Diagnostic(
-        "R0104",
+    return UNEXPECTED_WORD.at(
+        span,
         message,
-        span.place,
         expected=in_words(accepted),
         help=advise(scene),
         labels=_open_parenthesis(source, scene),
@@ -103,10 +144,9 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     symbols = any(token.kind == "symbol" for token in (found, *others))
     formula = "a formula stands behind `require`" if symbols else ""
     words = frozenset(token.text for token in others)
-    return Diagnostic(
-        "R0104",
+    return UNEXPECTED_WORD.at(
+        _span(source, found),
         f"no clause begins with `{_short(found.text)}`",
-        _span(source, found).place,
         expected="expected a clause such as `require` or `accept`",
         help=other_clause(found.text, words) or did_you_mean(found.text, _CLAUSE_BEGINS) or formula,
     )
@@ -122,10 +162,9 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
             way_out = way_out or f"write `param {found.text} = …` or `define {found.text} = …`"
         if not (way_out or named or found.text in RESERVED):
             way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
-    return Diagnostic(
-        "R0104",
+    return UNEXPECTED_WORD.at(
+        _span(source, found),
         f"nothing in the language begins with `{_short(found.text)}`",
-        _span(source, found).place,
         expected="expected a declaration or a rule",
         help=way_out,
     )
@@ -133,20 +172,18 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
 
 def too_deep(span: Span) -> Diagnostic:
     """A formula with more levels than anyone can read."""
-    return Diagnostic(
-        "R0111",
+    return FORMULA_TOO_DEEP.at(
+        span,
         f"the formula is nested more than {MAX_DEPTH} levels deep",
-        span.place,
         help="split it into several rules",
     )
 
 
 def too_long(span: Span, limit: int) -> Diagnostic:
     """A piece with more tokens than are worth parsing."""
-    return Diagnostic(
-        "R0111",
+    return FORMULA_TOO_DEEP.at(
+        span,
         f"this goes on for more than {limit:,} words and signs",
-        span.place,
         help="split it into several parts",
     )
 
@@ -175,10 +212,9 @@ def _is_word_for_name(scene: ParseContext) -> bool:
 
 def _reserved(span: Span, word: str) -> Diagnostic:
     kind = "an operator" if word in OPERATOR_LETTERS else "a word of the language"
-    return Diagnostic(
-        "R0113",
+    return RESERVED_WORD.at(
+        span,
         f"`{word}` is {kind} and cannot be a name",
-        span.place,
         expected="expected a name",
         help=f"choose another name, such as `{word.lower()}_1`",
     )
@@ -187,10 +223,9 @@ def _reserved(span: Span, word: str) -> Diagnostic:
 def _unterminated(span: Span) -> Diagnostic:
     text = span.source.text[span.start : span.end]
     first, *more = text.splitlines()
-    return Diagnostic(
-        "R0105",
+    return UNTERMINATED_TEXT.at(
+        Span(span.source, span.start, span.start + len(first)),
         "this text goes on behind its line" if more else "this text has no closing quote",
-        Span(span.source, span.start, span.start + len(first)).place,
         expected='expected `"` before the end of the line',
         help="write all of it on one line, however long"
         if more

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.trace_messages import PARQUET_UNAVAILABLE
 
 
 def arrow(file: str) -> tuple[Any, Any]:
@@ -20,4 +21,4 @@ def arrow(file: str) -> tuple[Any, Any]:
 
 def unavailable(message: str, file: str, help_text: str) -> RulecError:
     """Parquet cannot be read or written here (R0706)."""
-    return RulecError(Diagnostic("R0706", message, SourceLocation(file), help=help_text))
+    return PARQUET_UNAVAILABLE.error(SourceLocation(file), message, help=help_text)

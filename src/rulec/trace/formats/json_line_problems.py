@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import msgspec
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.diagnostics.json_problems import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
+from rulec.trace.trace_messages import NOT_A_TRACE
 
 _MOST_SEARCHED = 1 << 24
 """Of a longer line nobody is told in which state it ends."""
@@ -37,7 +38,7 @@ class Kind:
 
     def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
         """The line at this place is none (R0501)."""
-        return RulecError(Diagnostic("R0501", message, place, help=help_text or self.example))
+        return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
     def refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
         """Why msgspec refuses a line."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.trace.trace_messages import NOT_A_TABLE
 from rulec.trace.trace_model import State, Trace, Value
 
 TRACE, STEP, STEP_S = "trace", "step", "step_s"
@@ -74,7 +75,7 @@ _FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones a
 
 def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
     """Rows that are no traces (R0509)."""
-    return RulecError(Diagnostic("R0509", message, place, help=help_text))
+    return NOT_A_TABLE.error(place, message, help=help_text)
 
 
 def traces_in(

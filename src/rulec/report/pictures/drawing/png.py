@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import SourceLocation
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.pictures.drawing.marks import Area, LabelText, Mark, Picture, Point, Polyline
+from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import LIGHT, STYLES
 
 DOTS_PER_PX = 2
@@ -38,12 +39,12 @@ def as_png(picture: Picture, file: str) -> bytes:
     except ImportError:
         message = "PNG takes the package `matplotlib`, which is not installed"
         way_out = "`pip install 'rulec[pictures]'`, or write SVG or HTML"
-        raise RulecError(Diagnostic("R0707", message, SourceLocation(file), help=way_out)) from None
+        raise PNG_UNAVAILABLE.error(SourceLocation(file), message, help=way_out) from None
     largest = max(picture.width, picture.height)
     if largest > MOST_DOTS:
         message = f"the picture is {largest:,.0f} px long; as PNG it may have {MOST_DOTS:,}"
         way_out = "write SVG or HTML, or draw fewer layers"
-        raise RulecError(Diagnostic("R0707", message, SourceLocation(file), help=way_out))
+        raise PNG_UNAVAILABLE.error(SourceLocation(file), message, help=way_out)
     dots = DOTS_PER_PX if largest * DOTS_PER_PX <= MOST_DOTS else 1
     figure = Figure((picture.width / 96, picture.height / 96), 96 * dots, facecolor=LIGHT["ground"])
     axes = figure.add_axes((0, 0, 1, 1))

@@ -1,0 +1,33 @@
+"""Messages about examples of rules."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+
+EXAMPLE_FAILED = Code(
+    "R0406",
+    title="an example comes out otherwise than it says",
+    why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
+    "must forbid. If one comes out otherwise, either the formula or the example does not say "
+    "what is meant. `rulec test` runs them all.",
+    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
+    "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
+    kind="compiled",
+)
+
+RULE_NOT_EXERCISED = Code(
+    "R0408",
+    title="a rule is not exercised by its examples",
+    why="Examples show that a formula says what is meant only if it can be wrong in both ways: a "
+    "trace that the rule must allow, and one that it must forbid. A rule all of whose examples "
+    "it accepts would pass them also if it required nothing at all. `rulec test` says so, and "
+    "with `--coverage` what else the examples do not show.",
+    bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
+    good="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
+    "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n"
+    "  reject { not wet; wet and not slow }\n}\n",
+    kind="examples",
+)

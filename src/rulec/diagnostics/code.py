@@ -1,0 +1,78 @@
+"""Diagnostic codes: kinds of mistakes, each with its explanation and examples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError, Severity
+from rulec.diagnostics.source_text import SourceLocation, Span
+
+ExampleKind: TypeAlias = Literal[
+    "rules",
+    "compiled",
+    "analyzed",
+    "examples",
+    "maneuvers",
+    "trace",
+    "scenario",
+    "command",
+    "python",
+    "circumstance",
+]
+"""What an example is, and so how it is run.
+
+``rules``: a rulebook or a vocabulary, to check. ``compiled``: a rulebook, to compile.
+``analyzed``: a rulebook, to analyze. ``examples``: a rulebook, to run the examples of.
+``maneuvers``: a rulebook, to judge the maneuvers of scenario s1 by. ``trace``: a line, to judge by
+``esterle2019``. ``scenario``: a file, to build the graph of. ``command``: lines for a POSIX shell
+in an empty folder. ``python``: a program. ``circumstance``: no input makes it; there is no example.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A kind of mistake, and what ``rulec explain`` says of it.
+
+    ``title``: in one line. ``why``: what it means and what to do, in a paragraph. ``bad``: a small
+    example that gets this code and no other. ``good``: the same, mended. The hundreds of ``code``
+    are the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
+    graphs, 7 files, 8 analysis.
+    """
+
+    code: str
+    title: str
+    why: str
+    bad: str = ""
+    good: str = ""
+    kind: ExampleKind = "rules"
+
+    def at(
+        self,
+        place: SourceLocation | Span | None,
+        message: str,
+        *,
+        expected: str = "",
+        help: str = "",
+        labels: tuple[Label, ...] = (),
+        notes: tuple[str, ...] = (),
+        severity: Severity = "error",
+    ) -> Diagnostic:
+        """A mistake of this kind at a place, if it has one; see ``Diagnostic``."""
+        where = place.place if isinstance(place, Span) else place
+        return Diagnostic(self.code, message, where, expected, help, labels, notes, severity)
+
+    def error(
+        self,
+        place: SourceLocation | Span | None,
+        message: str,
+        *,
+        expected: str = "",
+        help: str = "",
+        labels: tuple[Label, ...] = (),
+        notes: tuple[str, ...] = (),
+    ) -> RulecError:
+        """One mistake of this kind that ends a piece of work, to be raised."""
+        return RulecError(
+            self.at(place, message, expected=expected, help=help, labels=labels, notes=notes)
+        )

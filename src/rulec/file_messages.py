@@ -1,0 +1,46 @@
+"""Messages about files and settings."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+
+NOT_UTF8 = Code(
+    "R0101",
+    title="a file is not a text in UTF-8",
+    why="Files are plain text in UTF-8, so that names and sentences in any language read the same "
+    "everywhere. Save the file as UTF-8; a file from a word processor is not a plain text.",
+    bad=r"printf 'rulebook stra\337e signal p hard rule r { require p }' | rulec check -",
+    good=r"printf 'rulebook stra\303\237e signal p hard rule r { require p }' | rulec check -",
+    kind="command",
+)
+
+UNREADABLE_FILE = Code(
+    "R0701",
+    title="a file cannot be read",
+    why="There is no such file, it is a folder, or it may not be read; the message says which.",
+    bad="rulec check ./no_such.rules",
+    good="echo 'rulebook a signal p hard rule r { require p }' > such.rules\n"
+    "rulec check ./such.rules",
+    kind="command",
+)
+
+UNWRITABLE_FILE = Code(
+    "R0702",
+    title="a file cannot be written",
+    why="The folder does not exist and cannot be made, something else has its name, it may not be "
+    "written to, or the disk is full. Nothing is left behind half written.",
+    bad="echo notes > build\nrulec compile esterle2019 -o build",
+    good="echo notes > notes\nrulec compile esterle2019 -o build",
+    kind="command",
+)
+
+WRONG_SETTINGS = Code(
+    "R0704",
+    title="a project's settings are wrong",
+    why="The nearest `rulec.toml`, in the working folder or above it, is not TOML, has an unknown "
+    "setting, or lists in `search_path` something that is no folder.",
+    bad="echo 'search_path = [\"no_such\"]' > rulec.toml\nrulec compile esterle2019 -o out",
+    good="mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\n"
+    "rulec compile esterle2019 -o out",
+    kind="command",
+)

@@ -1,0 +1,173 @@
+"""Messages about scenarios and recordings."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+
+UNKNOWN_SCENARIO = Code(
+    "R0601",
+    title="a scenario's name is unknown",
+    why="A scenario is one of those built in (`rulec list scenarios`), or a file, given by its "
+    "path.",
+    bad="rulec maneuvers s9 -r esterle2019",
+    good="rulec maneuvers s1 -r esterle2019",
+    kind="command",
+)
+
+_ROAD = "[road]\ns = [0.0, 100.0]\nlanes = [-1.75, 1.75]\n\n"
+_GOOD = f"{_ROAD}[ego]\ns = 10.0\nd = 0.0\n"
+NOT_A_SCENARIO = Code(
+    "R0602",
+    title="a scenario file is too large or not TOML",
+    why="Scenario files are TOML of at most 4 MB. The message tells what TOML's reader met at the "
+    "underlined place.",
+    bad=_GOOD.replace("[0.0, 100.0]", "0.0 to 100.0"),
+    good=_GOOD,
+    kind="scenario",
+)
+
+MISSING_OR_UNKNOWN_FIELD = Code(
+    "R0603",
+    title="a field of a scenario is missing or unknown",
+    why="Road and ego have to be there with their fields. An unknown field is an error, because a "
+    "misspelt one would otherwise be ignored.",
+    bad=_GOOD.replace("d = 0.0", "D = 0.0"),
+    good=_GOOD,
+    kind="scenario",
+)
+
+UNFITTING_FIELD = Code(
+    "R0604",
+    title="a field's value in a scenario does not fit",
+    why="Numbers are finite and in metres, seconds, m/s, m/s² and degrees, without a unit behind "
+    "them; the message says what is expected.",
+    bad=_GOOD.replace("s = 10.0", 's = "10 m"'),
+    good=_GOOD,
+    kind="scenario",
+)
+
+INCONSISTENT_SCENARIO = Code(
+    "R0605",
+    title="parts of a scenario contradict each other",
+    why="Each part can be read, and together they cannot be: a place beside the road, an id that "
+    "is given twice, times that run backwards.",
+    bad=_GOOD.replace("s = 10.0", "s = 110.0"),
+    good=_GOOD,
+    kind="scenario",
+)
+
+UNFITTING_HORIZON = Code(
+    "R0606",
+    title="horizon and step do not fit together",
+    why="The horizon is cut into steps, so it has to be a whole multiple of the step, and both "
+    "are times above 0.",
+    bad=f"horizon_s = 4.0\nstep_s = 0.3\n\n{_GOOD}",
+    good=f"horizon_s = 4.2\nstep_s = 0.3\n\n{_GOOD}",
+    kind="scenario",
+)
+
+_COMMONROAD = """\
+cat > road.xml <<'END'
+<commonRoad commonRoadVersion="2018b" benchmarkID="ZAM_Road-1_1_T-1" timeStepSize="0.1"
+    author="" affiliation="" source="" tags="" date="2020-01-01">
+  <lanelet id="1">
+    <leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>
+    <rightBound><point><x>0</x><y>-2</y></point><point><x>99</x><y>-2</y></point></rightBound>
+  </lanelet>
+  <planningProblem id="2">
+    <initialState>
+      <position><point><x>9</x><y>0</y></point></position>
+      <velocity><exact>5</exact></velocity><orientation><exact>0</exact></orientation>
+      <yawRate><exact>0</exact></yawRate><slipAngle><exact>0</exact></slipAngle>
+      <time><exact>0</exact></time>
+    </initialState>
+    <goalState>
+      <time><intervalStart>0</intervalStart><intervalEnd>40</intervalEnd></time>
+    </goalState>
+  </planningProblem>
+</commonRoad>
+END
+"""
+NOT_A_RECORDING = Code(
+    "R0610",
+    title="a file cannot be read as recorded traffic",
+    why="Recorded traffic is XML: a CommonRoad scenario, version 2018b or 2020a, or SUMO's "
+    "floating-car data with their net; the root element tells which. A file has to be "
+    "well-formed and complete, and to do without a `DOCTYPE`: what that defines may fill the "
+    "memory or fetch other files.",
+    bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
+    good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
+    kind="command",
+)
+
+COMMONROAD_MISSING = Code(
+    "R0611",
+    title="the package for CommonRoad scenarios is not installed",
+    why="They are read by `commonroad-io`, which is installed on request, because it takes some "
+    "370 MB with what it needs: `pip install 'rulec[commonroad]'`. In a checkout that is "
+    "`.venv/bin/python -m pip install -e '.[commonroad]'`.",
+    kind="circumstance",
+)
+
+NOT_IN_RECORDING = Code(
+    "R0612",
+    title="what is chosen is not in the recorded scene",
+    why="A recorded scene has its own ids for planning problems, vehicles and lanelets, and "
+    "its own times. The message names those that can be chosen with `--ego`, `--at-time` and "
+    "`--reference`. Without any choice, ego is the first planning problem's, so there has to "
+    "be one, and it has to be on a lane.",
+    bad=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 7",
+    good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 2",
+    kind="command",
+)
+
+OTHER_CHOICE = Code(
+    "R0613",
+    title="a choice for recorded scenes was made for another scenario",
+    why="What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
+    "from is what was recorded. A built-in scenario, or one in TOML, says itself where ego and "
+    "the road are and how others move. `--net` is for SUMO's floating-car data only, because "
+    "all other scenes have their own roads.",
+    bad="rulec maneuvers s1 -r esterle2019 --ego 2",
+    good="rulec maneuvers s1 -r esterle2019",
+    kind="command",
+)
+
+_FCD = """\
+cat > fcd.xml <<'END'
+<fcd-export>
+  <timestep time="0.00">
+    <vehicle id="f.0" x="20" y="0" angle="90" type="DEFAULT_VEHTYPE" speed="9" lane="east_0"/>
+  </timestep>
+</fcd-export>
+END
+"""
+_NET = """\
+cat > road.net.xml <<'END'
+<net version="1.20">
+  <edge id="east" from="a" to="b">
+    <lane id="east_0" index="0" speed="13.89" length="200" shape="0,0 200,0"/>
+  </edge>
+</net>
+END
+"""
+NET_MISSING = Code(
+    "R0614",
+    title="floating-car data of SUMO's have no net",
+    why="They say where everybody was, but not where the roads are; that is in SUMO's net. Without "
+    "`--net` it is the one that a comment at the head of the data names, or the only file "
+    "`*.net.xml` in the same folder.",
+    bad=_FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    kind="command",
+)
+
+OTHER_NET = Code(
+    "R0615",
+    title="floating-car data of SUMO's and the net do not belong together",
+    why="All lanes and edges that the data name are in the net that they were made with, and "
+    "everybody is near its roads. Data with geographic coordinates cannot be used.",
+    bad=_NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    kind="command",
+)

@@ -1,0 +1,68 @@
+"""Messages about texts, dates and numbers."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import Diagnostic, Span
+from rulec.diagnostics.code import Code
+
+UNKNOWN_ESCAPE = Code(
+    "R0106",
+    title="a text holds an unknown escape",
+    why='In a text a backslash makes a quote (`\\"`) or a backslash (`\\\\`), and nothing else.',
+    bad='rulebook example\ntitle "either\\or"\nsignal p\nhard rule r { require p }\n',
+    good='rulebook example\ntitle "either\\\\or"\nsignal p\nhard rule r { require p }\n',
+)
+
+CONTROL_CHARACTER = Code(
+    "R0107",
+    title="a text holds a control character",
+    why="Texts are shown in terminals and in reports. Characters that drive a terminal, or turn "
+    "the direction of the text around, could make a rule look like another one.",
+    bad="printf 'rulebook a title \"\\033[2J\" signal p hard rule r { require p }' | rulec check -",
+    good="printf 'rulebook a title \"clear\" signal p hard rule r { require p }' | rulec check -",
+    kind="command",
+)
+
+NO_SUCH_DATE = Code(
+    "R0110",
+    title="a date is not in the calendar",
+    why="A date is written `year-month-day` and has to exist, behind `as of` and in `in force`.",
+    bad='rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\nhard rule r { require p }\n',
+    good='rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\nhard rule r { require p }\n',
+)
+
+NUMBER_TOO_LARGE = Code(
+    "R0112",
+    title="a number is too large or too long",
+    why="Numbers reach to about 1.8e308, as in nearly all programs, and have at most 400 digits.",
+    bad="rulebook example\nquantity speed in km/h default 1e999\nsignal p\n"
+    "hard rule r { require p }\n",
+    good="rulebook example\nquantity speed in km/h default 130\nsignal p\n"
+    "hard rule r { require p }\n",
+)
+
+
+def unknown_escape(place: Span, escaped: str) -> Diagnostic:
+    """A backslash before something that needs none."""
+    return UNKNOWN_ESCAPE.at(
+        place,
+        f"`\\{escaped}` means nothing in a text",
+        help='`\\"` is a quote and `\\\\` a backslash',
+    )
+
+
+def control_character(place: Span) -> Diagnostic:
+    """A character in a text that a reader cannot see."""
+    return CONTROL_CHARACTER.at(
+        place, "a text may not hold this invisible character", help="delete it, or type it as words"
+    )
+
+
+def no_such_date(place: Span, date: str, reason: str) -> Diagnostic:
+    """A date that is not in the calendar."""
+    return NO_SUCH_DATE.at(place, f"`{date}` is no date", help=reason)
+
+
+def number_too_large(place: Span) -> Diagnostic:
+    """A number beyond those of a computer."""
+    return NUMBER_TOO_LARGE.at(place, "this number is too large", help="write a number below 1e308")
