@@ -145,13 +145,13 @@ def test_a_process_that_cannot_start_is_no_traceback(monkeypatch):
 def checking(automaton, formula, semantics="stutter", cpu_s=None):
     """Ask whether Spot's automaton of a text is the formula's."""
     from rulec.automata.spot_bridge.equivalence_check import check
-    from rulec.automata.spot_bridge.spot_formulas import Wording
+    from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 
     past = remembered(formula)
     propositions = [*atoms_of(formula), *(one.atom for one in past.memories)]
-    wording = Wording(names_of(propositions), "alive" if semantics == "finite" else None)
-    translated = wording.translated(automaton, *SHAPE)
-    check(translated, past.present, wording, past.memories, cpu_s)
+    spot_formulas = SpotFormulas(names_of(propositions), "alive" if semantics == "finite" else None)
+    translated = spot_formulas.translate(automaton, *SHAPE)
+    check(translated, past.present, spot_formulas, past.memories, cpu_s)
 
 
 SHAPE = ("parity", "det", "complete")

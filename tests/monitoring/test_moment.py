@@ -14,7 +14,7 @@ from rulec.logic.formula import (
     Quantity,
     Same,
 )
-from rulec.logic.kleene import Unknown, counted, holds, number_of, total
+from rulec.logic.kleene import Unknown, holds, number_of, objects_counted, weighted_sum
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem
@@ -52,53 +52,57 @@ def close(one, other):
 
 
 def test_objects_of_a_type_count_and_those_of_its_subtypes():
-    assert counted(Count("x", "thing", Constant(True)), {}, HERE) == ("car1", "car2", "tree")
-    assert counted(Count("x", "car", Constant(True)), {}, HERE) == ("car1", "car2")
-    assert counted(Count("x", "thing", far("x")), {}, HERE) == ("tree",)
+    assert objects_counted(Count("x", "thing", Constant(True)), {}, HERE) == (
+        "car1",
+        "car2",
+        "tree",
+    )
+    assert objects_counted(Count("x", "car", Constant(True)), {}, HERE) == ("car1", "car2")
+    assert objects_counted(Count("x", "thing", far("x")), {}, HERE) == ("tree",)
 
 
 def test_objects_that_are_not_there_do_not_count_and_need_no_values():
     here = StateView({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
-    assert counted(Count("x", "thing", near("x")), {}, here) == ("car1",)
+    assert objects_counted(Count("x", "thing", near("x")), {}, here) == ("car1",)
 
 
 def test_an_object_that_a_variable_names_counts_too():
     others = both(near("x"), no(Same("x", "v")))
-    assert counted(Count("x", "car", near("x")), {"v": "car1"}, HERE) == ("car1", "car2")
-    assert counted(Count("x", "car", others), {"v": "car1"}, HERE) == ("car2",)
+    assert objects_counted(Count("x", "car", near("x")), {"v": "car1"}, HERE) == ("car1", "car2")
+    assert objects_counted(Count("x", "car", others), {"v": "car1"}, HERE) == ("car2",)
 
 
 @pytest.mark.parametrize("same", [Same("x", "v"), Same("v", "x")])
 def test_only_the_one_that_a_variable_names(same):
     for body in (both(near("x"), same), both(both(same, near("x")), near("x"))):
-        assert counted(Count("x", "car", body), {"v": "car2"}, HERE) == ("car2",)
-        assert counted(Count("x", "car", body), {"v": "tree"}, HERE) == ()
-        assert counted(Count("x", "thing", body), {"v": "tree"}, HERE) == ()
-    unknown = counted(Count("x", "car", both(same, close("v", "x"))), {"v": "car1"}, HERE)
+        assert objects_counted(Count("x", "car", body), {"v": "car2"}, HERE) == ("car2",)
+        assert objects_counted(Count("x", "car", body), {"v": "tree"}, HERE) == ()
+        assert objects_counted(Count("x", "thing", body), {"v": "tree"}, HERE) == ()
+    unknown = objects_counted(Count("x", "car", both(same, close("v", "x"))), {"v": "car1"}, HERE)
     assert unknown == Unknown("gap", ("car1", "car1"))
     away = StateView({"place": {"car1": "near"}}, {"car1": "car"}, VOCABULARY)
-    assert counted(Count("x", "car", same), {"v": "car2"}, away) == ()
+    assert objects_counted(Count("x", "car", same), {"v": "car2"}, away) == ()
 
 
 def test_a_count_within_a_count():
     has_company = less(0, times(-1, Count("y", "car", both(near("y"), no(Same("x", "y"))))))
-    assert counted(Count("x", "thing", has_company), {}, HERE) == ("car1", "car2", "tree")
+    assert objects_counted(Count("x", "thing", has_company), {}, HERE) == ("car1", "car2", "tree")
     alone = StateView(
         {"place": {"car1": "near", "tree": "far"}}, {"car1": "car", "tree": "thing"}, VOCABULARY
     )
-    assert counted(Count("x", "thing", has_company), {}, alone) == ("tree",)
+    assert objects_counted(Count("x", "thing", has_company), {}, alone) == ("tree",)
 
 
 def test_the_inner_variable_hides_the_outer_one():
-    assert counted(Count("v", "thing", far("v")), {"v": "car1"}, HERE) == ("tree",)
+    assert objects_counted(Count("v", "thing", far("v")), {"v": "car1"}, HERE) == ("tree",)
 
 
 def test_sums_are_exact():
     gap, speed = Quantity("gap", ("v", "w")), Quantity("speed")
     bound = {"v": "car1", "w": "car2"}
     # Three tenths are three tenths; floats would say 0.30000000000000004.
-    assert total([times(3, gap)], bound, HERE) == Fraction(3, 10)
-    assert total([times(1, gap), times(Fraction(-5, 18), speed)], bound, HERE) == (
+    assert weighted_sum([times(3, gap)], bound, HERE) == Fraction(3, 10)
+    assert weighted_sum([times(1, gap), times(Fraction(-5, 18), speed)], bound, HERE) == (
         Fraction(1, 10) - Fraction(250, 18)
     )
     assert number_of(speed, {}, HERE) == 50
@@ -147,14 +151,14 @@ def test_nobody_needs_to_know_the_gap_to_itself():
     """Whichever way round it is written."""
     not_me = no(Same("x", "v"))
     for body in (both(not_me, close("v", "x")), both(close("v", "x"), not_me)):
-        assert counted(Count("x", "car", body), {"v": "car1"}, HERE) == ("car2",)
-    lonely = counted(Count("x", "thing", close("v", "x")), {"v": "car1"}, HERE)
+        assert objects_counted(Count("x", "car", body), {"v": "car1"}, HERE) == ("car2",)
+    lonely = objects_counted(Count("x", "thing", close("v", "x")), {"v": "car1"}, HERE)
     assert lonely == Unknown("gap", ("car1", "car1"))
 
 
 def test_what_decides_is_named_not_what_could_be_done_without():
     body = both(no(Same("x", "v")), close("v", "x"))
-    missing = counted(Count("x", "thing", body), {"v": "car2"}, HERE)
+    missing = objects_counted(Count("x", "thing", body), {"v": "car2"}, HERE)
     assert missing == Unknown("gap", ("car2", "tree"))
 
 

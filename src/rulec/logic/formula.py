@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
@@ -174,3 +174,13 @@ def atoms_of(formula: Formula) -> Iterator[Proposition]:
             yield from atoms_of(right)
         case Constant() | Same():
             return
+
+
+def with_operands(
+    operation: Unary | Binary, transform: Callable[[Formula], Formula]
+) -> Unary | Binary:
+    """The operation on transformed operands, the left one first."""
+    if isinstance(operation, Unary):
+        return Unary(operation.operator, transform(operation.operand), operation.bound)
+    left = transform(operation.left)
+    return Binary(operation.operator, left, transform(operation.right), operation.bound)

@@ -1,7 +1,7 @@
-"""The value of a formula in one state, of which something may not be known.
+"""Formulas of one state by Kleene's strong three-valued logic: some of it may not be known.
 
 What can be told without it is told (`x = v or gap(x, v) < 5 m` holds for v itself, whatever its gap
-to itself may be); nothing else is, as in Kleene's strong three-valued logic.
+to itself may be); nothing else is (Kleene, "Introduction to metamathematics", 1952).
 """
 
 from __future__ import annotations
@@ -9,36 +9,28 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Protocol, TypeAlias
 
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.formula import (
-    Atom,
     Binary,
     BinaryOperator,
     Comparison,
-    Constant,
     Count,
     Formula,
+    Proposition,
     Quantity,
-    Relation,
     Same,
     Term,
-    Unary,
-    UnaryOperator,
 )
 from rulec.logic.linear_comparison import stands
 from rulec.vocabulary import Vocabulary
 
-_NOT = UnaryOperator.NOT
-_AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
-_IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
-_AT_ONCE = frozenset({_AND, _OR, _IMPLIES, _IFF, _XOR})
-
 _MOST = 1 << 12
-"""So many formulas are kept ready to be asked."""
+"""Formulas whose evaluators are kept."""
 
-Bound = Mapping[str, str]
+ObjectBinding: TypeAlias = Mapping[str, str]
 """Variable -> the object that it stands for."""
 
 
@@ -51,7 +43,7 @@ class Unknown:
 
 
 class PartialState(Protocol):
-    """What is the case in a state, and who is there."""
+    """A state of which some values may be missing."""
 
     @property
     def objects(self) -> Mapping[str, str]:
@@ -59,7 +51,7 @@ class PartialState(Protocol):
 
     @property
     def vocabulary(self) -> Vocabulary:
-        """What can be said of them."""
+        """The declarations of what can be said of them."""
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
         """The value of a signal or an enumeration."""
@@ -68,152 +60,159 @@ class PartialState(Protocol):
         """The value of a quantity."""
 
 
-_Judge: TypeAlias = Callable[[Bound, PartialState], bool | Unknown]
+_Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
 
 
-def total(
-    terms: Sequence[tuple[Fraction, Term]], bound: Bound, moment: PartialState
+def weighted_sum(
+    terms: Sequence[tuple[Fraction, Term]], binding: ObjectBinding, state: PartialState
 ) -> Fraction | Unknown:
     """The sum of coefficient times term: exact."""
-    found = Fraction(0)
+    weighted_sum = Fraction(0)
     for coefficient, term in terms:
-        number = number_of(term, bound, moment)
+        number = number_of(term, binding, state)
         if isinstance(number, Unknown):
             return number
-        found += coefficient * number
-    return found
+        weighted_sum += coefficient * number
+    return weighted_sum
 
 
-def number_of(term: Term, bound: Bound, moment: PartialState) -> Fraction | Unknown:
-    """A quantity's value, or how many objects count."""
+def number_of(term: Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
+    """A quantity's value, or the number of objects that count."""
     match term:
         case Quantity(name, arguments):
-            return moment.number(name, tuple([bound[one] for one in arguments]))
+            return state.number(name, tuple([binding[variable] for variable in arguments]))
         case Count():
-            objects = counted(term, bound, moment)
+            objects = objects_counted(term, binding, state)
             return objects if isinstance(objects, Unknown) else Fraction(len(objects))
 
 
-def counted(count: Count, bound: Bound, moment: PartialState) -> tuple[str, ...] | Unknown:
+def objects_counted(
+    count: Count, binding: ObjectBinding, state: PartialState
+) -> tuple[str, ...] | Unknown:
     """The objects that count."""
-    found = []
+    result = []
     fitting: dict[str, bool] = {}
-    inner = dict(bound)
-    there = moment.objects
-    same, judge = _same_as(count.variable, count.body), _judge_of(count.body)
-    candidates = there if same is None else [one for one in (bound[same],) if one in there]
+    inner = dict(binding)
+    present = state.objects
+    alias, evaluate = _alias_of(count.variable, count.body), _evaluator_of(count.body)
+    candidates = present if alias is None else [binding[alias]] if binding[alias] in present else []
     for name in candidates:
-        kind = there[name]
-        if kind not in fitting:
-            fitting[kind] = moment.vocabulary.is_subtype(kind, count.type)
-        if fitting[kind]:
+        type_name = present[name]
+        if type_name not in fitting:
+            fitting[type_name] = state.vocabulary.is_subtype(type_name, count.type)
+        if fitting[type_name]:
             inner[count.variable] = name
-            truth = judge(inner, moment)
-            if isinstance(truth, Unknown):
-                return truth
-            if truth:
-                found.append(name)
-    return tuple(found)
+            value = evaluate(inner, state)
+            if isinstance(value, Unknown):
+                return value
+            if value:
+                result.append(name)
+    return tuple(result)
 
 
-def _same_as(variable: str, formula: Formula) -> str | None:
+def _alias_of(variable: str, formula: Formula) -> str | None:
     """Another variable that stands for the same object wherever the formula holds, if one does."""
     match formula:
-        case Same(one, other) if variable in (one, other) and one != other:
-            return other if one == variable else one
-        case Binary(operator, left, right) if operator is _AND:
-            return _same_as(variable, left) or _same_as(variable, right)
+        case Same(left, right) if variable in (left, right) and left != right:
+            return right if left == variable else left
+        case Binary(BinaryOperator.AND, left, right):
+            return _alias_of(variable, left) or _alias_of(variable, right)
     return None
 
 
-def holds(formula: Formula, bound: Bound, moment: PartialState) -> bool | Unknown:
-    """Does a formula without temporal operators hold? TypeError if it has one."""
-    return _judge_of(formula)(bound, moment)
+def holds(formula: Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+    """Whether a formula without temporal operators holds. TypeError if it has one."""
+    return _evaluator_of(formula)(binding, state)
 
 
 @lru_cache(maxsize=_MOST)
-def _judge_of(formula: Formula) -> _Judge:
-    """What says whether a formula holds: it is asked of every object in every state."""
-    match formula:
-        case Atom(name, arguments, wanted):
-            return _atom(name, arguments, wanted or True)
-        case Comparison(terms, relation, limit):
-            return _comparison(terms, relation, limit)
-        case Same(one, other):
-            return lambda bound, _: bound[one] == bound[other]
-        case Constant(truth):
-            return lambda _, __: truth
-        case Unary(operator, operand) if operator is _NOT:
-            return _negation(_judge_of(operand))
-        case Binary(operator, left, right) if operator in _AT_ONCE:
-            first, second = _judge_of(left), _judge_of(right)
-            if operator is _AND:
-                return _joined(first, second, settled_by=False)
-            if operator is _OR:
-                return _joined(first, second, settled_by=True)
-            if operator is _IMPLIES:
-                return _joined(_negation(first), second, settled_by=True)
-            alike = _alike(first, second)
-            return alike if operator is _IFF else _negation(alike)
-    raise TypeError("this formula does not speak of one state alone")
+def _evaluator_of(formula: Formula) -> _Evaluator:
+    """The formula as a function: it is asked of every object in every state."""
+    return fold(formula, _KLEENE)
 
 
-def _atom(name: str, arguments: tuple[str, ...], wanted: bool | str) -> _Judge:
+def _proposition(proposition: Proposition) -> _Evaluator:
+    if isinstance(proposition, Comparison):
+        return _comparison(proposition)
+    return _atom(proposition.name, proposition.arguments, proposition.value or True)
+
+
+def _atom(name: str, arguments: tuple[str, ...], expected: bool | str) -> _Evaluator:
     if len(arguments) == 1:
-        return _atom_of_one(name, arguments[0], wanted)
+        return _atom_of_one(name, arguments[0], expected)
 
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        value = moment.value(name, tuple([bound[one] for one in arguments]))
-        return value if isinstance(value, Unknown) else value == wanted
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        value = state.value(name, tuple([binding[variable] for variable in arguments]))
+        return value if isinstance(value, Unknown) else value == expected
 
-    return judge
-
-
-def _atom_of_one(name: str, argument: str, wanted: bool | str) -> _Judge:
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        value = moment.value(name, (bound[argument],))
-        return value if isinstance(value, Unknown) else value == wanted
-
-    return judge
+    return evaluate
 
 
-def _comparison(
-    terms: Sequence[tuple[Fraction, Term]], relation: Relation, limit: Fraction
-) -> _Judge:
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        number = total(terms, bound, moment)
+def _atom_of_one(name: str, argument: str, expected: bool | str) -> _Evaluator:
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        value = state.value(name, (binding[argument],))
+        return value if isinstance(value, Unknown) else value == expected
+
+    return evaluate
+
+
+def _comparison(comparison: Comparison) -> _Evaluator:
+    terms, relation, limit = comparison.terms, comparison.relation, comparison.limit
+
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        number = weighted_sum(terms, binding, state)
         return number if isinstance(number, Unknown) else stands(number, relation, limit)
 
-    return judge
+    return evaluate
 
 
-def _negation(operand: _Judge) -> _Judge:
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        truth = operand(bound, moment)
-        return truth if isinstance(truth, Unknown) else not truth
+def _settled(left: _Evaluator, right: _Evaluator, *, by: bool) -> _Evaluator:
+    """The conjunction, which an operand that is false settles, or the disjunction by a true one."""
 
-    return judge
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        first = left(binding, state)
+        if first is by:
+            return by
+        second = right(binding, state)
+        return second if second is by or first is not_by else first
 
-
-def _joined(left: _Judge, right: _Judge, *, settled_by: bool) -> _Judge:
-    """``and``, which one operand that is false settles; or ``or``, which a true one does."""
-
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        first = left(bound, moment)
-        if first is settled_by:
-            return settled_by
-        second = right(bound, moment)
-        return second if second is settled_by or first is not_settled else first
-
-    not_settled = not settled_by
-    return judge
+    not_by = not by
+    return evaluate
 
 
-def _alike(left: _Judge, right: _Judge) -> _Judge:
-    def judge(bound: Bound, moment: PartialState) -> bool | Unknown:
-        first, second = left(bound, moment), right(bound, moment)
+def _constant(value: bool) -> _Evaluator:
+    return lambda _, __: value
+
+
+def _identity(same: Same) -> _Evaluator:
+    left, right = same.left, same.right
+    return lambda binding, _: binding[left] == binding[right]
+
+
+def _negation(operand: _Evaluator) -> _Evaluator:
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        value = operand(binding, state)
+        return value if isinstance(value, Unknown) else not value
+
+    return evaluate
+
+
+def _equivalence(left: _Evaluator, right: _Evaluator) -> _Evaluator:
+    def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+        first, second = left(binding, state), right(binding, state)
         if isinstance(first, Unknown):
             return first
         return second if isinstance(second, Unknown) else first is second
 
-    return judge
+    return evaluate
+
+
+_KLEENE: Algebra[_Evaluator] = Algebra(
+    proposition=_proposition,
+    constant=_constant,
+    identity=_identity,
+    negation=_negation,
+    conjunction=partial(_settled, by=False),
+    disjunction=partial(_settled, by=True),
+    equivalence=_equivalence,
+)

@@ -1,9 +1,10 @@
-"""Comparisons in the one form in which those of the same numbers have the same terms."""
+"""Normal form of linear comparisons: those of the same numbers have the same terms."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from operator import eq, ge, gt, le, lt, ne
 
 from rulec.logic.formula import Comparison, Constant, Relation, Term
 from rulec.logic.printing import term_in_words
@@ -37,18 +38,16 @@ def comparison(
     )
 
 
+_RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = {
+    "<": lt,
+    "<=": le,
+    "=": eq,
+    "!=": ne,
+    ">=": ge,
+    ">": gt,
+}
+
+
 def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
-    """Does a number stand in a relation to a limit?"""
-    match relation:
-        case "<":
-            return number < limit
-        case "<=":
-            return number <= limit
-        case "=":
-            return number == limit
-        case "!=":
-            return number != limit
-        case ">=":
-            return number >= limit
-        case ">":
-            return number > limit
+    """Whether a number stands in a relation to a limit."""
+    return _RELATIONS[relation](number, limit)

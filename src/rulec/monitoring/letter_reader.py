@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.logic.kleene import Unknown, total
+from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.axioms import impossible
 from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
@@ -163,7 +163,7 @@ class LetterReader:
         return self._one[name]
 
     def _digit(self, read: ThresholdScale, bound: Mapping[str, str], number: int, rule: str) -> int:
-        found = total(read.read.terms, bound, self.moment(number))
+        found = weighted_sum(read.read.terms, bound, self.moment(number))
         if isinstance(found, Unknown):
             raise self._missing(found.name, found.objects, number, rule)
         return read.read.digit(found)

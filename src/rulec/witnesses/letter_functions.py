@@ -11,13 +11,13 @@ from itertools import product
 
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of, reads_of
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
+from rulec.logic.fold import bit_sets, fold
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
     Constant,
     Count,
     Formula,
-    Proposition,
     Quantity,
     Same,
     Term,
@@ -167,28 +167,5 @@ def _truths(formulas: Sequence[Formula], reads: tuple[Read | NumberRead, ...]) -
         raise UndecidedError("a fact or a count reads too much at once")
     whole = _all_of(formulas)
     sets = letters_with(reads, propositions_of(whole))
-    return [_letters(one, sets, (1 << total) - 1) for one in formulas]
-
-
-def _letters(formula: Formula, sets: Mapping[Proposition, int], everything: int) -> int:
-    match formula:
-        case Constant(value):
-            return everything if value else 0
-        case Unary(_, operand):
-            return everything & ~_letters(operand, sets, everything)
-        case Binary(operator, left, right):
-            one, other = _letters(left, sets, everything), _letters(right, sets, everything)
-            match operator:
-                case BinaryOperator.AND:
-                    return one & other
-                case BinaryOperator.OR:
-                    return one | other
-                case BinaryOperator.IMPLIES:
-                    return everything & ~one | other
-                case BinaryOperator.XOR:
-                    return one ^ other
-                case _:
-                    return everything & ~(one ^ other)
-        case Same():
-            raise AssertionError("what is the same has been settled")
-    return sets[formula]
+    algebra = bit_sets(sets, (1 << total) - 1)
+    return [fold(formula, algebra) for formula in formulas]

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
     Comparison,
-    Constant,
     Count,
     Formula,
+    Proposition,
     Quantity,
     Same,
     Term,
-    Unary,
-    UnaryOperator,
 )
 from rulec.rulebook.model import ExampleState
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -179,42 +176,33 @@ def bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
 
 def value_in_state(formula: Formula, names: Mapping[str, str], facts: ExampleState) -> bool | None:
     """The value of a count's body, ``names`` for its variable; None if the state leaves it open."""
-    match formula:
-        case Constant(value):
-            return value
-        case Same(left, right):
-            return names.get(left, left) == names.get(right, right)
-        case Atom(name, arguments, value):
-            said = facts.get((name, tuple(names.get(one, one) for one in arguments)))
-            return None if said is None else said == (True if value is None else value)
-        case Comparison():
+
+    def proposition(proposition: Proposition) -> bool | None:
+        if isinstance(proposition, Comparison):
             return None
-        case Unary(UnaryOperator.NOT, operand):
-            inner = value_in_state(operand, names, facts)
-            return None if inner is None else not inner
-        case Binary(operator, left, right):
-            return _joined(
-                operator, value_in_state(left, names, facts), value_in_state(right, names, facts)
-            )
-    raise AssertionError("the body of a count speaks of one state")
+        objects = tuple(names.get(name, name) for name in proposition.arguments)
+        value = facts.get((proposition.name, objects))
+        expected = True if proposition.value is None else proposition.value
+        return None if value is None else value == expected
+
+    def identity(same: Same) -> bool:
+        return names.get(same.left, same.left) == names.get(same.right, same.right)
+
+    return fold(formula, replace(_KLEENE, proposition=proposition, identity=identity))
 
 
-def _joined(operator: BinaryOperator, left: bool | None, right: bool | None) -> bool | None:
-    match operator:
-        case BinaryOperator.AND:
-            if left is False or right is False:
-                return False
-        case BinaryOperator.OR:
-            if left is True or right is True:
-                return True
-        case BinaryOperator.IMPLIES:
-            return _joined(BinaryOperator.OR, None if left is None else not left, right)
-    if left is None or right is None:
-        return None
-    match operator:
-        case BinaryOperator.AND | BinaryOperator.OR:
-            return left and right if operator is BinaryOperator.AND else left or right
-        case BinaryOperator.IFF:
-            return left == right
-        case _:
-            return left != right
+def _settled(by: bool, left: bool | None, right: bool | None) -> bool | None:
+    """The conjunction, which an operand that is false settles, or the disjunction by a true one."""
+    if left is by or right is by:
+        return by
+    return None if left is None or right is None else not by
+
+
+_KLEENE: Algebra[bool | None] = Algebra(
+    proposition=lambda _: None,
+    constant=bool,
+    negation=lambda operand: None if operand is None else not operand,
+    conjunction=partial(_settled, False),
+    disjunction=partial(_settled, True),
+    equivalence=lambda left, right: None if left is None or right is None else left == right,
+)

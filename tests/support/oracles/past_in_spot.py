@@ -7,7 +7,7 @@ or what the instant before has left; and bounds are unrolled, where the compiler
 import spot
 
 from rulec.automata.alphabet import names_of
-from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Atom, Binary, Unary, atoms_of
 from rulec.logic.past_registers import remembered
@@ -25,7 +25,7 @@ BEFORE = "!{before} & G(({p} -> X{before}) & ({p} | X!{before}))"
 
 def in_spot(formula, alive=None):
     """The formula in Spot's syntax; it has no operators of the past."""
-    return f"({Wording(names_of(atoms_of(formula)), alive).said(formula)})"
+    return f"({SpotFormulas(names_of(atoms_of(formula)), alive).formula_of(formula)})"
 
 
 def spot_automaton(formula, besides="1", alive=None):

@@ -3,11 +3,11 @@
 Spot may use unbounded time or memory, or end its process, on a formula whose automaton explodes.
 So this package is only ever loaded in a process of its own, see ``spot_worker``.
 
-``translation`` is the way from a formula to its automaton, ``wording`` says formulas in Spot's
-terms, ``progression`` builds automata of formulas with bounds from their ``obligations``,
-``registers`` brings in the past, ``projection`` says what facts mean for the propositions of one
-formula, ``checks`` compares automata with formulas, ``hoa`` and ``exploring`` turn them into a file
-and into what tables are made of.
+``translation`` is the way from a formula to its automaton, ``spot_formulas`` translates formulas to
+Spot's, ``progression`` builds automata of formulas with bounds from their ``obligations``,
+``registers`` brings in the past, ``projection`` says what axioms mean for the propositions of one
+formula, ``equivalence_check`` compares automata with formulas, ``hoa`` and ``exploration`` turn
+them into a file and into tables.
 """
 
 from rulec.automata.spot_bridge.equivalence_check import CheckError

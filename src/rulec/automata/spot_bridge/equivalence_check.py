@@ -10,7 +10,7 @@ from typing import Any
 
 import spot
 
-from rulec.automata.spot_bridge.spot_formulas import F, Wording
+from rulec.automata.spot_bridge.spot_formulas import F, SpotFormulas
 from rulec.logic.formula import Formula
 from rulec.logic.past_registers import Memory, definition
 
@@ -22,7 +22,7 @@ class CheckError(Exception):
 def check(
     automaton: Any,
     formula: Formula,
-    wording: Wording,
+    spot_formulas: SpotFormulas,
     memories: Sequence[Memory] = (),
     cpu_s: float | None = None,
 ) -> None:
@@ -35,24 +35,26 @@ def check(
     Raises:
         CheckError: if they differ, or if the automaton is not deterministic and complete.
     """
-    fresh = {wording.said(memory.atom).ap_name() for memory in memories}
+    fresh = {spot_formulas.formula_of(memory.atom).ap_name() for memory in memories}
     if (
         not spot.is_deterministic(automaton)
         or not spot.is_complete(automaton)
         or not fresh.isdisjoint(ap.ap_name() for ap in automaton.ap())
     ):
         raise CheckError
-    said = wording.said(formula)
-    defined = [wording.said(definition(memory)) for memory in memories]
-    no_word = F.Not(wording.language([]))
-    outside = F.Or([no_word, wording.language([F.Not(said), *defined])])
-    inside = wording.language([said, *defined])
+    said = spot_formulas.formula_of(formula)
+    defined = [spot_formulas.formula_of(definition(memory)) for memory in memories]
+    no_word = F.Not(spot_formulas.language([]))
+    outside = F.Or([no_word, spot_formulas.language([F.Not(said), *defined])])
+    inside = spot_formulas.language([said, *defined])
 
     def meets_outside() -> bool:
-        return bool(automaton.intersects(wording.translated(outside, "BA", "low")))
+        return bool(automaton.intersects(spot_formulas.translate(outside, "BA", "low")))
 
     def misses_inside() -> bool:
-        return bool(spot.dualize(automaton).intersects(wording.translated(inside, "BA", "low")))
+        return bool(
+            spot.dualize(automaton).intersects(spot_formulas.translate(inside, "BA", "low"))
+        )
 
     for is_wrong in (meets_outside, misses_inside):
         if is_wrong() if cpu_s is None else tried(is_wrong, cpu_s):

@@ -6,27 +6,27 @@ word, each an until or a release with what is left of its range.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import fresh_name
-from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.bounds import Range, range_of
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.formula import (
-    Atom,
     Binary,
     BinaryOperator,
     Bound,
-    Comparison,
     Constant,
     Formula,
-    Same,
+    Proposition,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -45,6 +45,25 @@ class _Obligation(NamedTuple):
     span: Range
 
 
+_Signed: TypeAlias = Callable[[bool], Any]
+"""A formula, for True, or its negation, for False, as a BDD: a negation goes down to obligations,
+so that no BDD has a negated one."""
+
+
+def _joined(both: bool, left: _Signed, right: _Signed) -> _Signed:
+    """The conjunction, whose negation is a disjunction, or the other way round (De Morgan)."""
+
+    def signed(wanted: bool) -> Any:
+        first, second = left(wanted), right(wanted)
+        return first & second if both is wanted else first | second
+
+    return signed
+
+
+def _equivalence(left: _Signed, right: _Signed) -> _Signed:
+    return lambda wanted: (left(True) & right(wanted)) | (left(False) & right(not wanted))
+
+
 class Obligations:
     """The obligations of a formula without operators of the past, as variables of BDDs.
 
@@ -56,15 +75,26 @@ class Obligations:
     but by one. Judged by the formula's operators, so that it may be one although neither is true.
     """
 
-    def __init__(self, formula: Formula, wording: Wording) -> None:
-        self.propositions = spot.make_twa_graph(wording.dictionary)
-        self.names = {one: wording.names[one] for one in atoms_of(formula)}
+    def __init__(self, formula: Formula, spot_formulas: SpotFormulas) -> None:
+        self.propositions = spot.make_twa_graph(spot_formulas.dictionary)
+        self.names = {one: spot_formulas.names[one] for one in atoms_of(formula)}
         self._letters = {
             one: buddy.bdd_ithvar(self.propositions.register_ap(name))
             for one, name in self.names.items()
         }
         self._variables: dict[_Obligation, Any] = {}
-        self._taken = {*wording.names.values(), wording.alive or ""}
+        self._taken = {*spot_formulas.names.values(), spot_formulas.alive or ""}
+        self._algebra: Algebra[_Signed] = Algebra(
+            proposition=self._proposition,
+            constant=lambda value: (
+                lambda wanted: buddy.bddtrue if value is wanted else buddy.bddfalse
+            ),
+            negation=lambda operand: lambda wanted: operand(not wanted),
+            conjunction=partial(_joined, True),
+            disjunction=partial(_joined, False),
+            equivalence=_equivalence,
+            operation=self._operation,
+        )
         self.first = self._now(formula, True)
         self.unfolded = {
             buddy.bdd_var(self._variables[one]): self._unfolded(one) for one in self._all()
@@ -89,27 +119,15 @@ class Obligations:
 
     def _now(self, formula: Formula, wanted: bool) -> Any:
         """That the formula, or its negation, holds: by this letter and what it leaves to do."""
-        match formula:
-            case Atom() | Comparison():
-                return self._letters[formula] if wanted else -self._letters[formula]
-            case Constant(value):
-                return buddy.bddtrue if value is wanted else buddy.bddfalse
-            case Unary(UnaryOperator.NOT, operand):
-                return self._now(operand, not wanted)
-            case Binary(BinaryOperator.AND | BinaryOperator.OR as operator, left, right):
-                first, second = self._now(left, wanted), self._now(right, wanted)
-                return first & second if (operator is _AND) is wanted else first | second
-            case Binary(BinaryOperator.IMPLIES, left, right):
-                return self._now(Binary(_OR, Unary(_NOT, left), right), wanted)
-            case Binary(BinaryOperator.IFF | BinaryOperator.XOR as operator, left, right):
-                same = (operator is BinaryOperator.IFF) is wanted
-                return (self._now(left, True) & self._now(right, same)) | (
-                    self._now(left, False) & self._now(right, not same)
-                )
-            case Unary() | Binary():
-                return self._temporal(formula, range_of(formula), wanted)
-            case Same():
-                raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+        return fold(formula, self._algebra)(wanted)
+
+    def _proposition(self, proposition: Proposition) -> _Signed:
+        letters = self._letters[proposition]
+        return lambda wanted: letters if wanted else -letters
+
+    def _operation(self, formula: Unary | Binary, _: Callable[[Formula], _Signed]) -> _Signed:
+        span = range_of(formula)
+        return lambda wanted: self._temporal(formula, span, wanted)
 
     def _temporal(self, formula: Unary | Binary, span: Range, wanted: bool) -> Any:
         match formula:

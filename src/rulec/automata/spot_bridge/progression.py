@@ -15,7 +15,7 @@ import spot
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.spot_bridge.obligations import Obligations
-from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula
 
 
@@ -26,8 +26,8 @@ class Progression:
     of its prefixes: it is a safety or a co-safety formula, judged by its operators.
     """
 
-    def __init__(self, formula: Formula, wording: Wording) -> None:
-        self._of = Obligations(formula, wording)
+    def __init__(self, formula: Formula, spot_formulas: SpotFormulas) -> None:
+        self._of = Obligations(formula, spot_formulas)
         self.is_decided = self._of.is_safety or self._of.is_cosafety
         self._composed: dict[int, tuple[Any, Any]] = {}
 

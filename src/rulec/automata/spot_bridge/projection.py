@@ -10,7 +10,7 @@ import spot
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import AND, NOT, OR, joined, names_of, propositions_of
-from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 
@@ -22,13 +22,15 @@ def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
     """
     every = propositions_of(known)
     names = names_of([*propositions, *every])
-    wording = Wording(names, None)
-    owner = spot.make_twa_graph(wording.dictionary)
-    condition = spot.formula_to_bdd(wording.said(known), wording.dictionary, owner)
+    spot_formulas = SpotFormulas(names, None)
+    owner = spot.make_twa_graph(spot_formulas.dictionary)
+    condition = spot.formula_to_bdd(
+        spot_formulas.formula_of(known), spot_formulas.dictionary, owner
+    )
     others = buddy.bddtrue
     for one in set(every) - set(propositions):
         others &= buddy.bdd_ithvar(owner.register_ap(names[one]))
-    found = spot.bdd_to_formula(buddy.bdd_exist(condition, others), wording.dictionary)
+    found = spot.bdd_to_formula(buddy.bdd_exist(condition, others), spot_formulas.dictionary)
     return _read(found, {name: one for one, name in names.items()})
 
 

@@ -9,30 +9,32 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.spot_bridge.spot_formulas import Wording
+from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula, atoms_of
 from rulec.logic.past_registers import Register
 
 _Values = tuple[int, ...]
 
 
-def with_registers(automaton: Any, registers: Sequence[Register], wording: Wording) -> Any:
+def with_registers(
+    automaton: Any, registers: Sequence[Register], spot_formulas: SpotFormulas
+) -> Any:
     """The automaton beside the registers, whose atoms are no propositions any more.
 
     A state is one of the automaton and one of each register. These and a letter decide what the
     registers say, by that the automaton's edge, and the registers' next states: so it stays
     deterministic and complete. Once a finite word is over the registers are back at their start.
     """
-    operands = _Operands(automaton, registers, wording)
+    operands = _Operands(automaton, registers, spot_formulas)
     propositions = automaton.get_dict()
     product = spot.make_twa_graph(propositions)
-    fresh = {wording.said(one.atom).ap_name() for one in registers}
+    fresh = {spot_formulas.formula_of(one.atom).ap_name() for one in registers}
     for proposition in automaton.ap():
         if proposition.ap_name() not in fresh:
             product.register_ap(proposition)
     going = buddy.bddtrue
-    if wording.alive is not None:
-        going = buddy.bdd_ithvar(product.register_ap(wording.alive))
+    if spot_formulas.alive is not None:
+        going = buddy.bdd_ithvar(product.register_ap(spot_formulas.alive))
     product.copy_acceptance_of(automaton)
     product.set_init_state(product.new_state())
     empty = tuple(one.at_first for one in registers)
@@ -59,11 +61,15 @@ def with_registers(automaton: Any, registers: Sequence[Register], wording: Wordi
 class _Operands:
     """What registers make of letters."""
 
-    def __init__(self, automaton: Any, registers: Sequence[Register], wording: Wording) -> None:
+    def __init__(
+        self, automaton: Any, registers: Sequence[Register], spot_formulas: SpotFormulas
+    ) -> None:
         def condition(formula: Formula) -> Any:
             for atom in atoms_of(formula):
-                automaton.register_ap(wording.said(atom).ap_name())
-            return spot.formula_to_bdd(wording.said(formula), automaton.get_dict(), automaton)
+                automaton.register_ap(spot_formulas.formula_of(atom).ap_name())
+            return spot.formula_to_bdd(
+                spot_formulas.formula_of(formula), automaton.get_dict(), automaton
+            )
 
         self._registers = [
             (one, condition(one.left), condition(one.right), condition(one.atom))

@@ -13,7 +13,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.spot_bridge.equivalence_check import check, tried
 from rulec.automata.spot_bridge.progression import Progression
 from rulec.automata.spot_bridge.registers import with_registers
-from rulec.automata.spot_bridge.spot_formulas import F, Wording
+from rulec.automata.spot_bridge.spot_formulas import F, SpotFormulas
 from rulec.logic.bounds import reach
 from rulec.logic.formula import (
     Binary,
@@ -69,7 +69,7 @@ def translate(
     fresh = [*(one.atom for one in past.registers), *(one.atom for one in past.memories)]
     names = names_of([*propositions, *fresh])
     alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
-    wording = Wording(names, alive)
+    spot_formulas = SpotFormulas(names, alive)
     known = knowledge(reads, propositions)
     for fact in axioms:
         known = fact if known == Constant(True) else Binary(_AND, known, fact)
@@ -78,13 +78,13 @@ def translate(
         meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, known))
     steps = reach(meant)
     if past.memories:
-        automaton = _guessed(meant, past.memories, wording)
+        automaton = _guessed(meant, past.memories, spot_formulas)
     else:
-        automaton = _combined(meant, True, wording)
+        automaton = _combined(meant, True, spot_formulas)
     is_small = steps <= _SMALL or bool(past.memories)
-    check(automaton, meant, wording, past.memories, None if is_small else _CHECK_CPU_S)
+    check(automaton, meant, spot_formulas, past.memories, None if is_small else _CHECK_CPU_S)
     if past.registers:
-        automaton = _shaped(with_registers(automaton, past.registers, wording))
+        automaton = _shaped(with_registers(automaton, past.registers, spot_formulas))
     return Translation(
         automaton,
         {one: names[one] for one in propositions},
@@ -100,65 +100,74 @@ def _shaped(automaton: Any) -> Any:
     return spot.postprocess(automaton, *_SHAPE)
 
 
-def _guessed(formula: Formula, memories: Sequence[Memory], wording: Wording) -> Any:
+def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFormulas) -> Any:
     """The automaton of the formula without these memories, which the future has a say in.
 
     What they are is guessed and projected away, which takes a determinisation.
     """
-    defined = [wording.said(definition(one)) for one in memories]
-    guessing = wording.translated(wording.language([wording.said(formula), *defined]), "small")
+    defined = [spot_formulas.formula_of(definition(one)) for one in memories]
+    guessing = spot_formulas.translate(
+        spot_formulas.language([spot_formulas.formula_of(formula), *defined]), "small"
+    )
     projection = spot.remove_ap()
     for memory in memories:
-        projection.add_ap(wording.said(memory.atom).ap_name())
+        projection.add_ap(spot_formulas.formula_of(memory.atom).ap_name())
     return spot.postprocess(projection.strip(guessing), *_SHAPE)
 
 
-def _combined(formula: Formula, wanted: bool, wording: Wording) -> Any:
+def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     """The automaton of the formula or its negation; if it has bounds, from those of its parts."""
     if reach(formula) == 0:
-        return _by_spot(formula, wanted, wording)
+        return _by_spot(formula, wanted, spot_formulas)
     match formula:
         case Unary(UnaryOperator.NOT, operand):
-            return _combined(operand, not wanted, wording)
+            return _combined(operand, not wanted, spot_formulas)
         case Binary(BinaryOperator.AND | BinaryOperator.OR as operator, left, right):
-            one, other = _combined(left, wanted, wording), _combined(right, wanted, wording)
+            one, other = (
+                _combined(left, wanted, spot_formulas),
+                _combined(right, wanted, spot_formulas),
+            )
             join = spot.product if (operator is _AND) is wanted else spot.product_or
             return _shaped(join(one, other))
         case Binary(BinaryOperator.IMPLIES, left, right):
-            return _combined(Binary(_OR, Unary(_NOT, left), right), wanted, wording)
+            return _combined(Binary(_OR, Unary(_NOT, left), right), wanted, spot_formulas)
         case Binary(BinaryOperator.IFF | BinaryOperator.XOR as operator, left, right):
-            whole = _by_progression(formula, wanted, wording)
+            whole = _by_progression(formula, wanted, spot_formulas)
             if whole is not None:
                 return whole
             same = (operator is BinaryOperator.IFF) is wanted
             other = right if same else Unary(_NOT, right)
             yes = Binary(_AND, left, other)
             no = Binary(_AND, Unary(_NOT, left), Unary(_NOT, other))
-            return _combined(Binary(_OR, yes, no), True, wording)
-    whole = _by_progression(formula, wanted, wording)
-    return _by_trial(_language(formula, wanted, wording), wording) if whole is None else whole
+            return _combined(Binary(_OR, yes, no), True, spot_formulas)
+    whole = _by_progression(formula, wanted, spot_formulas)
+    return (
+        _by_trial(_language(formula, wanted, spot_formulas), spot_formulas)
+        if whole is None
+        else whole
+    )
 
 
-def _by_progression(formula: Formula, wanted: bool, wording: Wording) -> Any | None:
+def _by_progression(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
     """None for a formula that no finite part of an infinite word decides."""
-    progression = Progression(formula if wanted else Unary(_NOT, formula), wording)
-    if wording.alive is not None:
-        return _shaped(progression.finite(wording.alive))
+    progression = Progression(formula if wanted else Unary(_NOT, formula), spot_formulas)
+    if spot_formulas.alive is not None:
+        return _shaped(progression.finite(spot_formulas.alive))
     if progression.is_decided:
         return _shaped(progression.infinite())
     return None
 
 
-def _by_spot(formula: Formula, wanted: bool, wording: Wording) -> Any:
-    return wording.translated(_language(formula, wanted, wording), *_SHAPE)
+def _by_spot(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+    return spot_formulas.translate(_language(formula, wanted, spot_formulas), *_SHAPE)
 
 
-def _language(formula: Formula, wanted: bool, wording: Wording) -> Any:
-    said = wording.said(formula)
-    return wording.language([said if wanted else F.Not(said)])
+def _language(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+    said = spot_formulas.formula_of(formula)
+    return spot_formulas.language([said if wanted else F.Not(said)])
 
 
-def _by_trial(language: Any, wording: Wording) -> Any:
+def _by_trial(language: Any, spot_formulas: SpotFormulas) -> Any:
     """The language's automaton by the first way that does not take too long.
 
     Its bounds are nested nexts to Spot; of an automaton and its complement's one is often far
@@ -166,13 +175,15 @@ def _by_trial(language: Any, wording: Wording) -> Any:
     """
 
     def plain() -> Any:
-        return wording.translated(language, *_SHAPE)
+        return spot_formulas.translate(language, *_SHAPE)
 
     def itself() -> Any:
-        return spot.postprocess(_determinised(language, wording), *_SHAPE)
+        return spot.postprocess(_determinised(language, spot_formulas), *_SHAPE)
 
     def complement() -> Any:
-        return spot.postprocess(spot.dualize(_determinised(F.Not(language), wording)), *_SHAPE)
+        return spot.postprocess(
+            spot.dualize(_determinised(F.Not(language), spot_formulas)), *_SHAPE
+        )
 
     ways: tuple[Callable[[], Any], ...] = (plain, itself, complement)
     for one in ways:
@@ -181,7 +192,7 @@ def _by_trial(language: Any, wording: Wording) -> Any:
     return plain()
 
 
-def _determinised(language: Any, wording: Wording) -> Any:
-    guessing = wording.translated(language, "BA", "low")
+def _determinised(language: Any, spot_formulas: SpotFormulas) -> Any:
+    guessing = spot_formulas.translate(language, "BA", "low")
     # Not pretty; with components, simulation, and without stutter invariance.
     return spot.tgba_determinize(guessing, False, True, True, False)

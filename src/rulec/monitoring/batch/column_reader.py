@@ -2,46 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import scale
+from rulec.logic.fold import fold
 from rulec.logic.formula import (
     Atom,
-    Binary,
-    BinaryOperator,
     Comparison,
-    Constant,
     Count,
     Formula,
+    Proposition,
     Quantity,
     Same,
     Term,
-    Unary,
-    UnaryOperator,
     atoms_of,
 )
 from rulec.logic.free_names import names_in
-from rulec.logic.kleene import Bound
+from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.kleene_columns import (
+    KLEENE_COLUMNS,
     UNKNOWN,
     Mask,
     Truth,
-    alike,
-    conjoined,
-    disjoined,
     known,
-    negated,
 )
 from rulec.monitoring.batch.sum_thresholds import Summand, digits_of_sum
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
-
-_AND, _OR, _IMPLIES = BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES
-_IFF, _XOR = BinaryOperator.IFF, BinaryOperator.XOR
 
 _SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
 
@@ -78,7 +69,7 @@ class ColumnReader:
         assert not isinstance(default, str), "only an enumeration's default is a value's name"
         return default
 
-    def digits(self, read: NumberRead, bound: Bound) -> Array:
+    def digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
         """How many thresholds a number passes in each state. Raises NotGivenError."""
         chosen = {name: bound[name] for name in scale(read).variables}
         key = (read.terms, read.thresholds, *sorted(chosen.items()))
@@ -86,7 +77,7 @@ class ColumnReader:
             self._known[key] = self._digits(read, chosen)
         return self._known[key]
 
-    def _digits(self, read: NumberRead, bound: Bound) -> Array:
+    def _digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
         n_states = self.columns.layout.n_states
         ready = scale(read)
         if ready.quantity is None:
@@ -102,7 +93,9 @@ class ColumnReader:
             digits += numbers >= floor
         return digits
 
-    def _summands(self, terms: tuple[tuple[Fraction, Term], ...], bound: Bound) -> list[Summand]:
+    def _summands(
+        self, terms: tuple[tuple[Fraction, Term], ...], bound: ObjectBinding
+    ) -> list[Summand]:
         """What is summed up. Raises NotGivenError."""
         found: list[Summand] = []
         for coefficient, term in terms:
@@ -116,7 +109,7 @@ class ColumnReader:
                 found.append((coefficient, self._counted(term, bound)))
         return found
 
-    def _counted(self, count: Count, bound: Bound) -> Array:
+    def _counted(self, count: Count, bound: ObjectBinding) -> Array:
         """How many objects count in each state. Raises NotGivenError where that is not known."""
         n_states = self.columns.layout.n_states
         total: Array = np.zeros(n_states, dtype=np.int64)
@@ -130,7 +123,7 @@ class ColumnReader:
                 raise self._missing(count, {**bound, count.variable: name})
         return total
 
-    def _missing(self, count: Count, bound: Bound) -> NotGivenError:
+    def _missing(self, count: Count, bound: ObjectBinding) -> NotGivenError:
         """The first thing that the body speaks of and that is not given."""
         for one in atoms_of(count.body):
             if isinstance(one, Atom):
@@ -155,39 +148,27 @@ class ColumnReader:
         there[layout.starts[first] : layout.starts[last + 1]] = True
         return there
 
-    def _truth(self, formula: Formula, bound: Mapping[str, str]) -> Truth:
-        match formula:
-            case Atom(name, arguments, wanted):
-                return self.atom(name, tuple([bound[one] for one in arguments]), wanted)
-            case Comparison():
-                return self._compared(formula, bound)
-            case Same(one, other):
-                return known(np.bool_(bound[one] == bound[other]))
-            case Constant(truth):
-                return known(np.bool_(truth))
-            case Unary(operator, operand) if operator is UnaryOperator.NOT:
-                return negated(self._truth(operand, bound))
-            case Binary(operator, left, right):
-                first, second = self._truth(left, bound), self._truth(right, bound)
-                if operator is _AND:
-                    return conjoined(first, second)
-                if operator is _OR:
-                    return disjoined(first, second)
-                if operator is _IMPLIES:
-                    return disjoined(negated(first), second)
-                if operator is _IFF:
-                    return alike(first, second)
-                if operator is _XOR:
-                    return negated(alike(first, second))
-        raise TypeError("this formula does not speak of one state alone")
+    def _truth(self, formula: Formula, bound: ObjectBinding) -> Truth:
+        """Where a formula of one state is known to hold, or not to."""
 
-    def _compared(self, comparison: Comparison, bound: Bound) -> Truth:
+        def proposition(part: Proposition) -> Truth:
+            if isinstance(part, Comparison):
+                return self._compared(part, bound)
+            items = tuple([bound[variable] for variable in part.arguments])
+            return self.atom(part.name, items, part.value)
+
+        def identity(same: Same) -> Truth:
+            return known(np.bool_(bound[same.left] == bound[same.right]))
+
+        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+
+    def _compared(self, comparison: Comparison, bound: ObjectBinding) -> Truth:
         try:
             return known(self.compared(comparison, bound))
         except NotGivenError:
             return UNKNOWN
 
-    def compared(self, comparison: Comparison, bound: Bound) -> Mask:
+    def compared(self, comparison: Comparison, bound: ObjectBinding) -> Mask:
         """Where a comparison holds. Raises NotGivenError."""
         at = Threshold(comparison.limit, inclusive=True)
         above = Threshold(comparison.limit, inclusive=False)

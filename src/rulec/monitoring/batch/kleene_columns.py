@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.logic.fold import Algebra
+
 Mask = NDArray[np.bool_] | np.bool_
 
 
@@ -29,24 +31,19 @@ def known(values: Mask) -> Truth:
     return Truth(values, ~values)
 
 
-def negated(one: Truth) -> Truth:
-    """Not."""
-    return Truth(one.false, one.true)
-
-
-def conjoined(one: Truth, other: Truth) -> Truth:
-    """And, which one operand that is false settles."""
-    return Truth(one.true & other.true, one.false | other.false)
-
-
-def disjoined(one: Truth, other: Truth) -> Truth:
-    """Or, which one operand that is true settles."""
-    return Truth(one.true | other.true, one.false & other.false)
-
-
-def alike(one: Truth, other: Truth) -> Truth:
-    """Both or neither."""
+def _equivalence(left: Truth, right: Truth) -> Truth:
     return Truth(
-        (one.true & other.true) | (one.false & other.false),
-        (one.true & other.false) | (one.false & other.true),
+        (left.true & right.true) | (left.false & right.false),
+        (left.true & right.false) | (left.false & right.true),
     )
+
+
+KLEENE_COLUMNS: Algebra[Truth] = Algebra(
+    proposition=lambda _: UNKNOWN,
+    constant=lambda value: known(np.bool_(value)),
+    negation=lambda operand: Truth(operand.false, operand.true),
+    conjunction=lambda left, right: Truth(left.true & right.true, left.false | right.false),
+    disjunction=lambda left, right: Truth(left.true | right.true, left.false & right.false),
+    equivalence=_equivalence,
+)
+"""The operators; what a proposition is depends on the columns."""

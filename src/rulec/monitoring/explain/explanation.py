@@ -21,7 +21,7 @@ from rulec.logic.formula import (
     Unary,
     atoms_of,
 )
-from rulec.logic.kleene import Unknown, counted, holds, total
+from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import in_words, term_in_words
 from rulec.logic.semantics import values_of_parts
 from rulec.monitoring.binding import Binding, bindings
@@ -172,7 +172,7 @@ class _Seen:
         digits = []
         for read in machine.reads:
             if isinstance(read, NumberRead):
-                number = total(read.terms, self.bound, moment)
+                number = weighted_sum(read.terms, self.bound, moment)
                 assert not isinstance(number, Unknown), "verify has read it"
                 digits.append(read.digit(number))
             else:
@@ -184,7 +184,7 @@ class _Seen:
 
     def counted(self, term: Count) -> list[tuple[str, ...]]:
         """The objects that count in each moment."""
-        found = [counted(term, self.bound, moment) for moment in self.moments]
+        found = [objects_counted(term, self.bound, moment) for moment in self.moments]
         return [objects for objects in found if not isinstance(objects, Unknown)]
 
     def changes(self, values: Sequence[object]) -> bool:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.logic.kleene import Unknown, total
+from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.online.breakpoints import Floors
 from rulec.monitoring.online.encoded_values import MISSING, Told, default_told, values_of
 from rulec.monitoring.online.letter_inputs import Input
@@ -194,7 +194,7 @@ def _summed(
 
     def column(state: State, _: Sequence[Told]) -> Sequence[int]:
         moment = StateView(state, objects, vocabulary)
-        found = [total(number.terms, each, moment) for each in bound]
+        found = [weighted_sum(number.terms, each, moment) for each in bound]
         if any(isinstance(each, Unknown) for each in found):
             raise LookupError
         return [number.digit(each) for each in found if not isinstance(each, Unknown)]

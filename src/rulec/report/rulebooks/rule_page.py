@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.logic.constant_folding import folded
+from rulec.logic.constant_folding import fold_constants
 from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
 from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
 from rulec.logic.english.sentence_layout import in_one_line, lines
@@ -97,7 +97,7 @@ def _remarks(states: Sequence[Witness]) -> Iterator[str]:
 def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
     """The rule as a sentence, without its exceptions."""
     return sentence(
-        folded(rule.required or rule.formula),
+        fold_constants(rule.required or rule.formula),
         [(variable.name, variable.type) for variable in rule.variables],
         lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
     )
@@ -108,9 +108,9 @@ def restrictions_of(rule: Rule) -> list[Phrase]:
     found = [
         exemption(formula, one.scope)
         for one in rule.exemptions
-        if (formula := folded(one.formula)) != Constant(False)
+        if (formula := fold_constants(one.formula)) != Constant(False)
     ]
-    applies = None if rule.condition is None else folded(rule.condition)
+    applies = None if rule.condition is None else fold_constants(rule.condition)
     if applies is None or applies == Constant(True):
         return found
     if applies == Constant(False):

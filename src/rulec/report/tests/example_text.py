@@ -11,7 +11,7 @@ from rulec.automata.thresholds import exact
 from rulec.book_tests.edge_coverage import RuleCoverage, UncoveredEdge, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
 from rulec.diagnostics import Diagnostic
-from rulec.logic.constant_folding import folded
+from rulec.logic.constant_folding import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import in_words, number_in_words
 from rulec.report.findings.diagnostics_text import render_diagnostics
@@ -48,7 +48,11 @@ def failure(one: ExampleOutcome, rulebook: str) -> Diagnostic:
     """The error about an example that fails in a rulebook, which may have inherited it."""
     problem = replace(example_warning(one), severity="error")
     rule = one.rule
-    if one.accepted and rule.condition is not None and folded(rule.condition) == Constant(False):
+    if (
+        one.accepted
+        and rule.condition is not None
+        and fold_constants(rule.condition) == Constant(False)
+    ):
         why = "the rule's condition is false as options are set"
         return replace(problem, help=f"{why}: set them, or leave the example out")
     stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]

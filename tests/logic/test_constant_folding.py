@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 
-from rulec.logic.constant_folding import folded
+from rulec.logic.constant_folding import fold_constants
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.logic.printing import in_words
 from rulec.logic.semantics import truth_values
@@ -15,12 +15,14 @@ JOINING = {BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES}
 
 @given(formulas, words)
 def test_the_meaning_stays(formula, word):
-    assert truth_values(folded(formula), letters(word)) == truth_values(formula, letters(word))
+    assert truth_values(fold_constants(formula), letters(word)) == truth_values(
+        formula, letters(word)
+    )
 
 
 @given(formulas)
 def test_no_constant_is_joined_or_denied(formula):
-    for part in _parts(folded(formula)):
+    for part in _parts(fold_constants(formula)):
         match part:
             case Unary(UnaryOperator.NOT, operand):
                 assert not isinstance(operand, Constant)
@@ -55,4 +57,4 @@ def _parts(formula: Formula):
 def test_what_is_left(written, expected):
     options = "option yes = on\noption no = off\n"
     book = parse_rulebook(f"rulebook a\nsignal p\n{options}hard rule r {{ require {written} }}")
-    assert in_words(folded(book.rules[0].formula)) == expected
+    assert in_words(fold_constants(book.rules[0].formula)) == expected

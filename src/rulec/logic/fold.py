@@ -1,0 +1,180 @@
+"""One interpretation of the operators, over any algebra: the catamorphism of formulas.
+
+An algebra says what propositions, constants and a few operators mean in its values: sets of letters
+as bits, Kleene's truth values, BDDs, Spot's formulas, columns. The derived operators follow by the
+laws of Boolean algebra and the dualities of temporal logic (Manna, Pnueli, "The temporal logic of
+reactive and concurrent systems", 1992). ``semantics`` does without this module: it is the
+reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, MutableMapping
+from dataclasses import dataclass
+from functools import partial
+from operator import and_, or_, xor
+from typing import Generic, TypeAlias, TypeVar
+
+from rulec.logic.bounds import Range, range_of
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Comparison,
+    Constant,
+    Formula,
+    Proposition,
+    Same,
+    Unary,
+    UnaryOperator,
+)
+
+Value = TypeVar("Value")
+
+Join: TypeAlias = Callable[[Value, Value], Value]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Algebra(Generic[Value]):
+    """The meaning of formulas, an operator at a time.
+
+    Without ``implication`` and ``difference`` (xor) they follow from the others. Without
+    ``identity`` no formula may ask whether two variables name one object, without ``operation``,
+    which is given the operation and the fold of its operands, none may have a temporal operator.
+    """
+
+    proposition: Callable[[Proposition], Value]
+    constant: Callable[[bool], Value]
+    negation: Callable[[Value], Value]
+    conjunction: Join[Value]
+    disjunction: Join[Value]
+    equivalence: Join[Value]
+    implication: Join[Value] | None = None
+    difference: Join[Value] | None = None
+    identity: Callable[[Same], Value] | None = None
+    operation: Callable[[Unary | Binary, Callable[[Formula], Value]], Value] | None = None
+
+
+def fold(
+    formula: Formula, algebra: Algebra[Value], known: MutableMapping[Formula, Value] | None = None
+) -> Value:
+    """The formula's value in an algebra.
+
+    Operands come before what they are operands of, from left to right. ``known`` keeps the values
+    of all parts: each is worked out once.
+
+    Raises:
+        ValueError: for an identity, if the algebra has none.
+        TypeError: for a temporal operator, if the algebra has none.
+    """
+    if known is None:
+        return _value(formula, algebra, None)
+    value = known.get(formula)
+    if value is None:
+        value = known[formula] = _value(formula, algebra, known)
+    return value
+
+
+def _value(
+    formula: Formula, algebra: Algebra[Value], known: MutableMapping[Formula, Value] | None
+) -> Value:
+    match formula:
+        case Atom() | Comparison():
+            return algebra.proposition(formula)
+        case Same():
+            if algebra.identity is None:
+                raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
+            return algebra.identity(formula)
+        case Constant(value):
+            return algebra.constant(value)
+        case Unary(UnaryOperator.NOT, operand):
+            return algebra.negation(fold(operand, algebra, known))
+        case Binary(operator, left, right) if operator in _CONNECTIVES:
+            first, second = fold(left, algebra, known), fold(right, algebra, known)
+            return _joined(operator, first, second, algebra)
+        case Unary() | Binary():
+            if algebra.operation is None:
+                raise TypeError("this formula does not speak of one state alone")
+            return algebra.operation(formula, partial(fold, algebra=algebra, known=known))
+
+
+_CONNECTIVES = frozenset(
+    {
+        BinaryOperator.AND,
+        BinaryOperator.OR,
+        BinaryOperator.IMPLIES,
+        BinaryOperator.IFF,
+        BinaryOperator.XOR,
+    }
+)
+
+
+def _joined(operator: BinaryOperator, left: Value, right: Value, algebra: Algebra[Value]) -> Value:
+    match operator:
+        case BinaryOperator.AND:
+            return algebra.conjunction(left, right)
+        case BinaryOperator.OR:
+            return algebra.disjunction(left, right)
+        case BinaryOperator.IFF:
+            return algebra.equivalence(left, right)
+        case BinaryOperator.IMPLIES:
+            if algebra.implication is None:
+                return algebra.disjunction(algebra.negation(left), right)
+            return algebra.implication(left, right)
+        case _:
+            if algebra.difference is None:
+                return algebra.negation(algebra.equivalence(left, right))
+            return algebra.difference(left, right)
+
+
+def bit_sets(sets: Mapping[Proposition, int], everything: int) -> Algebra[int]:
+    """Sets as the bits of integers: one for each proposition, and the set of everything."""
+    return Algebra(
+        proposition=sets.__getitem__,
+        constant=lambda value: everything if value else 0,
+        negation=everything.__xor__,
+        conjunction=and_,
+        disjunction=or_,
+        equivalence=lambda left, right: everything ^ left ^ right,
+        difference=xor,
+    )
+
+
+WordJoin: TypeAlias = Callable[[Value | None, Value, Range], Value]
+"""Of the left operand, which is None where it is a constant, the right one, and the range."""
+
+
+def temporal_operation(
+    negation: Callable[[Value], Value],
+    *,
+    until: WordJoin[Value],
+    release: WordJoin[Value],
+    weak_until: Callable[[Value, Value, Range], Value],
+    strong_release: Callable[[Value, Value, Range], Value],
+) -> Callable[[Unary | Binary, Callable[[Formula], Value]], Value]:
+    """The operation of an algebra of words without a past: the operators of the future by four.
+
+    Until without a left operand is ``eventually``, release without one is ``always``. Bounds are
+    in steps. The operation raises ValueError for an operator of the past.
+    """
+
+    def operation(formula: Unary | Binary, value_of: Callable[[Formula], Value]) -> Value:
+        span = range_of(formula)
+        match formula:
+            case Unary(UnaryOperator.NEXT | UnaryOperator.EVENTUALLY, operand):
+                return until(None, value_of(operand), span)
+            case Unary(UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS, operand):
+                return release(None, value_of(operand), span)
+            case Unary(UnaryOperator.NEVER, operand):
+                return release(None, negation(value_of(operand)), span)
+            case Binary(BinaryOperator.UNTIL | BinaryOperator.THEN, left, right):
+                return until(value_of(left), value_of(right), span)
+            case Binary(BinaryOperator.RELEASE, left, right):
+                return release(value_of(left), value_of(right), span)
+            case Binary(BinaryOperator.WEAK_UNTIL, left, right):
+                return weak_until(value_of(left), value_of(right), span)
+            case Binary(BinaryOperator.STRONG_RELEASE, left, right):
+                return strong_release(value_of(left), value_of(right), span)
+        raise ValueError(f"`{formula.operator.value}` is an operator of the past")
+
+    return operation
