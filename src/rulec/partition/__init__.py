@@ -1,4 +1,4 @@
-"""Cells around obstacles, layer by layer, and the navigation graph that links them.
+"""Cells around obstacles and the navigation graph that links them.
 
 scenario -> occupancy -> regions -> cells -> adjacency, continuation -> edges and margins
 """

@@ -1,4 +1,4 @@
-"""The navigation graph as valuations: what every cell says about the objects and the road."""
+"""Valuations of cells, which make a navigation graph a trace graph."""
 
 from __future__ import annotations
 
@@ -54,7 +54,10 @@ def _states(graph: NavigationGraph, layer: int) -> tuple[State, ...]:
 
 
 def relations(cell: Cell, names: Sequence[str], code: bytes) -> dict[str, Said]:
-    """What a cell says: its surface, and the relations to objects by as many bytes of a code."""
+    """Surface and relations of a cell, as bytes.
+
+    One byte for the surface, then those of each object's code.
+    """
     if cell.partition == "paper":
         return {
             "position": dict(zip(names, code.decode("ascii"), strict=False)),
@@ -68,7 +71,7 @@ def relations(cell: Cell, names: Sequence[str], code: bytes) -> dict[str, Said]:
 
 
 def signals_of(graph: NavigationGraph, objects: Mapping[str, Obstacle]) -> dict[str, Said]:
-    """The scenario's signals, and those of some objects, which are the same in all states."""
+    """Signals of a scenario and of some objects, constant over time."""
     signals: dict[str, dict[str, Value]] = {}
     for name, obstacle in objects.items():
         for signal, value in obstacle.signals.items():

@@ -30,7 +30,9 @@ class Envelope:
 
 
 def envelope(graph: NavigationGraph, path: Sequence[int]) -> tuple[Envelope, ...]:
-    """The envelope of a path, layer by layer; ``path[p]`` is the index of its cell in layer p.
+    """Envelope of a path, layer by layer.
+
+    ``path[p]`` is the index of its cell in layer p.
 
     Raises:
         RulecError: R0609 if ``path`` does not follow the graph from its first layer.

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NavigationGraph:
-    """A layered directed graph; every path from ``start`` to one of ``goals`` is a maneuver.
+    """Layered directed graph whose paths from start to goals are maneuvers.
 
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
@@ -64,12 +64,12 @@ class NavigationGraph:
 
     @property
     def nodes(self) -> int:
-        """How many cells there are, all layers together."""
+        """Number of cells of all layers."""
         return sum(len(layer.cells) for layer in self.layers)
 
     @property
     def edges(self) -> int:
-        """How many steps there are, staying included."""
+        """Number of edges, staying included."""
         return sum(len(followers) for layer in self.successors for followers in layer)
 
     def trace_graph(self) -> TraceGraph:

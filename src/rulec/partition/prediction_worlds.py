@@ -27,7 +27,7 @@ World = Mapping[str, int]
 
 @dataclass(frozen=True, slots=True)
 class PredictedPath:
-    """A path through a graph, with all obstacles as all their predictions have them.
+    """Path through a graph, with every prediction of every obstacle.
 
     ``weights`` are, for each obstacle, those of its predictions; predictions that the path's cells
     do not tell apart are one, called by the smallest number. ``traces`` is a graph of this path
@@ -42,7 +42,7 @@ class PredictedPath:
 
 
 def everybody(graph: NavigationGraph) -> dict[str, Predicted]:
-    """Whoever is on the road by some prediction, by the graph's names."""
+    """Obstacles on the road by some prediction, by the graph's names."""
     likeliest = {name: Predicted(object_, object_.id, 0) for name, object_ in graph.objects.items()}
     return {**likeliest, **graph.alternatives}
 
@@ -96,7 +96,9 @@ def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict
 
 
 def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
-    """The maneuvers on which nobody hits ego in a world, with what they say there; None if none.
+    """Paths without a collision in a world, with their valuations.
+
+    None if there are none.
 
     Obstacles have the names that they have in the scenario, whatever they do.
     """
@@ -119,13 +121,13 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
 
 
 def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
-    """Who is on the road in a world, by the names that they have there."""
+    """Obstacles on the road in a world, by their names there."""
     who, named = _in_world(graph, world)
     return {named[name]: predicted.obstacle for name, predicted in who.items()}
 
 
 def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
-    """Who is on the road by the graph's names, and the names that they have in the world."""
+    """Names in the graph and in the world of obstacles on the road."""
     everyone = everybody(graph)
     who = {
         name: predicted
@@ -139,7 +141,7 @@ def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted
 
 
 def _hit_in(layer: Layer, cell: Cell, who: Collection[str]) -> set[str]:
-    """Who of them hits ego in this cell."""
+    """Obstacles that collide with ego in this cell."""
     names = (*layer.objects, *layer.alternatives)
     return {
         name for name, code in zip(names, cell.code, strict=True) if code == HIT and name in who
@@ -153,7 +155,7 @@ def _states(
     who: Mapping[str, Predicted],
     named: Mapping[str, str],
 ) -> tuple[State, ...]:
-    """What cells of a layer say of those who are there, by other names."""
+    """Valuations of a layer's cells, by the world's names."""
     layer = graph.layers[p]
     here = [
         (i, name) for i, name in enumerate((*layer.objects, *layer.alternatives)) if name in who

@@ -1,4 +1,4 @@
-"""The cell from which ego starts, and what to say if there is none."""
+"""Start cell of ego, and the message where there is none."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def start_cell(
     partition: PartitionName,
     extent: ExtentName = "lane",
 ) -> int:
-    """The cell of the first layer that holds ego's centre at the start.
+    """Cell of the first layer that holds ego's centre.
 
     On a border, the free cell to the left and ahead.
 

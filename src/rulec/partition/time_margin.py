@@ -22,7 +22,7 @@ _Runs = dict[tuple[int, int], int]
 def edges(
     layers: Sequence[Layer], onward: Sequence[Links]
 ) -> tuple[tuple[Edges, ...], tuple[Margins, ...]]:
-    """Followers of every cell of every layer but the last, and their margins in layers.
+    """Successors of every cell and their margins, in layers.
 
     ``onward[p]`` are the continuations from layer p to p + 1. The margin of staying is None.
     """
@@ -57,7 +57,7 @@ def edges(
 
 
 def _runs(layers: Sequence[Layer], back: Sequence[Links]) -> list[_Runs]:
-    """For every adjacent pair of every layer: for how many layers it has been, this one included.
+    """Layers for which each adjacent pair has been adjacent so far.
 
     ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time layers are given.
     """

@@ -1,4 +1,4 @@
-"""Where partition and rules meet: a navigation graph judged by a compiled rulebook."""
+"""Navigation graphs evaluated by compiled rulebooks."""
 
 from rulec.planning.maneuvers import Maneuvers, evaluate
 from rulec.planning.partition_choice import partition_for

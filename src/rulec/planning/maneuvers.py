@@ -1,4 +1,4 @@
-"""The maneuvers of a graph, judged by a rulebook, and what can be asked of them."""
+"""Maneuvers of a graph under a rulebook: counts, ranks, classes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ MOST_BEST = 100
 
 @dataclass(frozen=True)
 class Maneuvers:
-    """The maneuvers of a scenario, judged: how many there are, how many keep every hard rule.
+    """Maneuvers of a scenario, evaluated by a rulebook.
 
     ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
     their vocabulary. ``after`` is the past, None if there was none. ``violated_before`` are
@@ -54,12 +54,12 @@ class Maneuvers:
 
     @property
     def satisfying(self) -> int:
-        """How many keep every hard rule."""
+        """Number of maneuvers that keep every hard rule."""
         return self.product.accepted
 
     @property
     def by_default(self) -> tuple[str, ...]:
-        """What rules read and the scenario does not supply, so that it has its default all along.
+        """Names that rules read and the scenario leaves at their defaults.
 
         In the order of the vocabulary.
         """
@@ -85,7 +85,7 @@ class Maneuvers:
         ]
 
     def ranked(self, n: int) -> list[RankedManeuver]:
-        """The ``n`` best maneuvers, or all if there are fewer: the least violating first.
+        """The ``n`` best maneuvers, least violating first, or all.
 
         Each stands behind all that violate less; those with equal penalties are in the order of
         cost. Raises RulecError as ``best`` does.
@@ -104,7 +104,10 @@ class Maneuvers:
         )
 
     def prunings(self) -> list[Pruning]:
-        """Which rule prunes what, for every rule. Raises RulecError as ``best`` does."""
+        """Effect of every rule on the number of maneuvers.
+
+        Raises RulecError as ``best`` does.
+        """
         every, alone = violating(self._every), violating_alone(self.hard)
         return [
             self._pruning(rule, every.get(rule.name), alone.get(rule.name))
@@ -112,15 +115,18 @@ class Maneuvers:
         ]
 
     def classes(self) -> HomotopyClasses:
-        """How many homotopy classes there are, by their members' verdicts: exact."""
+        """Exact number of homotopy classes, by their members' verdicts."""
         return count_classes(self.hard, self._places)
 
     def variants(self, n: int) -> list[Variant]:
-        """A cheapest satisfying maneuver for each of the ``n`` cheapest classes that have one."""
+        """Cheapest satisfying maneuver of each of the ``n`` cheapest classes."""
         return list(islice(variants(self.product, self._places), _number(n)))
 
     def counting_steps(self) -> list[CompiledRule]:
-        """The hard rules that may judge members of one class differently: they count steps."""
+        """Hard rules that are not stutter-invariant.
+
+        They may judge members of one class differently.
+        """
         hard = [rule for rule in self.rules.rules if rule.strength == "hard"]
         return [rule for rule in hard if not stutter_invariant(rule.machine)]
 
@@ -134,7 +140,7 @@ class Maneuvers:
 
     @cached_property
     def _every(self) -> NodeTransformers:
-        """With soft rules, too. Those of which nothing can be violated are left out already."""
+        """Transformers of hard and soft rules that can be violated."""
         past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
         soft = applied(self.graph, self.paths, self.rules, SOFT, past)
         return node_transformers(self.paths, [*self.hard.instances, *soft])
@@ -165,7 +171,7 @@ class Maneuvers:
 
 
 def _number(n: int) -> int:
-    """As many as anybody can count up to, instead of more."""
+    """Limit a number to what counting functions take."""
     return min(n, sys.maxsize)
 
 

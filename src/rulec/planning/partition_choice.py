@@ -56,7 +56,7 @@ def partition_for(
 
 
 def _spoken_of(vocabulary: Vocabulary) -> PartitionName:
-    """The partition whose relations a vocabulary declares, for rules that read none of them."""
+    """Partition whose relations a vocabulary declares."""
     declared = {name for name in vocabulary.declarations if name in RELATIONS_OF["fine"]}
     return "fine" if declared else "paper"
 

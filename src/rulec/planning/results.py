@@ -1,4 +1,4 @@
-"""What is said of maneuvers beside their number."""
+"""Results about maneuvers beside their number."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RankedManeuver:
 
 @dataclass(frozen=True, slots=True)
 class Pruning:
-    """How many maneuvers violate a rule, and how many of them keep every other hard rule.
+    """Numbers of maneuvers that violate a rule, and that rule alone.
 
     The latter is None for a soft rule: it rejects nothing. The example is one of the cheapest of
     the latter, if there are any, else of the former; None if there are none of these either. The

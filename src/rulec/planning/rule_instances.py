@@ -45,7 +45,10 @@ def past_for(
     strengths: Collection[Strength],
     after: Before | None,
 ) -> CarriedState:
-    """What led up to a graph, as far as rules of these strengths remember. Raises RulecError."""
+    """Carried state of the past, for rules of these strengths.
+
+    Raises RulecError.
+    """
     if after is None:
         return NO_PAST
     from rulec.planning.trace_history import past_of
@@ -60,7 +63,7 @@ def applied(
     strengths: Collection[Strength],
     past: CarriedState,
 ) -> list[Instance]:
-    """The rules of these strengths, bound to the objects of paths through a graph.
+    """Bind rules of these strengths to the objects of a graph.
 
     Raises RulecError as ``instances`` does, with the scenario as the place.
     """

@@ -1,4 +1,4 @@
-"""The past of a graph of traces: a trace, or a monitor, that leads up to its first layer."""
+"""Past of a trace graph: a trace or monitor before its first layer."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def past_of(
     step_s: Fraction,
     strengths: Collection[Strength] = HARD,
 ) -> CarriedState:
-    """What has been when a graph with this step begins, for rules of these strengths.
+    """Carried state when a graph with this step begins.
 
     Its first layer is the state after the last one of what was before.
 
@@ -63,7 +63,10 @@ def past_of(
 
 
 def read_past(path: Path) -> Before:
-    """The one trace of a file, or a saved monitor's snapshot (.json). Raises RulecError."""
+    """Read the one trace of a file, or a monitor's snapshot.
+
+    Raises RulecError.
+    """
     if path.suffix == ".json":
         saved: Mapping[str, Any] = read_saved(path)
         return saved
@@ -71,7 +74,7 @@ def read_past(path: Path) -> Before:
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
-    """The one trace of a file; in place of a bad one there is what is wrong with it.
+    """Read the one trace of a file; raise what is wrong.
 
     Raises:
         RulecError: that, or R0511 if there are several.

@@ -1,4 +1,4 @@
-"""Traces: states over a vocabulary, one after the other, and graphs whose paths are traces."""
+"""Traces, their files, and graphs whose paths are traces."""
 
 from rulec.trace.trace_model import State, Trace, TraceGraph, Value
 

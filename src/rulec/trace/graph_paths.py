@@ -9,7 +9,7 @@ from rulec.trace.trace_model import Trace, TraceGraph
 
 
 def paths(graph: TraceGraph) -> Iterator[tuple[int, ...]]:
-    """Every path from start to a goal, as the node's index in each layer, in ascending order.
+    """Paths from start to goals, as node indices, in ascending order.
 
     Lazily and in memory bounded by the graph: dead ends are known before they are entered.
     """

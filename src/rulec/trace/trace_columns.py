@@ -1,4 +1,4 @@
-"""Many traces as columns: one array for each thing that their states tell.
+"""Many traces as columns, one array per name.
 
 The states of all traces stand one after the other in *time-major* order: the first states of all
 traces, then the second states of those that have one, and so on, longer traces first. So the states
@@ -25,7 +25,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """Where the states of many traces stand in a column.
+    """Positions of the states of many traces in a column.
 
     ``lengths`` (int64, one for each trace) are how many states the traces have: 1 or more, in
     descending order. ``starts`` (int64, one more than the longest trace has states): the states of
@@ -37,25 +37,25 @@ class Layout:
 
     @property
     def n_traces(self) -> int:
-        """How many traces there are."""
+        """Number of traces."""
         return len(self.lengths)
 
     @property
     def n_steps(self) -> int:
-        """How many states the longest trace has."""
+        """Number of states of the longest trace."""
         return len(self.starts) - 1
 
     @property
     def n_states(self) -> int:
-        """How many states all traces have together."""
+        """Number of states of all traces."""
         return int(self.starts[-1])
 
     def active(self, step: int) -> int:
-        """How many traces have this step; they are the first ones."""
+        """Number of traces that have this step; they come first."""
         return int(self.starts[step + 1] - self.starts[step]) if step < self.n_steps else 0
 
     def places(self, trace: int, first: int = 0, last: int | None = None) -> NDArray[np.int64]:
-        """Where the states of a trace stand, from one to another, or to its end."""
+        """Positions of a trace's states, from one to another or its end."""
         end = int(self.lengths[trace]) if last is None else last + 1
         result: NDArray[np.int64] = self.starts[first:end] + trace
         return result
@@ -68,7 +68,10 @@ class Layout:
 
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
-    """The layout of traces of these lengths. ValueError unless they descend and end above 0."""
+    """Layout of traces of these lengths.
+
+    ValueError unless they descend and end above 0.
+    """
     result = np.asarray(lengths, dtype=np.int64)
     if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():
         raise ValueError("lengths of traces descend, and each is at least 1")

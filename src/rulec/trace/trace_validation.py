@@ -1,4 +1,4 @@
-"""What every trace has to be, whatever its vocabulary."""
+"""Conditions on every trace, whatever its vocabulary."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rulec.trace.trace_model import Trace
 
 
 def check_trace(trace: Trace) -> None:
-    """The trace has states, a step, and objects that are there when it says they are.
+    """Check states, step, and presence of objects.
 
     Raises:
         RulecError: R0501, R0505 or R0506, with the trace's place.
@@ -24,7 +24,7 @@ def check_trace(trace: Trace) -> None:
 
 
 def check_frame(trace: Trace) -> None:
-    """As ``check_trace``, of all but the states and who is there."""
+    """Check all of a trace but states and presence."""
     if not trace.states:
         raise NO_STATES.error(
             trace.place, "the trace has no states; it needs at least one to judge"
@@ -35,7 +35,7 @@ def check_frame(trace: Trace) -> None:
 
 
 def check_presence(trace: Trace) -> None:
-    """As ``check_trace``, of who is there."""
+    """Check the presence of a trace's objects."""
     for name, (first, last) in trace.present.items():
         if name not in trace.objects:
             message = f"`present` speaks of `{name}`, which is not among the trace's objects"

@@ -29,7 +29,7 @@ _Signal = Value | Mapping[str, Value]
 
 
 def known_type(types: Iterable[str], vocabulary: Vocabulary) -> str | None:
-    """The first of an object's types, most specific first, that the vocabulary declares."""
+    """Most specific of an object's types that the vocabulary declares."""
     return next((name for name in types if name in vocabulary.types), None)
 
 
@@ -40,14 +40,17 @@ def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) ->
 
 
 def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:
-    """Whether objects of a type, None for one not declared, may stand as the first parameter."""
+    """Test whether objects of a type may be the first parameter.
+
+    The type is None for one that is not declared.
+    """
     if own_type is None or own_type not in vocabulary.types:
         return False
     return not declaration.parameters or vocabulary.is_subtype(own_type, declaration.parameters[0])
 
 
 def fits(name: str, values: Iterable[Value], declaration: Declaration) -> bool:
-    """Whether recorded values could be what the vocabulary means by the name, unit included."""
+    """Test whether recorded values fit a declaration, unit included."""
     match declaration:
         case Signal():
             return all(isinstance(value, bool) for value in values)
@@ -83,7 +86,7 @@ def project_graph(
 
 
 class _StateProjection:
-    """States in the words of a vocabulary. A value that states share is projected once."""
+    """Projection of states onto a vocabulary; shared values once."""
 
     def __init__(
         self,
@@ -105,7 +108,7 @@ class _StateProjection:
         self._projected: dict[tuple[str, int], tuple[_Signal, _Signal | None]] = {}
 
     def state(self, state: State) -> State:
-        """What the vocabulary declares of a state."""
+        """Part of a state that the vocabulary declares."""
         kept: dict[str, _Signal] = {}
         for name, value in state.items():
             key = (name, id(value))
@@ -118,7 +121,10 @@ class _StateProjection:
         return kept
 
     def _value(self, name: str, value: _Signal) -> _Signal | None:
-        """A value without the objects that its name is not about; None if nothing is left."""
+        """Value without objects that its name is not about.
+
+        None if nothing is left.
+        """
         declaration = self._vocabulary.declarations.get(name)
         by_partition = name in self._supplied
         if not by_partition and not self._recorded:

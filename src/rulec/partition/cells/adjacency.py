@@ -1,4 +1,4 @@
-"""Which cells of a plane lie next to each other.
+"""Adjacency of the cells of a plane.
 
 - ``touch``: their closures meet, a corner is enough (paper, section V-B, after Altché and de La
   Fortelle).
@@ -18,7 +18,7 @@ AdjacencyName = Literal["touch", "edge", "forward"]
 
 
 def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...], ...]:
-    """For every cell the cells that a step leads to, in ascending order, itself left out."""
+    """Adjacent cells of every cell, ascending, without the cell itself."""
     beside: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
         for behind, ahead in pairwise(row.runs):

@@ -18,7 +18,7 @@ Signature = dict[str, str] | dict[str, tuple[str, str]]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A connected piece of free road whose points all relate to every obstacle in the same way.
+    """Connected piece of free road with one relation to every obstacle.
 
     ``boxes`` are rectangles with disjoint interiors that make it up. ``code`` has one byte for each
     of ``objects``, then one for each of the layer's ``alternatives``.
@@ -42,7 +42,10 @@ class Cell:
 
     @property
     def signature(self) -> Signature:
-        """Object -> where ego is when in this cell: a letter, or (station, lateral) if ``fine``."""
+        """Relation to every object, by its name.
+
+        A letter, or (station, lateral) if ``fine``.
+        """
         if self.partition == "paper":
             return dict(zip(self.objects, self.code.decode("ascii"), strict=False))
         return {
@@ -52,7 +55,7 @@ class Cell:
 
     @property
     def polygon(self) -> Polygon:
-        """The cell in the plane of ``s`` and ``d`` (m), as a shapely polygon."""
+        """Shapely polygon of the cell in ``s`` and ``d`` (m)."""
         import shapely
 
         return shapely.union_all(
@@ -66,7 +69,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A stretch of one row of a plane that belongs to one cell."""
+    """Stretch of one row of a plane within one cell."""
 
     s_min: float
     s_max: float
@@ -75,7 +78,7 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """The free runs between two neighbouring cuts in ``d``, in the order of ``s``."""
+    """Free runs between two neighbouring cuts in ``d``, ordered by ``s``."""
 
     d_min: float
     d_max: float
@@ -84,13 +87,19 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The road cut into cells, for one interval or instant: its rows from right to left."""
+    """Road cut into cells for an interval or instant.
+
+    Its rows go from right to left.
+    """
 
     rows: tuple[Row, ...]
     cells: tuple[Cell, ...]
 
     def cells_at(self, s: float, d: float) -> Iterator[int]:
-        """The cells whose closure holds a point: first those to its right, and behind it."""
+        """Cells whose closure holds a point.
+
+        First those to its right, and behind it.
+        """
         for row in self.rows:
             if row.d_min <= d <= row.d_max:
                 for run in row.runs:
@@ -100,7 +109,9 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """The cells of ``[start_s, start_s + step]``; ``neighbours[i]`` are those next to cell ``i``.
+    """Cells of ``[start_s, start_s + step]``.
+
+    ``neighbours[i]`` are those adjacent to cell ``i``.
 
     Neighbours are in ascending order, never include the cell itself, and with the adjacency
     ``forward`` need not be mutual. ``alternatives`` are objects as less likely predictions have

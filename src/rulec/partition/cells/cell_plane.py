@@ -1,4 +1,4 @@
-"""Cells: the road intersected with the regions of every obstacle, split where not connected.
+"""Cells: connected parts of the road cut by obstacles' regions.
 
 All borders run along or across the road, so the cuts of all regions form a grid. Rows of the grid
 are read off as runs of equal labels (surface and one letter per obstacle) and runs of neighbouring
@@ -26,7 +26,10 @@ _Piece = tuple[int, int, bytes]
 def plane(
     roadway: Roadway, regions: Sequence[Region], partition: PartitionName, names: Sequence[str]
 ) -> Plane:
-    """The road cut by the regions; ``names`` are those of the regions' obstacles, in order."""
+    """Cut the road by the obstacles' regions.
+
+    ``names`` are the obstacles', in the order of the regions.
+    """
     s_cuts, d_cuts = _cuts(roadway, regions)
     rows = [list(_pieces(roadway, regions, s_cuts, bounds)) for bounds in pairwise(d_cuts)]
     numbers = _connected(rows)
@@ -73,7 +76,10 @@ def _cuts(roadway: Roadway, regions: Sequence[Region]) -> tuple[list[float], lis
 def _pieces(
     roadway: Roadway, regions: Sequence[Region], s_cuts: list[float], bounds: tuple[float, float]
 ) -> Iterator[_Piece]:
-    """The free runs of one row: ``columns`` has a string per obstacle, read crosswise."""
+    """Free runs of one row.
+
+    ``columns`` has a string per obstacle, read crosswise.
+    """
     width = len(s_cuts) - 1
     surface = bytearray(_CARRIAGEWAY * width)
     for start, end in roadway.crossings:
@@ -98,7 +104,7 @@ def _pieces(
 
 
 def _columns(s_cuts: list[float], start: float, end: float) -> tuple[int, int]:
-    """The columns between two cuts; cuts off the road count as its ends."""
+    """Columns between two cuts; cuts off the road count as its ends."""
     last = len(s_cuts) - 1
     first = min(bisect_left(s_cuts, start), last)
     return first, max(first, min(bisect_left(s_cuts, end), last))

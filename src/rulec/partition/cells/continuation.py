@@ -1,4 +1,4 @@
-"""How cells go on from one layer to the next.
+"""Continuation of cells from one layer to the next.
 
 A cell of layer p continues as one of layer p + 1 if both overlap one cell of the plane at the
 instant between them, with the obstacles where they are at that moment.
@@ -13,14 +13,14 @@ Links = tuple[frozenset[int], ...]
 
 
 def continuations(before: Plane, instant: Plane, after: Plane) -> Links:
-    """For each cell of ``before`` the cells of ``after`` as which it continues."""
+    """Cells of ``after`` that continue each cell of ``before``."""
     seen = overlaps(before, instant)
     onward = overlaps(instant, after)
     return tuple(frozenset().union(*(onward[i] for i in cells)) for cells in seen)
 
 
 def overlaps(plane: Plane, later: Plane) -> Links:
-    """For each cell of ``plane`` the cells of ``later`` with which it shares some area."""
+    """Cells of ``later`` that share area with each cell of ``plane``."""
     links: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
         for across in later.rows:

@@ -1,4 +1,4 @@
-"""Which obstacles are on the road when, and the region of each in every layer and between two.
+"""Regions of the obstacles in every layer and between two.
 
 An obstacle is in a layer if what it sweeps there has some area on the road. One that leaves and
 comes back counts as another object, called ``id_2``: a rule is judged on one stretch of presence.
@@ -21,7 +21,7 @@ from rulec.scenario.time_grid import Timing
 
 @dataclass(frozen=True, slots=True)
 class Occupancy:
-    """A scenario over time: names in the order of the file, and regions in that order.
+    """Scenario over time: names in the file's order, and their regions.
 
     ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first come obstacles as it is
     likeliest, in ``names``, then, in ``others``, those that other predictions have there.
@@ -43,7 +43,7 @@ class Occupancy:
 def scene(
     scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
 ) -> Occupancy:
-    """Where everything is, in every layer and at every instant between two."""
+    """Occupied regions in every layer and at every instant between two."""
     everybody = predicted(scenario)
     obstacles = [predicted_.obstacle for predicted_ in everybody]
     likeliest = len(scenario.obstacles)
@@ -102,12 +102,15 @@ def scene(
 
 
 def _wider(body: Box, half: float) -> Box:
-    """Where ego's centre is when the two are not side by side; ``half`` is half of ego's width."""
+    """Widen a region by half of ego's width, ``half``.
+
+    Outside of it, ego's centre is not beside the obstacle.
+    """
     return Box(body.s_min, body.s_max, body.d_min - half, body.d_max + half)
 
 
 def _narrower(outline: Box, half: float, start: float) -> Box:
-    """Where ego's centre may be: not so close to the verge that its width reaches beyond.
+    """Narrow the road so that ego's width stays on it.
 
     Where it stands closer than that at the start, it may stay as close.
     """
@@ -132,7 +135,7 @@ def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:
 def _appearances(
     obstacles: Sequence[Obstacle], layers: Sequence[Sequence[Region]]
 ) -> tuple[tuple[tuple[str, ...], ...], dict[str, int], dict[str, tuple[int, int]]]:
-    """Names of the regions, layer by layer; whose they are; first and last layer of each."""
+    """Names of regions by layer, their owners, their first and last layers."""
     taken = {obstacle.id for obstacle in obstacles}
     current: dict[int, str] = {}
     index_of: dict[str, int] = {}

@@ -1,4 +1,4 @@
-"""Several predictions per obstacle: what is free, and what less likely predictions say of it.
+"""Several predictions per obstacle, likeliest first.
 
 Cells avoid what is occupied if everybody does what is likeliest. Each other prediction cuts the
 road too, as an obstacle of its own would, but what it occupies is road: there ego is hit by it.
@@ -17,7 +17,7 @@ HIT = ord("x")
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """An obstacle as one prediction has it: its ``number``, 0 being the likeliest.
+    """Obstacle by one prediction; ``number`` 0 is the likeliest.
 
     ``obstacle`` moves by that prediction. Its ``id`` is like that of no other; ``of`` is the id in
     the scenario.
@@ -29,7 +29,7 @@ class Predicted:
 
 
 def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
-    """All obstacles as it is likeliest, in their order, then as each other prediction has them."""
+    """Obstacles by their likeliest predictions, then by each further one."""
     predicteds = [Predicted(obstacle, obstacle.id, 0) for obstacle in scenario.obstacles]
     taken = {obstacle.id for obstacle in scenario.obstacles}
     for obstacle in scenario.obstacles:
@@ -50,5 +50,5 @@ def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
 
 
 def entered(region: Region) -> Region:
-    """The region of a less likely prediction: what it occupies can be entered."""
+    """Region of a less likely prediction, which may be entered."""
     return replace(region, table=region.table.replace(bytes([OCCUPIED]), bytes([HIT])))

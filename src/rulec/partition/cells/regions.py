@@ -1,4 +1,4 @@
-"""The regions around one obstacle: what each place on the road is called as seen from it.
+"""Regions around one obstacle and their names.
 
 An obstacle's rectangle, as wide as its extent says, cuts the road in three both ways. A region
 table names the nine parts, row by row from right to left, each row in the direction of ``s``; ``o``
@@ -51,7 +51,7 @@ LATERAL_OF: Mapping[int, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The rectangle that an obstacle takes, and the table that names what lies around it."""
+    """Rectangle of an obstacle, with the names of its surroundings."""
 
     obstacle: int
     extent: Box
@@ -67,7 +67,7 @@ def region_of(
     roadway: Roadway,
     body_wide: Box | None = None,
 ) -> Region | None:
-    """The region of an obstacle that sweeps ``body`` in a time interval; None if off the road.
+    """Region of an obstacle that sweeps ``body``; None off the road.
 
     It takes the lanes that it touches, or ``body_wide`` if that is given.
     """

@@ -23,7 +23,7 @@ class Roadway:
     crossings: tuple[tuple[float, float], ...]
 
     def lanes_touched(self, body: Box) -> tuple[float, float] | None:
-        """The bounds of the lanes in which a body has some area; None if it is off the road."""
+        """Bounds of the lanes that a body overlaps; None off the road."""
         touched = [
             (right, left)
             for right, left in zip(self.lanes, self.lanes[1:], strict=False)
@@ -32,7 +32,7 @@ class Roadway:
         return (touched[0][0], touched[-1][1]) if touched else None
 
     def crossing_touched(self, body: Box) -> tuple[float, float]:
-        """The body's extent in ``s``, widened to the crossings in which it has some area."""
+        """Extent of a body in ``s``, widened to the crossings it overlaps."""
         low, high = body.s_min, body.s_max
         for start, end in self.crossings:
             if body.s_min < end and start < body.s_max:
@@ -58,7 +58,7 @@ def coordinates(road: Road) -> tuple[Iterator[float], Iterator[float]]:
 
 
 def roadway(road: Road, free: Box, s: Snap, d: Snap) -> Roadway:
-    """The road with every coordinate replaced by the one that stands for it."""
+    """Road with every coordinate snapped."""
     return Roadway(
         snapped(road.outline, s, d),
         snapped(free, s, d),

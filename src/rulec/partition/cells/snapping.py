@@ -1,4 +1,4 @@
-"""Coordinates that mean the same place made equal, so that geometry can compare them exactly.
+"""Snapping of coordinates, which makes comparisons exact.
 
 Every coordinate of every layer and instant goes through one table: those within ``EPSILON_M`` of
 each other become one number. After that two coordinates are either the same or clearly apart; no
@@ -19,7 +19,10 @@ Snap = dict[float, float]
 
 
 def snap_table(fixed: Iterable[float], moving: Iterable[float]) -> Snap:
-    """Coordinate -> the one that stands for it: if possible a ``fixed`` one, that is the road's."""
+    """Representative of every coordinate, a ``fixed`` one where possible.
+
+    Those of the road are fixed.
+    """
     ranked = sorted({*((value, 0) for value in fixed), *((value, 1) for value in moving)})
     table: Snap = {}
     group: list[tuple[float, int]] = []

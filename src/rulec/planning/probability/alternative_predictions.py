@@ -1,4 +1,4 @@
-"""How many maneuvers there are where one obstacle does something less likely."""
+"""Numbers of maneuvers where one obstacle does something less likely."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.planning.rule_instances import applied, in_words, past_for
 
 @dataclass(frozen=True, slots=True)
 class AlternativeCounts:
-    """What becomes of the maneuvers if one obstacle does as its prediction ``number`` has it.
+    """Numbers of maneuvers if prediction ``number`` of an obstacle comes true.
 
     All others do what is likeliest. On so many ``traces`` nobody hits ego; those that are
     ``satisfying`` also keep every hard rule then.

@@ -1,4 +1,4 @@
-"""How probable it is that none of some events comes about.
+"""Exact probability that none of some events happens.
 
 Obstacles do one thing or another, each independently of the others; an event is that several of
 them do certain things. No world, that is what all of them do together, is looked at by itself.

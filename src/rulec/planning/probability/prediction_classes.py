@@ -1,4 +1,4 @@
-"""Which predictions of an obstacle are all the same to a rule that counts objects."""
+"""Predictions of an obstacle that a counting rule cannot tell apart."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.vocabulary import Vocabulary
 
 
 class PredictionClasses:
-    """Tells predictions of obstacles apart by whether they are counted, on one path."""
+    """Classes of predictions by their contribution to counts, on one path."""
 
     def __init__(
         self,
@@ -50,7 +50,7 @@ class PredictionClasses:
         return list(result.values())
 
     def _counted(self, names: list[str], number: int, binding: Binding) -> object:
-        """How often it counts, term by term and state by state."""
+        """Contribution to every count, term by term and state by state."""
         if any(counts(term.body) for term in self._terms):
             # What it makes of others is not known without them
             return number

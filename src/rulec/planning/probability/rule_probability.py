@@ -1,4 +1,4 @@
-"""How probable it is that a maneuver keeps each rule, if obstacles have several predictions.
+"""Exact probability that a maneuver keeps each rule.
 
 What an obstacle does is independent of what the others do. Whatever they do, ego goes through the
 same cells. It keeps a rule for some objects if its trace does and none of these objects hits it.
@@ -28,7 +28,7 @@ class ForObjects:
 
 @dataclass(frozen=True, slots=True)
 class RuleProbability:
-    """The probability that a rule is kept for all objects, and those below 1 for some of them.
+    """Probability that a rule is kept, and by bindings below 1.
 
     None if the rule counts objects, and these can do more together than can be looked at.
     """
@@ -40,7 +40,7 @@ class RuleProbability:
 
 @dataclass(frozen=True, slots=True)
 class RuleProbabilities:
-    """The probabilities that nobody hits ego, that besides every hard rule is kept, and each rule.
+    """Probabilities of no collision, of all hard rules, of each rule.
 
     ``hard`` is None if that of one of the hard rules is.
     """
@@ -51,7 +51,10 @@ class RuleProbabilities:
 
 
 def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
-    """The probabilities of one of the maneuvers: exact. Raises RulecError as ``best`` does."""
+    """Exact probabilities of one maneuver.
+
+    Raises RulecError as ``best`` does.
+    """
     path = predicted_path(maneuvers.graph, maneuver.nodes)
     judge = ViolationEvents(maneuvers, path)
     hard: set[Event] | None = set(judge.hits)

@@ -26,7 +26,7 @@ Lost = dict[tuple[str, ...], set[Event]]
 
 
 class ViolationEvents:
-    """What is lost on one path."""
+    """Events in which rules are violated on one path."""
 
     def __init__(self, maneuvers: Maneuvers, path: PredictedPath) -> None:
         self._book = maneuvers.rules
@@ -45,7 +45,7 @@ class ViolationEvents:
         return {self._event([name]) for name in self._path.hit}
 
     def events(self, rule: CompiledRule) -> Lost | None:
-        """When the path does not keep a rule; None if there are too many worlds to look at."""
+        """Events in which a rule is violated; None if too many."""
         if counts(rule.formula):
             return self._counting(rule)
         lost: Lost = {}
@@ -56,7 +56,7 @@ class ViolationEvents:
         return lost
 
     def _counting(self, rule: CompiledRule) -> Lost | None:
-        """The same where it matters what others do than those the rule is about.
+        """Events of a rule that counts further objects.
 
         Only what they do differently in the rule's eyes makes a world of its own.
         """
@@ -100,18 +100,18 @@ class ViolationEvents:
         return lost
 
     def _concerns(self, rule: CompiledRule, name: str) -> bool:
-        """Is it of a type that the rule is about, or counts?"""
+        """Test whether the rule is about an object's type, or counts it."""
         kind = self._words.objects[name]
         types = {*(variable.type for variable in rule.variables), *counted_types(rule.formula)}
         return any(self._book.vocabulary.is_subtype(kind, type_) for type_ in types)
 
     def _is_in(self, world: Mapping[str, int], name: str) -> bool:
-        """Is it there in a world, which need not say what everybody does?"""
+        """Test whether an obstacle is there in a partial world."""
         predicted = self._path.predicted[name]
         return world.get(predicted.of, predicted.number) == predicted.number
 
     def _event(self, names: Collection[str]) -> Event:
-        """That these do as they are predicted to; what is certain does not count."""
+        """Event that these predictions come true; certain ones are left out."""
         who = [self._path.predicted[name] for name in names]
         return frozenset(
             (predicted.of, predicted.number)
@@ -133,7 +133,7 @@ class ViolationEvents:
         )
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
-        """Those whose objects are as predictions have them that can come true together."""
+        """Bindings whose objects' predictions can come true together."""
         vocabulary, objects = self._book.vocabulary, self._words.objects
         for binding in bindings(rule, vocabulary, objects, self._words.present, len(self._states)):
             who = [self._path.predicted[name] for name in binding.objects.values()]
@@ -143,7 +143,7 @@ class ViolationEvents:
                 yield binding
 
     def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
-        """Is it kept for these objects? Not if one of them hits ego."""
+        """Verdict on a binding; a collision with its objects violates."""
         names = binding.objects.values()
         about = (rule.name, self._of(names))
         goes_on = binding.first == 0

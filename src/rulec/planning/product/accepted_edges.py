@@ -1,4 +1,4 @@
-"""Where the accepted paths of a graph run, and where only others do."""
+"""Edges on accepted paths of a graph, and on others only."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class AcceptedEdges:
-    """For each layer the nodes, and for each but the last the edges onward, that lie on paths.
+    """Nodes by layer and edges between layers that lie on paths.
 
     ``possible`` are on some path from the start to a goal, ``accepted`` on one that is accepted.
     """
@@ -38,7 +38,7 @@ def accepted_edges(effects: NodeTransformers, product: Product) -> AcceptedEdges
 def _accepted(
     product: Product,
 ) -> tuple[tuple[frozenset[int], ...], tuple[frozenset[Edge], ...]]:
-    """Backwards from the ends; the product has been built forward from the start."""
+    """Trim the product backwards from its ends."""
     ahead: frozenset[ProductNode] | set[ProductNode] = product.ends
     nodes = [frozenset(node for node, _ in ahead)]
     edges = []

@@ -1,4 +1,4 @@
-"""A rulebook's rules bound to the objects of a graph, and what every node is to their machines."""
+"""Rules bound to a graph's objects, with letters for every node."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def instances(
     strengths: Collection[Strength] = HARD,
     past: CarriedState = NO_PAST,
 ) -> list[Instance]:
-    """Every rule of these strengths with every binding of its variables to the graph's objects.
+    """Bind rules of these strengths to a graph's objects.
 
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
     of a rule that every node is the same to are one instance. Those that were settled in the
@@ -108,7 +108,7 @@ def instances(
 
 
 def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
-    """What a path, given by its nodes' indices, violates, and from which layer on it is lost."""
+    """Violations of a path, with the layer of each bad prefix."""
     result = []
     for rule in rules:
         path = nodes[rule.first : rule.last + 1]

@@ -1,4 +1,4 @@
-"""A graph of traces times the rules' machines: which paths keep every rule, without walking them.
+"""Product of a trace graph and monitors, built forward layer by layer.
 
 Two partial paths that end in the same node with every machine in the same state have the same
 futures. So paths are counted per node and state, layer by layer.
@@ -37,7 +37,7 @@ _DROPPED = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ways:
-    """From product nodes of a layer to those of the next one, ``targets``.
+    """Edges of the product from one layer to ``targets`` in the next.
 
     Each of the ``origins`` has in ``into`` the index of the target that each follower of its node
     in ``rows`` leads to.
@@ -49,7 +49,7 @@ class Ways:
     into: list[list[int]]
 
     def steps(self) -> _Steps:
-        """The followers of each origin, with the cost of going there."""
+        """Successors of the product nodes of each layer, with costs."""
         return {
             origin: [
                 (self.targets[at], cost)
@@ -75,7 +75,7 @@ class Product:
 
     @property
     def accepted(self) -> int:
-        """How many paths from start to a goal are accepted: exact."""
+        """Exact number of accepted paths from start to a goal."""
         return sum(self.counts[-1][end] for end in self.ends)
 
     @cached_property
@@ -87,7 +87,7 @@ class Product:
 
 
 def count_paths(graph: TraceGraph) -> int:
-    """How many paths lead from start to a goal: exact."""
+    """Exact number of paths from start to a goal."""
     counts = {graph.start: 1}
     for successors in graph.successors:
         following: dict[int, int] = {}
@@ -99,7 +99,7 @@ def count_paths(graph: TraceGraph) -> int:
 
 
 def kept(effects: Sequence[Effect], joint: Joint) -> Joint | None:
-    """The joint state after a node with these effects; None if a rule is lost there."""
+    """Joint state after a node; None if a rule is violated there."""
     after = tuple(map(getitem, effects, joint))
     return None if LOST in after else after
 
@@ -146,7 +146,7 @@ def _ways(
     enter: Enter,
     room: int,
 ) -> Ways:
-    """The ways from these product nodes; not all, if there is no room for all they lead to."""
+    """Edges from these product nodes, up to the limit."""
     targets: list[ProductNode] = []
     index_of: dict[ProductNode, int] = {}
     # By memory and node.

@@ -1,4 +1,4 @@
-"""How much may be kept apart: rules can make that grow exponentially, and a graph cannot tell."""
+"""Limit on the number of product nodes, which can grow exponentially."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOST_PER_NODE = 32
 
 
 def room_for(graph: TraceGraph) -> int:
-    """How many kinds of partial paths may be kept apart in a graph."""
+    """Largest number of product nodes for a graph."""
     return max(MOST, MOST_PER_NODE * sum(map(len, graph.states)))
 
 

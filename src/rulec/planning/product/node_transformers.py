@@ -1,4 +1,4 @@
-"""What the nodes of a graph do to the machines that judge its paths.
+"""Transformers of monitor states by the nodes of a graph.
 
 From the last layer backwards, states of a machine that no path onward from a node tells apart are
 made one: what it remembers of an object often has no bearing any more on what can still happen in
@@ -28,7 +28,7 @@ Effect = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class NodeTransformers:
-    """The ways through a graph from start to goals, and what its nodes do to machines.
+    """Trimmed graph, with the state transformer of each node and instance.
 
     ``steps[p][node]`` are a node's followers from which a goal can be reached.
     ``nodes[p][node][i]`` is what the node does to ``instances[i]``, those that some path loses;
@@ -44,7 +44,7 @@ class NodeTransformers:
 
     @property
     def starts(self) -> bool:
-        """Does any path lead from the start to a goal?"""
+        """Test whether some path leads from the start to a goal."""
         return self.on_the_way[0][self.graph.start]
 
     @property
@@ -70,7 +70,7 @@ class NodeTransformers:
 
 
 def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeTransformers:
-    """What every node on a way from the graph's start to a goal does to every instance."""
+    """Transformer of every instance by every node between start and goals."""
     on_the_way = on_the_way_in(graph)
     steps = steps_in(graph, on_the_way)
     result = [
@@ -93,7 +93,7 @@ def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeT
 
 
 def _can_be_lost(instance: Instance) -> bool:
-    """Is there a word of the letters that occur that the machine rejects, in whatever order?"""
+    """Test whether the monitor rejects some word of the letters that occur."""
     machine = instance.rule.machine
     symbols = set().union(*instance.letters)
     reached, new = {instance.start}, [instance.start]
@@ -112,7 +112,7 @@ def _merged(
     steps: Sequence[tuple[tuple[Step, ...], ...]],
     on_the_way: Sequence[tuple[bool, ...]],
 ) -> list[tuple[Effect, ...]] | None:
-    """The effect of every node of every layer, with states made one that have the same futures.
+    """Transformers of every layer, with states of equal futures merged.
 
     None if no path loses the instance: then it does not matter.
     """
@@ -144,7 +144,7 @@ def _merged(
 
 
 class _Merging:
-    """What letters do to an instance's machine, and what is left of that in view of the future."""
+    """Merge states of an instance's monitor by their futures."""
 
     def __init__(self, instance: Instance) -> None:
         machine = instance.rule.machine
@@ -157,7 +157,7 @@ class _Merging:
         self._known: dict[object, Effect] = {}
 
     def raw(self, layer: int) -> list[Effect]:
-        """For every letter class that nodes of a layer can have the states after it.
+        """Transformer of each letter class in a layer, before merging.
 
         The machine waits until its objects are there. With their last layer it gives its verdict.
         """
@@ -175,7 +175,7 @@ class _Merging:
         later: Sequence[Effect],
         alive: Sequence[bool],
     ) -> tuple[Effect, ...]:
-        """The effects of a layer's nodes, given those of the next layer's; none in the last."""
+        """Transformers of a layer's nodes, given those of the next."""
         effects: list[Effect] = []
         for node, symbol in enumerate(symbols):
             if not alive[node]:
@@ -190,7 +190,7 @@ class _Merging:
 
 
 def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:
-    """For every letter class what it makes of each state: the next one, or the verdict."""
+    """Transformer of each letter class: the next state, or the verdict."""
     classes = range(len(machine.successors[0]))
     if final:
         return [tuple([SAFE if row[s] else LOST for row in machine.outputs]) for s in classes]

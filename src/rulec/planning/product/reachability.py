@@ -11,7 +11,7 @@ Step = tuple[int, int]
 
 
 def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
-    """For every layer and node: does a path from start to a goal lead through it?"""
+    """Trim a graph: mark nodes between start and some goal."""
     from_start = [{graph.start}]
     for successors in graph.successors:
         from_start.append({target for node in from_start[-1] for target in successors[node]})
@@ -30,7 +30,7 @@ def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
 def steps_in(
     graph: TraceGraph, on_the_way: Sequence[Sequence[bool]]
 ) -> tuple[tuple[tuple[Step, ...], ...], ...]:
-    """The followers of every node of every layer but the last, with their costs."""
+    """Successors within the trimmed graph, with their costs."""
     same: dict[object, tuple[tuple[Step, ...], ...]] = {}
     result = []
     for layer, (rows, costs) in enumerate(zip(graph.successors, graph.weights, strict=True)):

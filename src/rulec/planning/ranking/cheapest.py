@@ -14,7 +14,9 @@ from rulec.trace import TraceGraph
 
 @dataclass(frozen=True, slots=True)
 class Maneuver:
-    """A path through the graph: the node's index in each layer, cost (1/s), time margin (s).
+    """Path through a graph, with its cost and time margin.
+
+    ``nodes`` are indices, one a layer; ``cost`` is in 1/s, ``margin_s`` in s.
 
     ``margin_s`` is the smallest margin of its changes of cell; None if it never changes.
     """
@@ -25,7 +27,7 @@ class Maneuver:
 
 
 def cheapest(product: Product) -> Iterator[Maneuver]:
-    """The accepted paths in ascending order of cost; equal costs in ascending order of nodes.
+    """Accepted paths by ascending cost, ties by ascending nodes.
 
     Best-first search. The cost still to come is known exactly for every product node, so a path is
     only ever extended towards a goal, and each next maneuver costs one walk through the layers.
@@ -52,7 +54,7 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
 
 
 def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
-    """For each layer the product nodes that a goal can be reached from, and at what least cost."""
+    """Least cost from each product node to a goal, by layer."""
     costs = [dict.fromkeys(product.ends, 0)]
     for steps in reversed(product.steps):
         later = costs[-1]
@@ -66,7 +68,7 @@ def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
 
 
 def maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
-    """A path through the graph with its margin; ``cost`` is in the graph's unit."""
+    """Path with its margin; ``cost`` is in the graph's unit."""
     margins = [
         graph.margins[layer][node][graph.successors[layer][node].index(target)]
         for layer, (node, target) in enumerate(pairwise(path))

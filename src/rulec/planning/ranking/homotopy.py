@@ -1,4 +1,4 @@
-"""Homotopy classes: paths that visit the same places in the same order, however long they stay.
+"""Homotopy classes: paths through the same cell tracks in one order.
 
 Classes are words over places; a path spells its class as it changes from one to the next. As for
 any automaton, words are counted over the sets of product nodes that a word can lead to.
@@ -23,7 +23,7 @@ REJECTED = "rejected"
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """The cheapest way to a product node, given by the last step; how many there are in all."""
+    """Cheapest path to a product node, and the number of paths."""
 
     node: int
     before: _Way | None
@@ -37,7 +37,7 @@ _Ways = dict[int, _Way]
 
 @dataclass(frozen=True, slots=True)
 class HomotopyClasses:
-    """How many classes there are, by what their members have for a verdict."""
+    """Numbers of homotopy classes by their members' verdicts."""
 
     accepted: int
     rejected: int
@@ -56,7 +56,10 @@ class HomotopyClasses:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """A class with an accepted member: its places in order, how many are accepted, the cheapest."""
+    """Homotopy class with an accepted path, and its cheapest one.
+
+    ``places`` are its cell tracks in order, ``members`` its number of accepted paths.
+    """
 
     places: tuple[int, ...]
     members: int
@@ -84,7 +87,7 @@ def count_classes(effects: NodeTransformers, places: Places) -> HomotopyClasses:
 
 
 def variants(product: Product, places: Places) -> Iterator[Variant]:
-    """The classes with an accepted path, cheapest first; equal costs in the order of places.
+    """Classes with an accepted path, cheapest first, ties by tracks.
 
     Best-first search over words. The least cost of a word's members still to come is known exactly,
     so a word is only ever made longer if a class needs it.
@@ -121,7 +124,7 @@ def variants(product: Product, places: Places) -> Iterator[Variant]:
 def _both_verdicts(
     effects: NodeTransformers, places: Places
 ) -> tuple[PlaceProduct, frozenset[int]]:
-    """All paths, those that lose a rule included, and which of their ends are accepted."""
+    """All paths, violating ones included, and which ends are accepted."""
 
     def enter(row: Sequence[Effect], memory: Joint | str) -> Joint | str:
         after = None if isinstance(memory, str) else kept(row, memory)
@@ -150,7 +153,7 @@ def _costs_to_come(dwell: PlaceProduct) -> dict[int, int]:
 
 
 def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
-    """Go on to a product node: the cheapest way is remembered, all are counted."""
+    """Extend paths to a product node: keep the cheapest, count all."""
     best = _Way(target, way, way.cost + cost, way.members)
     if target in ways:
         known = ways[target]
@@ -160,7 +163,7 @@ def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
 
 
 def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
-    """Where one can be without leaving the place, and how one got there."""
+    """Close a set of product nodes under staying in their track."""
     ways = dict(entered)
     waiting = list(entered)
     heapify(waiting)

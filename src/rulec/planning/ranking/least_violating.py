@@ -27,12 +27,12 @@ Place = tuple[int, int, Joint]
 
 
 def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
-    """The penalties than which no path has a lower one, in the order of ``ranks``, lazily."""
+    """Pareto front of the paths' penalties, in order, lazily."""
     penalties: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
     def worth(place: Place, penalty: Penalty) -> bool:
-        """A penalty no higher than that of another way here stays so, whatever comes."""
+        """Test that no other path here has a lower penalty."""
         others = passed.setdefault(place, [])
         if any(ranks.at_most(numbers, penalty) for numbers in (*penalties, *others)):
             return False
@@ -45,7 +45,7 @@ def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
 
 
 def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
-    """Every penalty that some path has, each one behind all that are lower.
+    """Every penalty of some path, behind all that are lower.
 
     With each comes its place: 1 for those of the front, else 1 more than the last one of the
     places of lower penalties.
@@ -87,7 +87,7 @@ def with_penalty(effects: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
 def _ascending(
     effects: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
 ) -> Iterator[Penalty]:
-    """The penalties of paths in the order of ``ranks``; only what is ``worth`` it is extended.
+    """Penalties of paths in order; only those ``worth`` it are extended.
 
     Of partial paths with one penalty the longer ones come first, so goals are soon found.
 
@@ -128,7 +128,7 @@ def _ascending(
 def _fees(
     effects: NodeTransformers, ranks: PenaltyOrder
 ) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
-    """What the machines' states become at a node, and what is to be paid there, () for nothing."""
+    """Next states of the monitors at a node, and their penalties."""
     prices = [
         (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
         for instance in effects.instances

@@ -1,4 +1,4 @@
-"""How bad it is to violate rules: penalties by levels of priority, and which is worse.
+"""Penalties of violated rules, by levels of priority.
 
 The order of A. Censi et al., "Liability, Ethics, and Culture-Aware Behavior Specification using
 Rulebooks" (ICRA 2019), over the levels of a rulebook, with every hard rule above every soft one.
@@ -20,7 +20,10 @@ Penalty = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class PenaltyRank:
-    """Levels that are equal, for rules of one strength; the level "" is that of rules without."""
+    """Levels of equal priority for rules of one strength.
+
+    The level "" is that of rules without one.
+    """
 
     strength: Strength
     levels: tuple[str, ...]
@@ -28,7 +31,7 @@ class PenaltyRank:
 
 @dataclass(frozen=True, slots=True)
 class PenaltyOrder:
-    """The ranks that a rulebook's rules have, each one behind all that are above it.
+    """Ranks of a rulebook's rules, each behind all above it.
 
     ``above[i]`` are the indices of the ranks above ``ranks[i]``. Weights are counted in ``unit``,
     of which each is a whole multiple.
@@ -47,11 +50,11 @@ class PenaltyOrder:
         )
 
     def weight(self, rule: CompiledRule) -> int:
-        """What each violated binding of the rule adds to its rank."""
+        """Penalty that each violated binding of the rule adds."""
         return int(rule.weight / self.unit)
 
     def at_most(self, left: Penalty, right: Penalty) -> bool:
-        """Is left penalty as low as another, or lower?
+        """Test whether the left penalty is as low as the right one.
 
         It is if above every rank in which it is higher there is left in which it is lower. Adding
         the same to both changes nothing, adding to left makes it no lower.

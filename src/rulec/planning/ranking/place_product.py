@@ -1,4 +1,4 @@
-"""The product of graph and machines, seen as ways of staying in a place and of leaving it."""
+"""Product of graph and monitors, edges split by staying and leaving."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class PlaceProduct:
     leaves: tuple[tuple[tuple[int, int], ...], ...]
 
     def stayed(self, entered: Collection[int]) -> frozenset[int]:
-        """Where one can be without leaving the place: what is given and what follows."""
+        """Product nodes reachable without leaving the cell track."""
         reached, new = set(entered), list(entered)
         while new:
             for target, _ in self.stays[new.pop()]:

@@ -1,4 +1,4 @@
-"""Which rule rejects what: how many paths, how many that all other rules would let pass."""
+"""Numbers of paths that each rule rejects, also alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Blaming = tuple[Joint, int]
 
 
 def violating(effects: NodeTransformers) -> dict[str, Product]:
-    """For every rule that some path violates the product in which these are accepted."""
+    """Product of the paths that violate it, for each rule."""
     rules = _rules(effects)
     result = {}
     for number, rule in enumerate(dict.fromkeys(rules)):
@@ -28,7 +28,7 @@ def violating(effects: NodeTransformers) -> dict[str, Product]:
 
 
 def violating_alone(effects: NodeTransformers) -> dict[str, Product]:
-    """For every rule that is the only one that some path violates the product of these paths."""
+    """Product of the paths that violate it alone, for each rule."""
     rules = _rules(effects)
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
     product = _blaming(effects, [numbers[rule] for rule in rules])
@@ -41,7 +41,10 @@ def _rules(effects: NodeTransformers) -> list[str]:
 
 
 def _blaming(effects: NodeTransformers, of: Sequence[int]) -> Product:
-    """The paths that violate at most one rule; ``of`` says whose the instances are."""
+    """Product of paths that violate at most one rule.
+
+    ``of`` gives the rule of each instance.
+    """
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
         joint, blamed = memory

@@ -1,1 +1,1 @@
-"""Tables read with Arrow, which is installed on request: the only package that imports it."""
+"""Tables read with Arrow, an optional dependency."""

@@ -37,7 +37,7 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, Column]:
 
 
 def coded(array: Any) -> Coded:
-    """A column of what is to be told apart; empty texts are nothing."""
+    """Column of dictionary codes; empty texts are no value."""
     if types.is_null(array.type):
         return Coded(np.full(len(array), -1), ())
     encoded = array.dictionary_encode()

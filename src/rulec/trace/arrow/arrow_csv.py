@@ -1,4 +1,4 @@
-"""Large CSV files, read in blocks as long as they are plain: no quotes, nothing odd in a line."""
+"""Large plain CSV files, read in blocks."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
 
 
 def _is_plain(lines: bytes) -> bool:
-    """Is it sure that lines and cells end where the csv module has them end?"""
+    """Test that Arrow and the csv module would cut the lines alike."""
     return (
         not lines.startswith((b"\n", b"\r", b"\xef\xbb\xbf"))
         and not any(mark in lines for mark in _NEVER_PLAIN)

@@ -9,7 +9,10 @@ from rulec.trace.trace_messages import PARQUET_UNAVAILABLE
 
 
 def arrow(file: str) -> tuple[Any, Any]:
-    """The library, and its part for Parquet. Raises RulecError R0706 if it is not installed."""
+    """Import Arrow and its Parquet module.
+
+    Raises RulecError R0706 if it is not installed.
+    """
     try:
         import pyarrow
         from pyarrow import parquet

@@ -1,4 +1,4 @@
-"""Traces as Parquet: the same table as in CSV, its columns of one type each."""
+"""Traces as Parquet, in the columns of CSV."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ _AGAIN = "write or copy the file again"
 
 
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """The traces of a Parquet file; in place of a bad one the RulecError (R0509) that says why.
+    """Read the traces of a Parquet file.
+
+    In place of a bad one stands the RulecError (R0509) that says why.
 
     Raises:
         RulecError: R0706 if pyarrow is missing, or the stream is a pipe.
@@ -70,7 +72,7 @@ def _pieces(
 
 
 def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
-    """Why a file that begins and ends like this is no Parquet, if that is so."""
+    """Reason why a file is no Parquet, by its first and last bytes."""
     start = stream.tell()
     beginning = stream.read(len(_MARK))
     size = stream.seek(0, io.SEEK_END) - start
@@ -125,7 +127,7 @@ def write_parquet(
     stream: IO[bytes],
     file: str,
 ) -> None:
-    """Write a table; ``types`` are its columns' names, each with the type of its cells.
+    """Write a table; ``types`` gives each column's type by name.
 
     Each is ``bool``, ``int``, ``float`` or ``str``. Raises RulecError R0706 without pyarrow.
     """

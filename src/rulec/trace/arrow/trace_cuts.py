@@ -26,7 +26,7 @@ def cut(
     first: int,
     file: SourceLocation,
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """The traces of a table: blocks, or lists where rows have to be looked at.
+    """Cut a table into traces: blocks, or lists of rows.
 
     ``pieces`` may end with rows, which are then read one by one, or with an error, which takes the
     place of the trace that may have gone on there. ``first`` is the first row's number. A table
@@ -55,7 +55,7 @@ def cut(
 
 
 def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | None:
-    """Where the last trace of a piece begins; None if it may have begun in those that wait."""
+    """Start of the last trace of a piece; None if earlier."""
     at = table.at[TRACE]
     start = int(trace_starts(coded(piece.column(at)))[-1])
     if start:

@@ -1,4 +1,4 @@
-"""Who is in the traces of a block, and when: the columns that are no names of a vocabulary."""
+"""Objects of a block's traces, and when they are there."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NOBODY = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockPresence:
-    """What rows are about, and the objects of each trace.
+    """Objects of each trace, and the object of each row.
 
     Each row has its ``trace``, its ``step``, and the objects that it is about: ``item`` and
     ``other`` are places among its trace's objects, in the order of their first rows, or NOBODY.
@@ -45,14 +45,17 @@ class BlockPresence:
         return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
 
     def shape_of(self, trace: int) -> tuple[object, ...]:
-        """What traces have in common that differ in their length and their objects' names."""
+        """Shape that traces share whatever their lengths and objects' names."""
         there = slice(self.starts[trace], self.starts[trace + 1])
         types = tuple(self.types[there])
         return float(self.step_s[trace]), types, self.stretches[there].tobytes()
 
 
 def outlined(block: Block) -> BlockPresence:
-    """The outline of a block. Raises OddTableError where rows have to be looked at."""
+    """Objects and presence of a block.
+
+    Raises OddTableError where rows have to be looked at.
+    """
     starts, n_rows = block.starts, int(block.starts[-1])
     names = _names(block.columns[TRACE])
     trace = np.repeat(np.arange(len(block)), np.diff(starts))
@@ -133,7 +136,7 @@ def _others(
     known: tuple[NDArray[np.int64], NDArray[np.int64]],
     starts: NDArray[np.int64],
 ) -> Rows:
-    """The places of second objects, which have rows of their own in the same trace."""
+    """Indices of second objects, which have rows of their own."""
     result = np.full(len(trace), NOBODY)
     rows = np.flatnonzero(others.given)
     if not len(rows):

@@ -11,7 +11,7 @@ _MOST_STATES = 1 << 16
 
 
 def in_chunks(traces: Iterable[Trace | RulecError]) -> Iterator[list[Trace | RulecError]]:
-    """The same traces, in lists of some thousand states together."""
+    """Group traces into lists of some thousand states."""
     chunk: list[Trace | RulecError] = []
     n_states = 0
     for trace in traces:

@@ -1,4 +1,4 @@
-"""Traces as CSV: rows of cells separated by commas, the columns' names first."""
+"""Traces as CSV: columns' names first, then rows of cells."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ _BOOLEANS = {"true": True, "false": False}
 
 
 def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """The traces of a CSV file; in place of a bad one the RulecError (R0509) that says why.
+    """Read the traces of a CSV file.
+
+    In place of a bad one stands the RulecError (R0509) that says why.
 
     A large file is read in blocks, if Arrow is installed.
     """
@@ -47,7 +49,7 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
 
 
 def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
-    """Why a file that begins like this is no table at all, if that is so."""
+    """Reason why a file is no table, by its first bytes."""
     if stream.seekable():
         beginning = stream.read(_LONGEST_HEAD_BYTES)
         stream.seek(-len(beginning), io.SEEK_CUR)
@@ -62,7 +64,7 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
 
 
 def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
-    """The columns of a large file, which then stands behind its first line.
+    """Columns of a large file, left behind its first line.
 
     None if it is not large, or its first line is not plain; then nothing has been read.
     """
@@ -111,7 +113,10 @@ def _table(columns: Sequence[str], file: str) -> Table:
 
 
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
-    """The rows from line ``number`` on, the columns' names among them. Raises RulecError R0509."""
+    """Rows from line ``number`` on, the header included.
+
+    Raises RulecError R0509.
+    """
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
     lines = csv.reader(_without_null(text), strict=True)
     before = number - 1
@@ -148,7 +153,10 @@ def _without_null(text: Iterable[str]) -> Iterator[str]:
 
 
 def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:
-    """Which byte of which line; of a pipe, which cannot be read again, behind which place."""
+    """Location of the first byte that is no UTF-8.
+
+    Of a pipe, which cannot be read again, the place behind which it is.
+    """
     byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
         stream.seek(0)

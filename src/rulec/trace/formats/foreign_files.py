@@ -1,4 +1,4 @@
-"""Files that are no traces at all: what they are instead, told by how they begin."""
+"""Files that are no traces, recognised by their first bytes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Foreign(NamedTuple):
-    """What a file is, and the way out."""
+    """Kind of a foreign file, and the way out."""
 
     noun: str
     help: str
@@ -25,12 +25,12 @@ _TEXT = frozenset(b"\t\n\r\f")
 
 
 def packed(beginning: bytes) -> Foreign | None:
-    """What a file with this beginning is, if it is not plain but a well-known container."""
+    """Kind of container that a file with this beginning is."""
     return next((kind for mark, kind in _BEGINNINGS.items() if beginning.startswith(mark)), None)
 
 
 def foreign(beginning: bytes) -> Foreign | None:
-    """What a file with this beginning is, if it is not text in UTF-8.
+    """Kind of file that this beginning is, if no UTF-8 text.
 
     The beginning is some bytes, or the first line.
     """
@@ -46,6 +46,6 @@ def foreign(beginning: bytes) -> Foreign | None:
 
 
 def _is_utf16(some: bytes) -> bool:
-    """Is every other byte 0, or nearly so? Without its mark nothing else tells."""
+    """Test whether nearly every other byte is 0."""
     zeros = sorted((some[::2].count(0), some[1::2].count(0)))
     return len(some) > 3 and zeros[0] == 0 and zeros[1] * 2 > 0.9 * len(some)

@@ -1,4 +1,4 @@
-"""Why a line of JSON is refused: where, in which words, and what helps."""
+"""Diagnostics for a line of JSON that is refused."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ONE_LINE = "write it without line breaks, as `jq -c . FILE` does"
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What lines are to be: ``"trace"``, its fields, and what such a line looks like."""
+    """Expected content of lines: ``"trace"``, its fields, an example."""
 
     name: str
     fields: tuple[str, ...]
@@ -33,7 +33,7 @@ class Kind:
 
     @property
     def no_list(self) -> str:
-        """What helps who has a list of them."""
+        """Help for a file that is one JSON list."""
         return f"{self.example}; `jq -c '.[]' FILE` takes a list apart"
 
     def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
@@ -41,7 +41,7 @@ class Kind:
         return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
     def refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
-        """Why msgspec refuses a line."""
+        """Diagnostic for a line that msgspec refuses."""
         what = f"this is not a {self.name}"
         if isinstance(problem, RecursionError):
             return self.bad(f"{what}: it is nested too deep", place)
@@ -75,7 +75,7 @@ def _spelling(text: bytes) -> str:
 
 
 def is_beginning(line: bytes) -> bool:
-    """Is nothing wrong with a line but that it ends too early?"""
+    """Test whether a line is correct but ends too early."""
     # In the middle of a number, such as `0.`, it takes a digit to say so.
     return _is_truncated(line) or _is_truncated(line + b"0")
 
@@ -89,7 +89,10 @@ def _is_truncated(line: bytes) -> bool:
 
 
 def middle_of(line: bytes) -> str:
-    """In the middle of what the beginning of a trace ends, such as ``state 6 of trace `t1` ``."""
+    """Place at which a trace is cut off, in words.
+
+    Such as ``state 6 of trace `t1` ``.
+    """
     open_: list[int | bytes | None] = []
     """For every list that has begun the place in it, for every object the key, if it has one."""
     called = b""

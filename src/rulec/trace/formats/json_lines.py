@@ -1,4 +1,4 @@
-"""Traces as JSON Lines: one trace a line, read and written one at a time. See docs/traces.md."""
+"""Traces as JSON Lines, one trace a line; see docs/traces.md."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Record(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class _Outline(msgspec.Struct, forbid_unknown_fields=True):
-    """The same, its states not yet read."""
+    """Trace whose states are not decoded yet."""
 
     states: list[msgspec.Raw]
     id: str | int = ""
@@ -48,13 +48,18 @@ _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
 def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
-    """The traces of a stream, one per line, blank lines skipped. See ``read_chunks``."""
+    """Read the traces of a stream, one a line.
+
+    Blank lines are skipped. See ``read_chunks``.
+    """
     for chunk in read_chunks(stream, file):
         yield from chunk
 
 
 def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
-    """The same, as many at a time as a block of the stream holds; of a pipe, as have arrived.
+    """Read traces in chunks, a block of the stream at a time.
+
+    Of a pipe, as many as have arrived.
 
     States that are written alike are the same object, as far as there is room to remember them.
 
@@ -104,14 +109,14 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
 
 @dataclass(slots=True)
 class _Torn:
-    """A line that is the beginning of a trace. Does what follows look as if it went on there?"""
+    """Line with the beginning of a trace that may go on below."""
 
     line: bytes
     place: SourceLocation
     goes_on: bool = False
 
     def error(self, *, at_the_end: bool) -> RulecError:
-        """What is wrong with it, which only shows in what follows."""
+        """Diagnostic, which depends on the lines that follow."""
         what = f"the line ends in the middle of {middle_of(self.line)}"
         place = placed(self.place, self.line, len(self.line) - 1)
         if self.goes_on:
@@ -123,7 +128,7 @@ class _Torn:
 
 
 def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
-    """Why a file with this first line has no traces in it at all, if that is so."""
+    """Reason why a file has no traces, by its first line."""
     result = foreign(first)
     if result is not None:
         return _TRACE.bad(
@@ -161,7 +166,7 @@ def _made(record: _Outline | _Record, states: tuple[State, ...], place: SourceLo
 
 
 class _StateReader(dict[bytes, State]):
-    """Reads each state once, however often it is met, as long as that happens."""
+    """Decoder of states that decodes equal ones once while that pays."""
 
     _MOST = 1 << 16
     _LONGEST = 1 << 12

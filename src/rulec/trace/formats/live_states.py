@@ -1,4 +1,4 @@
-"""The states of a running trace as JSON Lines, as they come. See docs/online.md."""
+"""States of a running trace as JSON Lines; see docs/online.md."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGEST_LINE_BYTES = 256 << 20
 
 @dataclass(frozen=True, slots=True)
 class LiveState:
-    """A state, the objects that are there in it with their types, and where it was read."""
+    """State with its objects, their types, and its source location."""
 
     state: State
     objects: dict[str, str]
@@ -41,7 +41,9 @@ _DECODER = msgspec.json.Decoder(_Record)
 
 
 def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
-    """The states of a stream, one per line, blank lines skipped; each as soon as its line is there.
+    """Read the states of a stream as their lines arrive.
+
+    Blank lines are skipped.
 
     Args:
         stream: the open file.

@@ -1,4 +1,4 @@
-"""Lines of a stream, as many at a time as have arrived, and places in them."""
+"""Lines of a stream as they arrive, with their locations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole traces of a table, column by column, for those who need not look at every row."""
+"""Blocks of a table: whole traces as columns."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.trace.trace_model import Trace
 
 
 class OddTableError(Exception):
-    """Something about a table that only reading it row by row can make sense of, or refuse."""
+    """Table that has to be read row by row, or refused."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +37,7 @@ class Coded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """A column of numbers (``float64``), of any value where a cell is not ``given``."""
+    """Column of ``float64``; cells that are not ``given`` are arbitrary."""
 
     numbers: NDArray[np.float64]
     given: NDArray[np.bool_]
@@ -79,7 +79,7 @@ class Block(Sequence["Trace | RulecError"]):
         return self._read(0, int(self.starts[-1]))
 
     def step_s(self, place: int) -> float:
-        """How far apart the states of a trace are, if nothing about it is odd."""
+        """Step of a trace (s), if nothing about it is odd."""
         column, row = self.columns.get(STEP_S), self.starts[place]
         if column is None or not column.given[row]:
             return 1.0

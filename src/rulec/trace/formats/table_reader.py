@@ -1,4 +1,7 @@
-"""Traces as rows of a table: one for each state, and for each object in it. See docs/traces.md."""
+"""Traces as rows of a table, one a state and object.
+
+See docs/traces.md.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ _MOST_REMEMBERED = 1 << 16
 
 @dataclass(frozen=True)
 class Table:
-    """What the cells of a table's rows are.
+    """Meaning of the cells of a table's rows.
 
     ``columns`` are the names of all columns. ``value`` makes a value of a cell that is not empty,
     ``place`` tells where a row is by its number. ``has_texts``: all cells are texts.
@@ -40,7 +43,7 @@ class Table:
 
     @cached_property
     def at(self) -> dict[str, int]:
-        """Where each column is."""
+        """Index of each column by its name."""
         return {name: place for place, name in enumerate(self.columns)}
 
     @cached_property
@@ -55,7 +58,7 @@ class Table:
 
 
 def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
-    """The columns have names, each its own, and say which trace and which step a row is of.
+    """Check that columns are named, distinct, with trace and step.
 
     Raises RulecError R0509.
     """
@@ -81,7 +84,9 @@ def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecEr
 def traces_in(
     rows: Iterable[Row], table: Table, file: SourceLocation
 ) -> Iterator[Trace | RulecError]:
-    """The traces of a table; in place of one whose rows are wrong, the first RulecError (R0509).
+    """Read the traces of a table.
+
+    In place of one whose rows are wrong stands the first RulecError (R0509).
 
     If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
     without any trace gives one RulecError, about the ``file``.
@@ -257,12 +262,12 @@ class _Building:
 
 
 def is_empty(cell: Any) -> bool:
-    """Does a cell say nothing?"""
+    """Test whether a cell has no value."""
     return cell is None or cell == ""
 
 
 def whole(cell: Any) -> int | None:
-    """The number of a step, as a number or as its digits; None if it is none."""
+    """Number of a step; None if the cell holds none."""
     if isinstance(cell, str):
         return int(cell) if cell.isascii() and cell.isdigit() and len(cell) < 19 else None
     return cell if isinstance(cell, int) and not isinstance(cell, bool) else None

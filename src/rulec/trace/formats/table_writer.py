@@ -13,7 +13,7 @@ Kinds = Mapping[str, type]
 
 
 def kinds_in(states: Iterable[State]) -> dict[str, type]:
-    """The kinds of all names that some states speak of, in the order in which they first do."""
+    """Kinds of all names that states speak of, in order."""
     kinds: dict[str, type] = {}
     for state in states:
         for name, value in state.items():
@@ -31,7 +31,10 @@ def _leaves(value: Any) -> Iterator[Value]:
 
 
 def columns_for(kinds: Kinds) -> list[str]:
-    """The columns of a table for these names. ValueError if one has the name of another column."""
+    """Columns of a table for these names.
+
+    ValueError if two columns have one name.
+    """
     taken = [name for name in kinds if name in OWN]
     if taken:
         raise ValueError(f"`{taken[0]}` is a column of its own and cannot be a name")
@@ -39,7 +42,7 @@ def columns_for(kinds: Kinds) -> list[str]:
 
 
 def rows_of(trace: Trace, names: Sequence[str]) -> Iterator[list[Any]]:
-    """The rows of a trace: for each state one, one for each object that is there, then the pairs.
+    """Rows of a trace: of states, of their objects, of pairs.
 
     What is said of objects that are not there is left out; no rule reads it.
     """
@@ -63,7 +66,7 @@ def _is_there(item: str, step: int, trace: Trace) -> bool:
 
 
 def _about(state: State, name: str, items: Sequence[str]) -> Value | None:
-    """What a state says of a name about just these objects."""
+    """Value of a name for just these objects in a state."""
     value: Any = state.get(name)
     for item in items:
         value = value.get(item) if isinstance(value, Mapping) else None

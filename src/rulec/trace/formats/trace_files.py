@@ -1,4 +1,4 @@
-"""The formats of files of traces: which one a file has, reading and writing."""
+"""Files of traces: formats, reading and writing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FORMATS: tuple[Format, ...] = get_args(Format)
 
 
 def format_of(file: str) -> Format:
-    """The format that the end of a file's name says; JSON Lines if it says none."""
+    """Format by the ending of a file's name, else JSON Lines."""
     match PurePath(file).suffix.lower():
         case ".csv":
             return "csv"
@@ -28,7 +28,9 @@ def format_of(file: str) -> Format:
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """The traces of a file one by one; in place of a bad one, what is wrong with it.
+    """Read the traces of a file one by one.
+
+    In place of a bad one stands the RulecError that says why.
 
     The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
     """
@@ -40,7 +42,9 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
 def read_chunks(
     stream: IO[bytes], file: str, form: Format
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """The traces of a stream, some at a time; in place of a bad one what is wrong with it.
+    """Read the traces of a stream in chunks.
+
+    In place of a bad one stands the RulecError that says why.
 
     Of a table they may be a ``Block``.
 
