@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 
+from rulec.partition.cell_graph import CellGraph
 from rulec.partition.cells.cell_model import Cell
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF
-from rulec.partition.navigation_graph import NavigationGraph
 from rulec.partition.time_margin import Margins
 from rulec.scenario import Obstacle
 from rulec.trace.trace_model import State, TraceGraph, Value
@@ -19,7 +19,7 @@ Said = Value | Mapping[str, Value]
 PAPER_SURFACE = {"carriageway": "R_cw", "crossing": "R_pc"}
 
 
-def trace_graph(graph: NavigationGraph) -> TraceGraph:
+def trace_graph(graph: CellGraph) -> TraceGraph:
     """The graph's cells as states.
 
     With the partition ``paper``: ``position`` (object -> b, f, l, r) and ``surface`` (R_cw, R_pc).
@@ -47,7 +47,7 @@ def trace_graph(graph: NavigationGraph) -> TraceGraph:
     )
 
 
-def _states(graph: NavigationGraph, layer: int) -> tuple[State, ...]:
+def _states(graph: CellGraph, layer: int) -> tuple[State, ...]:
     here = graph.layers[layer]
     signals = signals_of(graph, {name: graph.objects[name] for name in here.objects})
     return tuple({**relations(cell, here.objects, cell.code), **signals} for cell in here.cells)
@@ -70,7 +70,7 @@ def relations(cell: Cell, names: Sequence[str], code: bytes) -> dict[str, Said]:
     }
 
 
-def signals_of(graph: NavigationGraph, objects: Mapping[str, Obstacle]) -> dict[str, Said]:
+def signals_of(graph: CellGraph, objects: Mapping[str, Obstacle]) -> dict[str, Said]:
     """Signals of a scenario and of some objects, constant over time."""
     signals: dict[str, dict[str, Value]] = {}
     for name, obstacle in objects.items():

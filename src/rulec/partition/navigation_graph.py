@@ -6,25 +6,24 @@ one open, ours is in ``docs/scenarios.md``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict, get_args
 
 from rulec.diagnostics import did_you_mean, named
+from rulec.partition.cell_graph import CellGraph
+from rulec.partition.cell_valuations import trace_graph
 from rulec.partition.cells.adjacency import AdjacencyName, neighbours
 from rulec.partition.cells.cell_model import Layer
 from rulec.partition.cells.cell_plane import plane
 from rulec.partition.cells.continuation import continuations
 from rulec.partition.cells.occupancy import scene
-from rulec.partition.cells.predicted_occupancy import Predicted
 from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.cells.snapping import snapped
+from rulec.partition.networkx_graph import to_networkx
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
-from rulec.partition.time_margin import Edges, Margins, edges
-from rulec.scenario import Obstacle, Scenario
+from rulec.partition.time_margin import edges
+from rulec.scenario import Scenario
 from rulec.scenario.time_grid import Timing, timing
 
 if TYPE_CHECKING:
@@ -33,56 +32,16 @@ if TYPE_CHECKING:
     from rulec.trace.trace_model import TraceGraph
 
 
-@dataclass(frozen=True)
-class NavigationGraph:
-    """Layered directed graph whose paths from start to goals are maneuvers.
-
-    ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
-    order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
-    that are on the road at some time, ``alternatives`` as less likely predictions have them, and
-    ``present`` the first and last layer of each.
-    """
-
-    scenario: Scenario
-    partition: PartitionName
-    adjacency: AdjacencyName
-    extent: ExtentName
-    step: Fraction
-    objects: Mapping[str, Obstacle]
-    alternatives: Mapping[str, Predicted]
-    present: Mapping[str, tuple[int, int]]
-    layers: tuple[Layer, ...]
-    successors: tuple[Edges, ...]
-    margins: tuple[Margins, ...]
-    start: int
-    goals: tuple[int, ...]
-
-    @property
-    def step_s(self) -> float:
-        """The planning interval in seconds."""
-        return float(self.step)
-
-    @property
-    def nodes(self) -> int:
-        """Number of cells of all layers."""
-        return sum(len(layer.cells) for layer in self.layers)
-
-    @property
-    def edges(self) -> int:
-        """Number of edges, staying included."""
-        return sum(len(followers) for layer in self.successors for followers in layer)
+class NavigationGraph(CellGraph):
+    """Cell graph with its two other forms: a trace graph, and one for networkx."""
 
     def trace_graph(self) -> TraceGraph:
         """The graph as valuations and whole-number costs, without geometry."""
-        from rulec.partition.cell_valuations import trace_graph
-
         return trace_graph(self)
 
     def to_networkx(self) -> networkx.DiGraph:
         """The graph for networkx; see ``rulec.partition.networkx_graph.to_networkx``."""
-        from rulec.partition.networkx_graph import to_networkx
-
-        return to_networkx(self)
+        return to_networkx(self, self.trace_graph())
 
 
 class GraphOptions(TypedDict, total=False):

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rulec.partition.navigation_graph import NavigationGraph
+from rulec.partition.cell_graph import CellGraph
+from rulec.trace.trace_model import TraceGraph
 
 if TYPE_CHECKING:
     import networkx
 
 
-def to_networkx(graph: NavigationGraph) -> networkx.DiGraph:
+def to_networkx(graph: CellGraph, traces: TraceGraph) -> networkx.DiGraph:
     """The graph with nodes ``(layer, cell index)``.
 
     Nodes have ``cell``, ``state`` (the valuation), ``polygon`` (shapely, in metres of s and d),
     ``start`` and ``goal`` (bool); edges ``margin_s`` (seconds; None for staying), ``weight`` (int,
     in ``cost_unit``) and ``cost`` (1/s); the graph ``step_s`` and ``cost_unit`` (Fraction, 1/s).
     """
-    import networkx
+    import networkx  # it takes 0.1 s to load, and few need it
 
-    traces = graph.trace_graph()
     result = networkx.DiGraph(step_s=graph.step_s, cost_unit=traces.cost_unit)
     last = len(graph.layers) - 1
     for p, layer in enumerate(graph.layers):

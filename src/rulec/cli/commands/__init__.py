@@ -1,1 +1,1 @@
-"""TODO cli/commands."""
+"""The verbs of the command line, one file each."""

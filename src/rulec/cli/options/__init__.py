@@ -1,1 +1,1 @@
-"""TODO cli/options."""
+"""Arguments that several verbs share."""

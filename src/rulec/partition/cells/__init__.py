@@ -1,1 +1,1 @@
-"""TODO partition/cells."""
+"""Cells of one layer of the road."""

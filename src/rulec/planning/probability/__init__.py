@@ -1,1 +1,1 @@
-"""TODO planning/probability."""
+"""Probabilities that maneuvers keep rules."""

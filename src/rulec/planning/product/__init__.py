@@ -1,1 +1,1 @@
-"""TODO planning/product."""
+"""Product of trace graphs and monitors."""

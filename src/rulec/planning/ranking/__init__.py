@@ -1,1 +1,1 @@
-"""TODO planning/ranking."""
+"""Order among maneuvers: cost, penalties, homotopy classes."""

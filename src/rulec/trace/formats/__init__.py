@@ -1,1 +1,1 @@
-"""TODO trace/formats."""
+"""Files of traces: JSON Lines, CSV, Parquet."""
