@@ -70,7 +70,7 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
 
 
 def answer(book):
-    return _answer(compiler._job(book, book.rules[0], None, cpu_limit_s=5))
+    return _answer(compiler._job(book, compiler.lower(book).rules[0], cpu_limit_s=5))
 
 
 def compiled(book):

@@ -7,7 +7,7 @@ import pytest
 
 from rulec.api.workflow import compile_rulebook, find_maneuvers, machines
 from rulec.automata import step_compilation
-from rulec.automata.step_compilation import AnyStep
+from rulec.automata.step_compilation import StepCompiler
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
@@ -107,17 +107,17 @@ def compiled(monkeypatch):
     """What is compiled, as lists of names, call by call."""
     calls = []
 
-    def told(rulebook, *, step_s=None):
-        calls.append(([one.name for one in rulebook.rules], step_s))
-        return compile_rulebook_itself(rulebook, step_s=step_s)
+    def recorded(rulebook, formulas):
+        calls.append(([one.rule.name for one in formulas.rules], formulas.step_s))
+        return build_all(rulebook, formulas)
 
-    compile_rulebook_itself = step_compilation.compile_rulebook
-    monkeypatch.setattr(step_compilation, "compile_rulebook", told)
+    build_all = step_compilation.build_all
+    monkeypatch.setattr(step_compilation, "build_all", recorded)
     return calls
 
 
 def test_only_what_is_needed_is_compiled(compiled):
-    every = AnyStep(BOOK)
+    every = StepCompiler(BOOK)
     for step in (HALF, ONE, HALF, ONE):
         rules = every(step).rules
         assert [one.name for one in rules] == ["answered", "plain"]
@@ -126,7 +126,7 @@ def test_only_what_is_needed_is_compiled(compiled):
 
 
 def test_a_step_that_does_not_fit_is_found_out_once(compiled):
-    every = AnyStep(BOOK)
+    every = StepCompiler(BOOK)
     for _ in range(3):
         with pytest.raises(RulecError):
             every(Fraction(3, 10))
@@ -135,7 +135,7 @@ def test_a_step_that_does_not_fit_is_found_out_once(compiled):
 
 
 def test_each_rule_at_the_step_of_its_own_examples(compiled):
-    every = AnyStep(book(replace(ANSWERED, step_s=HALF), ANSWERED_TOO))
+    every = StepCompiler(book(replace(ANSWERED, step_s=HALF), ANSWERED_TOO))
     assert [one.step_s for one in every.at_own_steps().rules] == [HALF, ONE]
     assert [one.step_s for one in every(HALF).rules] == [HALF, HALF]
     assert [names for names, _ in compiled] == [["answered", "too"], ["too"]]
@@ -146,14 +146,41 @@ ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
 
 def test_not_every_step_is_kept_for_ever(compiled, monkeypatch):
     monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
-    every = AnyStep(book(ANSWERED))
+    every = StepCompiler(book(ANSWERED))
     for step in (1, HALF, Fraction(1, 4), 1):
         assert every(Fraction(step)).rules[0].step_s == step
     assert len(compiled) == 4
 
 
+def test_a_rule_without_examples_fits_any_step_that_its_bounds_fit():
+    """Its bound of half a second is no multiple of the 1 s that examples would have."""
+    quick = book(rule("quick", always(implies(P, within(Fraction(1, 2), Q)))))
+    with pytest.raises(RulecError, match="R0407"):
+        compile_rulebook(quick)
+    every = machines(quick)
+    assert violated(verify(trace("p..q", 0.25), every)) == ["quick"]
+    assert violated(verify(trace("p.q", 0.25), every)) == []
+
+
+def test_a_rulebook_compiled_for_no_step_fits_itself_to_that_of_each_trace():
+    rules = compile_rulebook(BOOK)
+    assert violated(verify(trace("p.q", 0.5), rules)) == []
+    assert violated(verify(trace("p.q", 1), rules)) == ["answered"]
+    assert rules.at_step(0.5) is rules.at_step(HALF)
+    assert rules.at_step(1) is rules
+    assert rules.source is BOOK
+    with pytest.raises(RulecError, match="R0407"):
+        rules.at_step(0.3)
+
+
+def test_some_of_the_rules_stay_some_at_another_step():
+    rules = compile_rulebook(BOOK)
+    some = replace(rules, rules=rules.rules[:1])
+    assert [one.name for one in some.at_step(HALF).rules] == ["answered"]
+
+
 def test_an_empty_rulebook():
-    assert AnyStep(book())(ONE).rules == ()
+    assert StepCompiler(book())(ONE).rules == ()
     assert machines(book()).rules == ()
 
 

@@ -21,7 +21,7 @@ if not FILES:
     pytest.skip(
         "CommonRoad's scenarios are not here: set RULEC_RECORDINGS", allow_module_level=True
     )
-GERMAN = machines("de")(Fraction(1, 10))
+GERMAN = machines("de").at_step(Fraction(1, 10))
 PAPER = machines("esterle2019")
 ALMOST_ALL = 0.95
 

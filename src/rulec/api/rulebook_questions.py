@@ -11,7 +11,7 @@ from rulec.analysis.audit.rulebook_audit import Audit, audit
 from rulec.analysis.diff.rulebook_comparison import RulebookDiff, diff_rulebooks, setting_pairs
 from rulec.analysis.lineage.book_lineage import read_with_lineage
 from rulec.analysis.lint.rulebook_findings import rulebook_findings
-from rulec.automata.step_compilation import AnyStep
+from rulec.automata.step_compilation import StepCompiler
 from rulec.book_tests.example_runs import ExampleRun, run_rulebook_examples
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.loader import read_rulebook
@@ -29,7 +29,7 @@ def run_examples(
     wild. ``at``: as for ``load_rulebook``. Raises RulecError.
     """
     loaded = read_rulebook(reference, search_path, at)
-    compiled = AnyStep(loaded.rulebook).at_own_steps()
+    compiled = StepCompiler(loaded.rulebook).at_own_steps()
     return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, pattern)
 
 

@@ -20,7 +20,6 @@ from rulec.diagnostics import Diagnostic
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from rulec.automata.step_compilation import AnyStep
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.partition import GraphOptions, NavigationGraph
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from rulec.scenario import Scenario
     from rulec.scenario.recorded.recording import Recording
 
-    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook | AnyStep
+    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
     """A name, a path of a source or of a compiled file (.json), or what these lead to."""
 
 
@@ -39,7 +38,7 @@ def machines(
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     at: str = "",
-) -> CompiledRulebook | AnyStep:
+) -> CompiledRulebook:
     """Rules as automata; if the step of traces makes a difference, for those of any step.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
@@ -48,23 +47,18 @@ def machines(
     """
     if isinstance(rules, CompiledRulebook):
         return rules
-    if isinstance(rules, str | Path) and Path(rules).suffix == ".json":
-        from rulec.automata.bundle.bundle_file import read_compiled
+    if isinstance(rules, str | Path):
+        if Path(rules).suffix == ".json":
+            from rulec.automata.bundle.bundle_file import read_compiled
 
-        return read_compiled(Path(rules))
-    from rulec.automata.step_compilation import AnyStep
+            return read_compiled(Path(rules))
+        from rulec.pipeline import compile_source
 
-    if isinstance(rules, AnyStep):
-        return rules
-    if not isinstance(rules, str | Path):
-        return AnyStep(rules).simplest()
-    from rulec.book_tests.example_runs import example_warnings
-    from rulec.rulebook.loader import read_rulebook
+        return compile_source(rules, search_path, at, any_step=True, on_warning=warn)
+    from rulec.automata.compiler import lower
+    from rulec.automata.step_compilation import StepCompiler, build_automata
 
-    loaded = read_rulebook(rules, search_path, at)
-    compiled = AnyStep(loaded.rulebook)
-    warn([*loaded.warnings, *example_warnings(loaded.rulebook, compiled.at_own_steps)])
-    return compiled.simplest()
+    return build_automata(lower(rules, any_step=True), StepCompiler(rules))
 
 
 def compile_rulebook(
@@ -81,15 +75,21 @@ def compile_rulebook(
     is no multiple of the step, R0507 if the rules have been compiled for another one.
     """
     from rulec.automata.thresholds import exact
-    from rulec.monitoring.verify import check_step
 
-    found = machines(reference, search_path, warn, at)
-    if not isinstance(found, CompiledRulebook):
-        return found.at_own_steps() if step_s is None else found(exact(step_s))
-    if step_s is not None:
-        for rule in found.rules:
-            check_step(rule, exact(step_s))
-    return found
+    step = None if step_s is None else exact(step_s)
+    if isinstance(reference, CompiledRulebook) or (
+        isinstance(reference, str | Path) and Path(reference).suffix == ".json"
+    ):
+        compiled = machines(reference)
+        return compiled if step is None else compiled.at_step(step)
+    if isinstance(reference, str | Path):
+        from rulec.pipeline import compile_source
+
+        return compile_source(reference, search_path, at, step, on_warning=warn)
+    from rulec.automata.compiler import lower
+    from rulec.automata.step_compilation import StepCompiler, build_automata
+
+    return build_automata(lower(reference, step), StepCompiler(reference))
 
 
 def navigation_graph(
@@ -119,12 +119,8 @@ def find_maneuvers(
     from rulec.planning import evaluate, partition_for
 
     rules = machines(rulebook)
-    source = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
-    options["partition"] = partition_for(source, options.get("partition"))
-    graph = navigation_graph(scenario, **options)
-    return evaluate(
-        graph, rules if isinstance(rules, CompiledRulebook) else rules(graph.step), after
-    )
+    options["partition"] = partition_for(rules, options.get("partition"))
+    return evaluate(navigation_graph(scenario, **options), rules, after)
 
 
 def verify_recording(

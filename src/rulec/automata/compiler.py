@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.automata.alphabet import propositions_of, reads_of
@@ -20,7 +21,8 @@ from rulec.automata.compiler_messages import no_machine, no_spot
 from rulec.automata.spot_worker import Done, Failed, Job, Ready
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.bounds import NotAMultipleError, in_steps, speaks_of_seconds
+from rulec.logic.bounds import NotAMultipleError, fitting_step, in_steps, speaks_of_seconds
+from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.step_messages import no_multiple
 from rulec.rulebook.model import Rule, Rulebook
@@ -37,34 +39,81 @@ main()
 """
 
 
+@dataclass(frozen=True, slots=True)
+class RuleFormula:
+    """A rule's formula over steps; ``step_s`` is the step, None if it is the same for any."""
+
+    rule: Rule
+    formula: Formula
+    step_s: Fraction | None
+
+
+@dataclass(frozen=True, slots=True)
+class RulebookFormulas:
+    """The formulas of a rulebook's rules for traces of one step, and why others have none.
+
+    ``step_s`` is None if each rule's step is that of its own examples.
+    """
+
+    rules: tuple[RuleFormula, ...]
+    step_s: Fraction | None = None
+    problems: tuple[Diagnostic, ...] = ()
+
+
+def lower(
+    rulebook: Rulebook, step_s: Fraction | None = None, *, any_step: bool = False
+) -> RulebookFormulas:
+    """Translate every rule's bounds in seconds into steps.
+
+    ``step_s`` are the seconds between two states of the traces to be judged; None for the step of
+    each rule's own examples, and with ``any_step``, where there are none, for a step that fits. A
+    problem (R0407) is a bound that is not a multiple of the step.
+    """
+    formulas: list[RuleFormula] = []
+    problems: list[Diagnostic] = []
+    for rule in rulebook.rules:
+        step = _step(rule, step_s)
+        if any_step and step is not None and not rule.examples:
+            step = fitting_step(rule.formula, step)
+        try:
+            formula = rule.formula if step is None else in_steps(rule.formula, step)
+            formulas.append(RuleFormula(rule, formula, step))
+        except NotAMultipleError as error:
+            problems.append(no_multiple(rule, error))
+    return RulebookFormulas(tuple(formulas), step_s, tuple(problems))
+
+
 def compile_rulebook(
     rulebook: Rulebook, *, step_s: Fraction | None = None, cpu_limit_s: int = CPU_LIMIT_S
 ) -> CompiledRulebook:
-    """Compile every rule.
+    """Compile every rule for one step: ``lower``, then ``build_all``."""
+    return build_all(rulebook, lower(rulebook, step_s), cpu_limit_s)
+
+
+def build_all(
+    rulebook: Rulebook, formulas: RulebookFormulas, cpu_limit_s: int = CPU_LIMIT_S
+) -> CompiledRulebook:
+    """Build the automaton of every formula.
 
     Args:
         rulebook: the rulebook, as meant.
-        step_s: the seconds between two states of the traces to be judged, for rules with bounds in
-            seconds; None for the step of each such rule's own examples.
+        formulas: those of its rules.
         cpu_limit_s: processor time that a rule's automaton may take, in whole seconds.
 
     Returns:
         The compiled rulebook, rules in the same order.
 
     Raises:
-        RulecError: R0401 for each rule whose automaton is too large, R0402 for each whose
-            automaton failed its check, R0403 if Spot is not installed, R0407 for each rule with a
-            bound that is not a multiple of the step, R0409 for facts that contradict each other.
+        RulecError: the formulas' problems; R0401 for each rule whose automaton is too large, R0402
+            for each whose automaton failed its check, R0403 if Spot is not installed, R0409 for
+            axioms that contradict each other.
     """
     compiled: list[CompiledRule] = []
-    problems: list[Diagnostic] = []
-    waiting: list[tuple[Rule, Fraction | None, Job]] = []
-    for rule in rulebook.rules:
-        step = _step(rule, step_s)
-        try:
-            waiting.append((rule, step, _job(rulebook, rule, step, cpu_limit_s)))
-        except NotAMultipleError as error:
-            problems.append(no_multiple(rule, error))
+    problems = list(formulas.problems)
+    waiting = [
+        (lowered.rule, lowered.step_s, _job(rulebook, lowered, cpu_limit_s))
+        for lowered in formulas.rules
+    ]
     spot = ""
     while waiting or not spot:
         # A worker lives until it is done or a rule has killed it; the next one takes the rest.
@@ -100,6 +149,7 @@ def compile_rulebook(
         priorities=rulebook.priorities,
         extends=rulebook.extends,
         at=rulebook.at,
+        source=rulebook,
     )
 
 
@@ -148,9 +198,9 @@ def _step(rule: Rule, step_s: Fraction | None) -> Fraction | None:
     return rule.step_s if step_s is None else step_s
 
 
-def _job(rulebook: Rulebook, rule: Rule, step: Fraction | None, cpu_limit_s: int) -> Job:
-    """What to ask of the worker. Raises NotAMultipleError."""
-    formula = rule.formula if step is None else in_steps(rule.formula, step)
+def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
+    """The question to the worker."""
+    rule, formula, step = lowered.rule, lowered.formula, lowered.step_s
     cite = f", {rule.cite}" if rule.cite else ""
     remarks = [
         f"{rule.strength} rule {rule.name} of {rulebook.name}{cite}",

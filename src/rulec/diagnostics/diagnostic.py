@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.source_text import SourceLocation, Span
 
@@ -51,6 +51,9 @@ class RulecError(Exception):
             diagnostics = (diagnostics,)
         self.diagnostics = tuple(diagnostics)
         super().__init__("; ".join(_one_line(d) for d in self.diagnostics))
+
+    def __reduce__(self) -> tuple[type[RulecError], tuple[Any, ...]]:
+        return type(self), (self.diagnostics,)
 
 
 def _one_line(diagnostic: Diagnostic) -> str:

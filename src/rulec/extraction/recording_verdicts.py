@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.thresholds import exact
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection.requested import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import RulebookFor
 from rulec.scenario.recorded.recording import Recording
 
 MOST_STATES = 1 << 13
@@ -39,13 +37,12 @@ class RecordingVerdicts:
     def __init__(
         self,
         recording: Recording,
-        rulebook: CompiledRulebook | RulebookFor,
+        rulebook: CompiledRulebook,
         wanted: RequestedDrives,
         file: str,
     ) -> None:
-        step = exact(recording.step_s)
-        self.rules = rulebook if isinstance(rulebook, CompiledRulebook) else rulebook(step)
-        rules = self.rules
+        rules = rulebook.fitted_to(recording.step_s)
+        self.rules = rules
         self.drives = selected_drives(
             recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
         )

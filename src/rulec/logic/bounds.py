@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from math import gcd, lcm
 from typing import NamedTuple
 
 from rulec.diagnostics import Span
@@ -104,6 +105,15 @@ def speaks_of_seconds(formula: Formula) -> bool:
     """Has it a bound in seconds? If not, the step of a trace makes no difference to it."""
     bounds = (one.bound for one in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
+
+
+def fitting_step(formula: Formula, step_s: Fraction) -> Fraction:
+    """The longest step (s) that divides the given one and all bounds in seconds."""
+    bounds = [operation.bound for operation in operations_of(formula)]
+    seconds = [bound for bound in bounds if bound is not None and bound.unit == "s"]
+    ends = [end for bound in seconds for end in (bound.low, bound.high) if end is not None]
+    whole = lcm(step_s.denominator, *(end.denominator for end in ends))
+    return Fraction(gcd(int(step_s * whole), *(int(end * whole) for end in ends)), whole)
 
 
 def operations_of(formula: Formula) -> Iterator[Unary | Binary]:

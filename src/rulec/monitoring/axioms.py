@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
@@ -27,6 +28,9 @@ class ImpossibleStateError(RulecError):
     def __init__(self, diagnostic: Diagnostic, number: int) -> None:
         super().__init__(diagnostic)
         self.number = number
+
+    def __reduce__(self) -> tuple[type[RulecError], tuple[Any, ...]]:
+        return type(self), (self.diagnostics[0], self.number)
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,28 +35,6 @@ MISSING_VALUE = Code(
     kind="trace",
 )
 
-_TWO_STEPS = """\
-cat > soon.rules <<.
-rulebook soon
-signal p
-hard rule soon { require eventually[<= 1 s] p }
-.
-echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
-"""
-OTHER_STEP = Code(
-    "R0507",
-    title="a trace has another step than a rule was compiled for",
-    why="A bound in seconds is so many states of a trace, how many depends on the seconds from one "
-    "to the next, `step_s`. A compiled rulebook knows the number for one step only. `rulec "
-    "compile --step` chooses it; from the source of the rulebook, every trace is judged by its "
-    "own step.",
-    bad=_TWO_STEPS + "rulec compile soon.rules --step 1 -o build > log\n"
-    "rulec verify trace.jsonl -r build/soon.json",
-    good=_TWO_STEPS + "rulec compile soon.rules --step 0.5 -o build > log\n"
-    "rulec verify trace.jsonl -r build/soon.json",
-    kind="command",
-)
-
 _STANDING = """\
 cat > signal.rules <<.
 rulebook signal_first

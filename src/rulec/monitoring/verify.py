@@ -4,27 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from fractions import Fraction
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.logic.printing import number_in_words
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import bindings
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.monitoring_messages import OTHER_STEP
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_trace
 
-RulebookFor = Callable[[Fraction], CompiledRulebook]
-"""Gives the rulebook whose machines judge traces of a step (s). Raises RulecError."""
 
-
-def verify(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> Verdict:
+def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """Judge a trace by every rule, for every binding of its variables.
 
     Raises:
@@ -77,19 +71,17 @@ def columns_of(
     )
 
 
-def made_for(trace: Trace, rulebook: CompiledRulebook | RulebookFor) -> CompiledRulebook:
+def made_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook with the machines for a trace's step. Raises RulecError."""
     return made_for_step(trace.step_s, rulebook, trace.place)
 
 
 def made_for_step(
-    step_s: float, rulebook: CompiledRulebook | RulebookFor, place: SourceLocation | None = None
+    step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
     """The same for the step of a trace at some place."""
-    if isinstance(rulebook, CompiledRulebook):
-        return rulebook
     try:
-        return rulebook(exact(step_s))
+        return rulebook.fitted_to(step_s)
     except RulecError as error:
         # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
         raise RulecError([_at(place, one) for one in error.diagnostics]) from None
@@ -102,27 +94,7 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
     return replace(problem, place=place, labels=(*here, *problem.labels))
 
 
-def check_step(
-    rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
-) -> None:
-    """A rule with bounds in seconds judges states as far apart as it was compiled for.
-
-    Raises RulecError R0507; ``what`` names in it whose step this is.
-    """
-    if rule.step_s is None or rule.step_s == step_s:
-        return
-    step = number_in_words(step_s)
-    raise OTHER_STEP.error(
-        place,
-        f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
-        f"{what} has steps of {step} s",
-        help=f"compile its source with `--step {step}`",
-    )
-
-
-def verify_or_reason(
-    item: Trace | RulecError, rulebook: CompiledRulebook | RulebookFor
-) -> Verdict | NotJudged:
+def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
     """As ``verify``, for one of many: what cannot be judged is an answer too.
 
     ``item`` may be, in place of a trace, the error that kept it from being read.

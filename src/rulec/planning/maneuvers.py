@@ -186,6 +186,7 @@ def evaluate(
         RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
+    rules = rules.fitted_to(graph.step)
     paths = in_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, after)
     hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))

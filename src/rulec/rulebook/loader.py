@@ -17,7 +17,7 @@ from rulec.rulebook.files.search_path import (
     read_bytes,
 )
 from rulec.rulebook.files.vocabulary_files import Vocabularies
-from rulec.rulebook.model import Rulebook, Traffic
+from rulec.rulebook.model import Rulebook, SourceFile, Traffic
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
@@ -25,13 +25,46 @@ from rulec.vocabulary import Vocabulary
 __all__ = [
     "Diagnosis",
     "Loaded",
+    "RulebookFile",
+    "Trees",
     "available_rulebooks",
     "diagnose",
+    "find",
     "load_rulebook",
     "load_vocabulary",
+    "parse_all",
     "parse_rulebook",
     "read_rulebook",
+    "resolve_trees",
 ]
+
+
+@dataclass(frozen=True, slots=True)
+class RulebookFile:
+    """A rulebook's text, where it is, and where it finds others; ``path`` is None for a text."""
+
+    source: Source
+    data: bytes
+    path: Path | None = None
+    search_path: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Trees:
+    """The trees of a rulebook and of all that it extends and uses, with the mistakes of spelling.
+
+    Messages call the file ``name``. ``books`` are those that it extends, the most general first,
+    and itself. Without ``dependencies`` a file could not be read, so that any name may be missing
+    for that reason.
+    """
+
+    name: str
+    file: tree.File
+    books: tuple[Book, ...]
+    vocabularies: tuple[tree.File, ...]
+    sources: tuple[SourceFile, ...]
+    mistakes: tuple[Diagnostic, ...]
+    dependencies: tuple[Dependency, ...] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +122,34 @@ def read_rulebook(
 
     ``traffic``: read it as one for this side, whatever it says itself.
     """
-    folders = [Path(folder) for folder in search_path]
+    return resolve_trees(parse_all(find(reference, search_path)), at, traffic)
+
+
+def find(reference: str | Path, search_path: Sequence[str | Path] = ()) -> RulebookFile:
+    """Find a rulebook's file by name or path, and read it. Raises RulecError."""
+    folders = tuple(Path(folder) for folder in search_path)
     path = find_rulebook(reference, folders)
     data = read_bytes(path)
-    return _load(decode(str(path), data), data, path, folders, at, traffic)
+    return RulebookFile(decode(str(path), data), data, path, folders)
+
+
+def parse_all(file: RulebookFile) -> Trees:
+    """Parse a rulebook, those that it extends, and the vocabularies that they use.
+
+    Mistakes of spelling are in the result. Raises RulecError R0206 for a vocabulary.
+    """
+    parsed, mistakes = parse(file.source)
+    if parsed.kind == "vocabulary" and parsed.name is not None:
+        raise RulecError(_not_a_rulebook(parsed))
+    return _with_bases(file, parsed, mistakes)
+
+
+def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
+    """The rulebook that the trees mean. Raises RulecError with every mistake in them."""
+    loaded, diagnosis = _resolved(trees, at, traffic)
+    if loaded is None:
+        raise RulecError(diagnosis.findings)
+    return loaded
 
 
 def parse_rulebook(
@@ -104,7 +161,8 @@ def parse_rulebook(
         RulecError: with every mistake in it and in the vocabularies that it uses.
     """
     data = text.encode("utf-8", "surrogatepass")
-    return _load(Source(name, text), data, None, search_path, at).rulebook
+    file = RulebookFile(Source(name, text), data, None, tuple(search_path))
+    return resolve_trees(parse_all(file), at).rulebook
 
 
 def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
@@ -145,63 +203,48 @@ def diagnose(
         source = decode(name, data)
         file, mistakes = parse(source)
         if file.kind == "rulebook":
-            return _resolved(source, data, path, search_path, (file, mistakes), at)[1]
+            text = RulebookFile(source, data, path, tuple(search_path))
+            return _resolved(_with_bases(text, file, mistakes), at)[1]
         _, meanings = resolve_vocabulary(file)
     except RulecError as error:
         return Diagnosis(error.diagnostics)
     return Diagnosis(_in_order(name, [*mistakes, *meanings]))
 
 
-def _load(
-    source: Source,
-    data: bytes,
-    path: Path | None,
-    search_path: Sequence[Path],
-    at: str,
-    traffic: Traffic = "",
-) -> Loaded:
-    file, mistakes = parse(source)
-    if file.kind == "vocabulary" and file.name is not None:
-        raise RulecError(_not_a_rulebook(file))
-    loaded, diagnosis = _resolved(source, data, path, search_path, (file, mistakes), at, traffic)
-    if loaded is None:
-        raise RulecError(diagnosis.findings)
-    return loaded
-
-
-def _resolved(
-    source: Source,
-    data: bytes,
-    path: Path | None,
-    search_path: Sequence[Path],
-    parsed: tuple[tree.File, tuple[Diagnostic, ...]],
-    at: str,
-    traffic: Traffic = "",
-) -> tuple[Loaded | None, Diagnosis]:
-    """The rulebook if it has no errors, and what there is to say about it."""
-    file, mistakes = parsed
-    based = read_bases(file, path, search_path)
-    found = Vocabularies(tuple(search_path))
-    books = [*based.books, Book(file, path)]
-    trees = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
-    vocabularies = tuple(one for one in trees if one is not None)
+def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
+    based = read_bases(parsed, file.path, file.search_path)
+    found = Vocabularies(file.search_path)
+    books = (*based.books, Book(parsed, file.path))
+    read = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
     opaque = found.failed or based.failed
+    return Trees(
+        name=file.source.name,
+        file=parsed,
+        books=books,
+        vocabularies=tuple(vocabulary for vocabulary in read if vocabulary is not None),
+        sources=(source_file(file.source.name, file.data), *based.sources, *found.sources),
+        mistakes=(*mistakes, *based.mistakes, *found.mistakes),
+        dependencies=None if opaque else (*based.dependencies, *found.dependencies),
+    )
+
+
+def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
+    """The rulebook if it has no errors, and what there is to say about it."""
+    file, books = trees.file, tuple(book.file for book in trees.books)
     rulebook, meanings = resolve(
         file,
-        vocabularies,
-        bases=[book.file for book in based.books],
-        sources=(source_file(source.name, data), *based.sources, *found.sources),
-        opaque=opaque,
+        trees.vocabularies,
+        bases=books[:-1],
+        sources=trees.sources,
+        opaque=trees.dependencies is None,
         at=at or (file.law.as_of if file.law else "") or date.today().isoformat(),  # noqa: DTZ011
         traffic=traffic,
     )
-    everything = _in_order(source.name, [*mistakes, *based.mistakes, *found.mistakes, *meanings])
-    needed = None if opaque else (*based.dependencies, *found.dependencies)
-    diagnosis = Diagnosis(everything, needed)
-    if rulebook is None or any(one.severity == "error" for one in everything):
+    everything = _in_order(trees.name, [*trees.mistakes, *meanings])
+    diagnosis = Diagnosis(everything, trees.dependencies)
+    if rulebook is None or any(problem.severity == "error" for problem in everything):
         return None, diagnosis
-    trees_of_books = tuple(book.file for book in books)
-    return Loaded(rulebook, everything, trees_of_books, vocabularies), diagnosis
+    return Loaded(rulebook, everything, books, trees.vocabularies), diagnosis
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:

@@ -60,6 +60,10 @@ class Vocabulary:
     types: Mapping[str, ObjectType] = field(default_factory=lambda: MappingProxyType({}))
     declarations: Mapping[str, Declaration] = field(default_factory=lambda: MappingProxyType({}))
 
+    def __reduce__(self) -> tuple[type[Vocabulary], tuple[object, ...]]:
+        # Read-only views of dictionaries cannot be pickled.
+        return Vocabulary, (self.name, dict(self.types), dict(self.declarations))
+
     @cached_property
     def enumeration_of(self) -> Mapping[str, Enumeration]:
         """Value name -> the enumeration it belongs to."""

@@ -50,10 +50,9 @@ def compile_here(rulebook, step_s=None):
     from rulec.automata.spot_worker import _answer
 
     compiled = []
-    for one in rulebook.rules:
-        step = compiler._step(one, step_s)
-        job = compiler._job(rulebook, one, step, cpu_limit_s=5)
-        compiled.append(compiler._compiled(one, step, _answer(job)))
+    for formula in compiler.lower(rulebook, step_s).rules:
+        job = compiler._job(rulebook, formula, cpu_limit_s=5)
+        compiled.append(compiler._compiled(formula.rule, formula.step_s, _answer(job)))
     return CompiledRulebook(
         rulebook.name,
         rulebook.vocabulary,

@@ -1,4 +1,4 @@
-"""Messages about compiled rulebooks on disk."""
+"""Messages about compiled rulebooks."""
 
 from __future__ import annotations
 
@@ -14,5 +14,27 @@ DAMAGED_BUNDLE = Code(
     "head -c 5000 build/esterle2019.json > part.json\n"
     "rulec maneuvers s2 -r part.json",
     good="rulec compile esterle2019 -o build > log\nrulec maneuvers s2 -r build/esterle2019.json",
+    kind="command",
+)
+
+_TWO_STEPS = """\
+cat > soon.rules <<.
+rulebook soon
+signal p
+hard rule soon { require eventually[<= 1 s] p }
+.
+echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
+"""
+OTHER_STEP = Code(
+    "R0507",
+    title="a trace has another step than a rule was compiled for",
+    why="A bound in seconds is so many states of a trace, how many depends on the seconds from one "
+    "to the next, `step_s`. A compiled rulebook knows the number for one step only. `rulec "
+    "compile --step` chooses it; from the source of the rulebook, every trace is judged by its "
+    "own step.",
+    bad=_TWO_STEPS + "rulec compile soon.rules --step 1 -o build > log\n"
+    "rulec verify trace.jsonl -r build/soon.json",
+    good=_TWO_STEPS + "rulec compile soon.rules --step 0.5 -o build > log\n"
+    "rulec verify trace.jsonl -r build/soon.json",
     kind="command",
 )

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.thresholds import exact
 from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
-from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Traffic, Variable
+from rulec.logic.printing import number_in_words
+from rulec.rulebook.model import (
+    Certainty,
+    Rulebook,
+    Semantics,
+    SourceFile,
+    Strength,
+    Traffic,
+    Variable,
+)
 from rulec.vocabulary import Vocabulary
 
 
@@ -49,7 +61,9 @@ class CompiledAxiom:
 class CompiledRulebook:
     """The rules of a rulebook as machines, with the vocabulary that their traces are written in.
 
-    ``rulec`` and ``spot`` are the versions that compiled it.
+    ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
+    compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
+    the step of the traces that it meets; None if it was read, or compiled for one step.
     """
 
     name: str
@@ -68,3 +82,52 @@ class CompiledRulebook:
     at: str = ""
     axioms: tuple[CompiledAxiom, ...] = ()
     traffic: Traffic = ""
+    source: Rulebook | None = field(default=None, compare=False, repr=False)
+    recompile: Callable[[Fraction], CompiledRulebook] | None = field(
+        default=None, compare=False, repr=False
+    )
+
+    def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
+        """These rules for traces whose states are ``step_s`` seconds apart.
+
+        A float means the decimal that is written. Rules without bounds in seconds are the same for
+        any step; each step is compiled once.
+
+        Raises:
+            RulecError: R0507 if the rules are for another step and cannot be compiled again, R0407
+                for a bound that is no multiple of the step, else as ``compile_rulebook``.
+        """
+        step = exact(step_s)
+        if self.recompile is None:
+            for rule in self.rules:
+                check_step(rule, step)
+            return self
+        if all(rule.step_s in (None, step) for rule in self.rules):
+            return self
+        compiled = self.recompile(step)
+        if len(compiled.rules) == len(self.rules):
+            return compiled
+        kept = {rule.name for rule in self.rules}
+        return replace(compiled, rules=tuple(r for r in compiled.rules if r.name in kept))
+
+    def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
+        """These rules at that step if they can be compiled again, else as they are."""
+        return self if self.recompile is None else self.at_step(step_s)
+
+
+def check_step(
+    rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
+) -> None:
+    """Refuse a step that a rule with bounds in seconds was not compiled for.
+
+    Raises RulecError R0507; ``what`` names in it whose step this is.
+    """
+    if rule.step_s is None or rule.step_s == step_s:
+        return
+    step = number_in_words(step_s)
+    raise OTHER_STEP.error(
+        place,
+        f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
+        f"{what} has steps of {step} s",
+        help=f"compile its source with `--step {step}`",
+    )

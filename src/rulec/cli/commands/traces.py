@@ -122,7 +122,6 @@ def _write_drives(
 ) -> None:
     """Write what the vehicles of a recording did."""
     from rulec.api.workflow import machines
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.diagnostics import SourceLocation
     from rulec.extraction.selection.requested import selected_drives
     from rulec.extraction.to_trace import Drive
@@ -137,8 +136,7 @@ def _write_drives(
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
     book = None
     if rulebook is not None:
-        rules = machines(rulebook, search_path(), print_diagnostics)
-        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
+        book = machines(rulebook, search_path(), print_diagnostics)
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
     result = selected_drives(

@@ -24,7 +24,6 @@ from rulec.cli.options.shared_options import (
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.automata.step_compilation import AnyStep
     from rulec.diagnostics import RulecError
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.monitoring.verdict import NotJudged, Verdict
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
-    Rules = CompiledRulebook | AnyStep
     Items = Sequence[Trace | RulecError]
     Answer = tuple[Items, int, Verdict | NotJudged]
 
@@ -81,7 +79,6 @@ def command(
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
     from rulec.api.workflow import machines
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.report.text.console import Complaints, print_diagnostics
     from rulec.scenario.recording_files import is_recording
     from rulec.settings import search_path
@@ -93,8 +90,7 @@ def command(
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain, every_part)
     if recordings:
-        book = rules if isinstance(rules, CompiledRulebook) else rules.rulebook
-        about = wanted(egos, options, book.vocabulary)
+        about = wanted(egos, options, rules.vocabulary)
         for file in recordings:
             run.recording(file, net, about)
     if len(recordings) < len(files):
@@ -109,7 +105,7 @@ def command(
 class _Run:
     """What is asked of every file, and what has become of those so far."""
 
-    rules: Rules
+    rules: CompiledRulebook
     json_output: bool
     complaints: Complaints
     to_explain: int
@@ -201,7 +197,9 @@ class _Run:
         self.not_answered |= not tally.judged
 
 
-def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterator[Answer]:
+def _answers(
+    files: Sequence[str], form: Format | None, rules: CompiledRulebook
+) -> Iterator[Answer]:
     """Traces, which of them, and its verdict, or why there is none."""
     from rulec.diagnostics import RulecError
     from rulec.files import opened
@@ -222,7 +220,7 @@ def _answers(files: Sequence[str], form: Format | None, rules: Rules) -> Iterato
 
 
 def _judged(
-    stream: IO[bytes], name: str, form: Format, size: int | None, rules: Rules
+    stream: IO[bytes], name: str, form: Format, size: int | None, rules: CompiledRulebook
 ) -> Iterator[Answer]:
     from rulec.monitoring.batch.table_verdicts import verify_items
     from rulec.report.text.console import progress

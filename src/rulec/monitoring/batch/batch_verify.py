@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from rulec.automata.axiom_instances import counts
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axioms import check_counting_axioms
@@ -26,7 +26,7 @@ from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import RulebookFor, check_step, made_for, verify_or_reason
+from rulec.monitoring.verify import made_for, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_frame, check_presence
 
@@ -42,11 +42,12 @@ _LONG = 1 << 6
 _SHARED = 4
 """Where a state is met so many times, on average, what it means is worked out once."""
 
-Rules = CompiledRulebook | RulebookFor
 Answer = Verdict | NotJudged
 
 
-def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterator[Answer]:
+def verify_many(
+    traces: Iterable[Trace | RulecError], rulebook: CompiledRulebook
+) -> Iterator[Answer]:
     """The verdict on each trace, in their order; in place of one that cannot be given, why.
 
     Traces are read some thousands at a time, fewer if they are long, so there may be any number of
@@ -64,7 +65,7 @@ def verify_many(traces: Iterable[Trace | RulecError], rulebook: Rules) -> Iterat
 
 
 def verify_chunk(
-    items: Sequence[Trace | RulecError], rulebook: Rules, fewest: int = FEWEST
+    items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
 ) -> list[Answer]:
     """The same for a few traces; ``fewest`` of one shape are judged together."""
     answers: list[Answer | None] = [None] * len(items)
@@ -93,7 +94,7 @@ def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> boo
 def _judge_group(
     items: Sequence[Trace | RulecError],
     places: Sequence[int],
-    rulebook: Rules,
+    rulebook: CompiledRulebook,
     answers: list[Answer | None],
 ) -> None:
     """Answer for those traces of one shape that nothing is odd about."""
@@ -172,7 +173,7 @@ def _is_framed(trace: Trace) -> bool:
     return True
 
 
-def rules_for(trace: Trace, rulebook: Rules) -> CompiledRulebook:
+def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
     rules = made_for(trace, rulebook)
     for rule in rules.rules:

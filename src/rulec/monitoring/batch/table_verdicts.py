@@ -10,7 +10,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import (
     Answer,
-    Rules,
     rules_for,
     verify_chunk,
     violations_in,
@@ -32,7 +31,7 @@ _FEWEST_ROWS = 200
 Items = Sequence[Trace | RulecError]
 
 
-def verify_items(items: Items, rulebook: Rules) -> tuple[Items, Sequence[Answer]]:
+def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
     """As ``verify_chunk``, of traces that may be a block; with the traces as they were read."""
     if isinstance(items, Block):
         answers = _judge_block(items, rulebook)
@@ -42,7 +41,7 @@ def verify_items(items: Items, rulebook: Rules) -> tuple[Items, Sequence[Answer]
     return items, verify_chunk(items, rulebook)
 
 
-def rulebook_for(items: Items, place: int, rulebook: Rules) -> CompiledRulebook:
+def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook that one of ``verify_items`` was judged by."""
     if isinstance(items, Block):
         return made_for_step(items.step_s(place), rulebook)
@@ -51,7 +50,7 @@ def rulebook_for(items: Items, place: int, rulebook: Rules) -> CompiledRulebook:
     return made_for(trace, rulebook)
 
 
-def _judge_block(block: Block, rulebook: Rules) -> list[Answer] | None:
+def _judge_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
     """None if something is odd about the block."""
     answers: list[Answer | None] = [None] * len(block)
     try:
@@ -69,7 +68,7 @@ def _judge_block(block: Block, rulebook: Rules) -> list[Answer] | None:
     ]
 
 
-def _judge_group(group: Group, rulebook: Rules, answers: list[Answer | None]) -> None:
+def _judge_group(group: Group, rulebook: CompiledRulebook, answers: list[Answer | None]) -> None:
     """Answer for the traces of which all that the rules read can be."""
     outline = group.outline
     objects = dict(zip(group.objects, group.types, strict=True))

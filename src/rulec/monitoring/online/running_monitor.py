@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeAlias
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.letter_reader import NOBODY
@@ -24,7 +24,6 @@ from rulec.monitoring.online.rule_group import MOST_LEARNED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, step_in, to_data
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import check_step
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
 
@@ -44,14 +43,15 @@ class Monitor:
             left out, the step that they were compiled for.
 
     Raises:
-        RulecError: R0507 if a rule was compiled for another step.
+        RulecError: R0507 if a rule was compiled for another step and cannot be compiled again.
     """
 
     def __init__(self, rulebook: CompiledRulebook, step_s: Fraction | float | None = None) -> None:
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         self._step_s = exact(step_s) if step_s is not None else steps[0] if steps else None
-        for rule in rulebook.rules:
-            if self._step_s is not None:
+        if self._step_s is not None:
+            rulebook = rulebook.fitted_to(self._step_s)
+            for rule in rulebook.rules:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
@@ -196,6 +196,14 @@ class Monitor:
         monitor._now, monitor._violations = (standing, number, ()), violations
         return monitor
 
+    def __reduce__(self) -> tuple[Callable[..., Monitor], tuple[Any, ...]]:
+        state = self.snapshot(), self._now[2], self._violations
+        return _unpickled, (self._rulebook, self._step_s, *state)
+
+    def __repr__(self) -> str:
+        so_far = self.so_far
+        return f"Monitor({self._rulebook.name}, state={so_far.state}, verdict={so_far.verdict!r})"
+
     def _note_violations(self, n_before: int, number: int, changes: Sequence[Change]) -> None:
         # What an interrupted step has noted was none.
         del self._violations[n_before:]
@@ -209,6 +217,21 @@ class Monitor:
             for one in changes
             if one.verdict == "violated"
         ]
+
+
+def _unpickled(
+    rulebook: CompiledRulebook,
+    step_s: Fraction | None,
+    snapshot: Any,
+    changes: tuple[Change, ...],
+    violations: list[Violation],
+) -> Monitor:
+    """A monitor where another stood: what it has learned is learned anew."""
+    monitor = Monitor(rulebook, step_s)
+    restored = Monitor.restore(rulebook, snapshot)
+    standing, number, _ = restored._now
+    monitor._now, monitor._violations = (standing, number, changes), violations
+    return monitor
 
 
 def _so_far(standing: MonitorState, number: int, changes: tuple[Change, ...]) -> SoFar:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import Binding, bindings
@@ -15,7 +15,7 @@ from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import check_step, run
+from rulec.monitoring.verify import run
 from rulec.rulebook.model import Strength
 from rulec.trace import TraceGraph
 

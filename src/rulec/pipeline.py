@@ -1,0 +1,50 @@
+"""The compiler on one page: source text, trees, rulebook, formulas, automata.
+
+Each call takes what the one before it has made. What is wrong is raised as RulecError: a file that
+is not there by ``find``; all mistakes in the sources by ``resolve``; bounds that do not fit the
+step, and automata that are too large, by ``build_automata``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.compiler import lower
+from rulec.automata.step_compilation import StepCompiler, build_automata
+from rulec.book_tests.example_runs import example_warnings
+from rulec.diagnostics import Diagnostic
+from rulec.rulebook.loader import find, parse_all
+from rulec.rulebook.loader import resolve_trees as resolve
+
+
+def compile_source(
+    reference: str | Path,
+    search_path: Sequence[str | Path] = (),
+    at: str = "",
+    step_s: Fraction | None = None,
+    *,
+    any_step: bool = False,
+    on_warning: Callable[[Sequence[Diagnostic]], object],
+) -> CompiledRulebook:
+    """Compile a rulebook, given by name or by its source's path.
+
+    Args:
+        reference: as for ``load_rulebook``.
+        search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+        step_s: the seconds between two states of the traces to be judged; None for the step of each
+            rule's own examples, and then for any other that is met.
+        any_step: rules without examples need not fit the step that these would have.
+        on_warning: is told what is odd, but not wrong: an example, for one, that comes out
+            otherwise than it says.
+    """
+    file = find(reference, search_path)
+    trees = parse_all(file)
+    book = resolve(trees, at)
+    steps = StepCompiler(book.rulebook)
+    on_warning([*book.warnings, *example_warnings(book.rulebook, steps.at_own_steps)])
+    formulas = lower(book.rulebook, step_s, any_step=any_step)
+    return build_automata(formulas, steps)
