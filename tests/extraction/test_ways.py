@@ -15,7 +15,7 @@ from support.builders.recordings import lanelet, recording, straight, vehicle
 
 def ways(found, ego=0):
     moments = match_to_map(found, tracks_of(found, USUAL))[ego]
-    return [(one.first, one.last, one.way) for one in driven_stretches(found, moments)]
+    return [(one.first, one.last, one.route) for one in driven_stretches(found, moments)]
 
 
 def along(*places, **more):

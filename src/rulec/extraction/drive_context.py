@@ -1,9 +1,8 @@
-"""One drive, from where words are found: ego, its road, and everybody on it, over its states."""
+"""One drive as the signal passes see it: ego, its road and the others, state by state."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Literal
+from dataclasses import dataclass
 
 import numpy as np
 from numpy import intp
@@ -14,20 +13,19 @@ from rulec.extraction.signals.relations import lanes_touched
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.scenario.recorded.recording import Recording
-
-Side = Literal["left", "right"]
+from rulec.scenario.recorded.recording import Recording, Side
 
 KMH = 3.6
+"""km/h in one m/s."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DriveContext:
-    """Columns are the states of the drive; ``rows`` are those of everybody who is ever there.
+    """Arrays of one drive: rows are the participants that are ever relevant, columns its states.
 
-    ``others`` and ``people`` have a row for each of them, ``near`` says when they are there for
-    ego, ``touched`` in which of its lanes, ``in_the_road`` when they are on any lane and
-    ``on_crosswalk`` on a pedestrian crossing.
+    ``extents`` and ``tracks`` have these rows; ``ego`` and ``ego_extents`` have one. ``relevant``:
+    whether a participant counts for ego; ``touched``: the lanes that it reaches into, a third axis;
+    ``on_lane`` and ``on_crosswalk``: whether a vulnerable road user is on one of the map.
     """
 
     recording: Recording
@@ -36,77 +34,77 @@ class DriveContext:
     road: DrivenRoad
     first_step: int
     ego: Tracks
-    own: RoadExtents
-    people: Tracks
-    others: RoadExtents
-    near: Flags
+    ego_extents: RoadExtents
+    tracks: Tracks
+    extents: RoadExtents
+    relevant: Flags
     touched: Flags
-    in_the_road: Flags
+    on_lane: Flags
     on_crosswalk: Flags
 
     @property
     def states(self) -> int:
-        """How many states the drive has."""
-        return int(self.own.s.shape[1])
+        """The number of states of the drive."""
+        return int(self.ego_extents.s.shape[1])
 
     @property
-    def lane(self) -> NDArray[intp]:
-        """The number of ego's lane, from the right, by ego's middle."""
-        lane: NDArray[intp] = self.road.lane_of(self.own.w)[0]
+    def ego_lane(self) -> NDArray[intp]:
+        """The number of the lane of ego's middle, from the right, by state."""
+        lane: NDArray[intp] = self.road.lane_of(self.ego_extents.w)[0]
         return lane
 
     @property
-    def with_ego(self) -> Flags:
-        """Which vehicles go ego's way on its lanes?"""
-        drives = self.people.of_kind("vehicle")[:, None]
-        return self.near & drives & (abs(self.others.turned) < 1.0) & self.touched.any(axis=-1)
+    def going_along(self) -> Flags:
+        """Whether a participant is a vehicle that goes ego's way on its lanes."""
+        drives = self.tracks.of_type("vehicle")[:, None]
+        turned = abs(self.extents.turned)
+        return self.relevant & drives & (turned < 1.0) & self.touched.any(axis=-1)
 
     def speeds(self) -> Floats:
-        """Everybody's speed along the road (km/h), 0 of those who stand."""
-        return zero_if_standing(self.others.along * KMH, self.thresholds)
+        """The participants' speeds along the road (km/h), 0 for those that stand."""
+        return zero_if_standing(self.extents.along * KMH, self.thresholds)
 
 
 def zero_if_standing(speed_kmh: Floats, thresholds: Thresholds) -> Floats:
-    """Speeds, those of who stands made exactly 0."""
-    still = abs(speed_kmh) < thresholds.standing_kmh
-    rest: Floats = speed_kmh * ~still
-    return rest
+    """Speeds (km/h), exactly 0 below the threshold of standing."""
+    standing = abs(speed_kmh) < thresholds.standing_kmh
+    speeds: Floats = speed_kmh * ~standing
+    return speeds
 
 
 def drive_context(
+    *,
     recording: Recording,
     thresholds: Thresholds,
     side: Side,
     road: DrivenRoad,
-    everyone: Tracks,
-    all_placed: RoadExtents,
-    near: Flags,
-    ground: tuple[Flags, Flags],
+    tracks: Tracks,
+    extents: RoadExtents,
+    relevant: Flags,
+    on_lane: Flags,
+    on_crosswalk: Flags,
     ego: int,
     columns: tuple[int, int],
 ) -> DriveContext:
-    """The part of a recording that one drive is about."""
+    """The part of a recording that one drive is about.
+
+    ``ego`` is a row of the arrays; ``columns`` are the first and the last one of the drive.
+    """
     span = slice(columns[0], columns[1] + 1)
-    rows = near[:, span].any(axis=1).nonzero()[0]
-    others = _cut(all_placed, rows, span)
+    rows = relevant[:, span].any(axis=1).nonzero()[0]
+    own_extents = extents.part(rows, span)
     return DriveContext(
-        recording,
-        thresholds,
-        side,
-        road,
-        everyone.first + columns[0],
-        everyone.part(np.array([ego]), span),
-        _cut(all_placed, [ego], span),
-        everyone.part(rows, span),
-        others,
-        near[rows, span],
-        lanes_touched(others, road, thresholds),
-        ground[0][rows, span],
-        ground[1][rows, span],
-    )
-
-
-def _cut(all_placed: RoadExtents, rows: NDArray[intp] | list[int], span: slice) -> RoadExtents:
-    return RoadExtents(
-        *(getattr(all_placed, one.name)[rows][:, span] for one in fields(all_placed))
+        recording=recording,
+        thresholds=thresholds,
+        side=side,
+        road=road,
+        first_step=tracks.first + columns[0],
+        ego=tracks.part(np.array([ego]), span),
+        ego_extents=extents.part(np.array([ego]), span),
+        tracks=tracks.part(rows, span),
+        extents=own_extents,
+        relevant=relevant[rows, span],
+        touched=lanes_touched(own_extents, road, thresholds),
+        on_lane=on_lane[rows, span],
+        on_crosswalk=on_crosswalk[rows, span],
     )

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from rulec.extraction.drive_context import Side, drive_context
+from rulec.extraction.drive_context import drive_context
 from rulec.extraction.selection.relevance import relevant_participants
 from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
@@ -20,12 +20,12 @@ from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.tracks.vru_surface import on_crosswalks, on_lanes
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
-from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.recording import Recording, Side
 
 FEWEST_STATES = 2
 
 MOST_PLACES = 1 << 17
-"""Of longer recordings only those are placed along a road who are there while ego drives on it."""
+"""Extents of recordings with more participants times steps are computed drive by drive."""
 
 _DRIVERS = ("vehicle", "light_rider")
 
@@ -39,102 +39,101 @@ class NoDrive:
 
 
 class Drives:
-    """The drives of a recording. Roads that several vehicles drive are worked out once."""
+    """The drives of a recording. A road that several vehicles drive is laid out once."""
 
     def __init__(
         self,
         recording: Recording,
         side: Side,
         thresholds: Thresholds = USUAL,
-        telling: TraceWriter = ALL_SIGNALS,
+        writer: TraceWriter = ALL_SIGNALS,
     ) -> None:
         self.recording = recording
         self._thresholds = thresholds
-        self._telling = telling
+        self._writer = writer
         self._side: Side = side
-        self._people = tracks_of(recording, thresholds)
+        self._tracks = tracks_of(recording, thresholds)
         self._junctions = junction_lanelets(recording)
-        self._ground = (
-            on_lanes(recording, self._people),
-            on_crosswalks(recording, self._people),
-        )
-        self._moments = match_to_map(recording, self._people)
+        self._on_lane = on_lanes(recording, self._tracks)
+        self._on_crosswalk = on_crosswalks(recording, self._tracks)
+        self._matches = match_to_map(recording, self._tracks)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
-        """Whoever moves and steers, in the order of the file."""
+        """The participants that move and steer, in the order of the file."""
         return tuple(
-            one.id
-            for one in self._people.participants
-            if not one.standing and set(OBSTACLE_TYPES.get(one.type, ())).intersection(_DRIVERS)
+            body.id
+            for body in self._tracks.participants
+            if not body.standing and set(OBSTACLE_TYPES.get(body.type, ())).intersection(_DRIVERS)
         )
 
     def kinds(self) -> dict[str, type]:
-        """The words of all drives, and what their values are; empty if there is no drive."""
-        drives = (one for ego in self.egos() for one in self.of(ego) if isinstance(one, Drive))
+        """The Python type of each signal of all drives; empty if there is no drive."""
+        drives = (x for ego in self.egos() for x in self.of(ego) if isinstance(x, Drive))
         first = next(drives, None)
         return {} if first is None else dict(first.kinds)
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle: one, unless it leaves its road or the recording jumps."""
-        row = next(k for k, one in enumerate(self._people.participants) if one.id == ego)
-        found = [
-            one
-            for part in _unbroken(self._people, row, self._moments.get(row, {}))
-            for one in driven_stretches(self.recording, part)
-            if one.last - one.first + 1 >= FEWEST_STATES
+        row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
+        stretches = [
+            stretch
+            for part in _unbroken(self._tracks, row, self._matches.get(row, {}))
+            for stretch in driven_stretches(self.recording, part)
+            if stretch.last - stretch.first + 1 >= FEWEST_STATES
         ]
-        if not found:
+        if not stretches:
             yield NoDrive(ego, "it is never on a lane that leads its way")
-        for number, stretch in enumerate(found, 1):
+        for number, stretch in enumerate(stretches, 1):
             name = ego if number == 1 else f"{ego}#{number}"
             yield self._drive(row, name, stretch)
 
     def _drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
-        ego = self._people.participants[row].id
-        answer = self._road(stretch.way)
-        if isinstance(answer, str):
-            return NoDrive(ego, answer)
-        road, everybody = answer
-        people, ground, columns = self._people, self._ground, (stretch.first, stretch.last)
-        if everybody is None:
+        ego = self._tracks.participants[row].id
+        laid_out = self._road(stretch.route)
+        if isinstance(laid_out, str):
+            return NoDrive(ego, laid_out)
+        road, extents = laid_out
+        tracks, columns = self._tracks, (stretch.first, stretch.last)
+        on_lane, on_crosswalk = self._on_lane, self._on_crosswalk
+        if extents is None:
             span = slice(stretch.first, stretch.last + 1)
-            rows = people.there[:, span].any(axis=1).nonzero()[0]
+            rows = tracks.present[:, span].any(axis=1).nonzero()[0]
             row = int(np.searchsorted(rows, row))
-            people, columns = people.part(rows, span), (0, stretch.last - stretch.first)
-            ground = ground[0][rows, span], ground[1][rows, span]
-            everybody = road_extents(people, road)
-        if np.isnan(everybody.w[row, columns[0] : columns[1] + 1]).any():
+            tracks, columns = tracks.part(rows, span), (0, stretch.last - stretch.first)
+            on_lane, on_crosswalk = on_lane[rows, span], on_crosswalk[rows, span]
+            extents = road_extents(tracks, road)
+        if np.isnan(extents.w[row, columns[0] : columns[1] + 1]).any():
             return NoDrive(ego, "it is far from its road for a while")
-        there = relevant_participants(row, people, everybody, road, self._thresholds)
-        seen = drive_context(
-            self.recording,
-            self._thresholds,
-            self._side,
-            road,
-            people,
-            everybody,
-            there,
-            ground,
-            row,
-            columns,
+        context = drive_context(
+            recording=self.recording,
+            thresholds=self._thresholds,
+            side=self._side,
+            road=road,
+            tracks=tracks,
+            extents=extents,
+            relevant=relevant_participants(row, tracks, extents, road, self._thresholds),
+            on_lane=on_lane,
+            on_crosswalk=on_crosswalk,
+            ego=row,
+            columns=columns,
         )
-        return to_trace(seen, ego, name, self._telling)
+        return to_trace(context, ego, name, self._writer)
 
-    def _road(self, way: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
-        """A road, and everybody's place along it unless that were too much to remember."""
-        if way not in self._roads:
+    def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
+        """A road, and all extents along it unless those were too many to remember."""
+        if route not in self._roads:
             try:
-                road = driven_road(self.recording, way, self._junctions)
-                few = self._people.there.size <= MOST_PLACES
-                self._roads[way] = road, road_extents(self._people, road) if few else None
+                road = driven_road(self.recording, route, self._junctions)
+                few = self._tracks.present.size <= MOST_PLACES
+                self._roads[route] = road, road_extents(self._tracks, road) if few else None
             except ValueError as reason:
-                self._roads[way] = f"its road makes no sense, {reason}"
-        return self._roads[way]
+                self._roads[route] = f"its road makes no sense, {reason}"
+        return self._roads[route]
 
 
-def _unbroken(people: Tracks, row: int, moments: MatchedLanelets) -> Iterator[MatchedLanelets]:
-    """The moments of somebody, parted where the recording does not have them for a while."""
-    gone = np.cumsum(~people.there[row])
-    for _, columns in groupby(moments, key=lambda column: int(gone[column])):
-        yield {column: moments[column] for column in columns}
+def _unbroken(tracks: Tracks, row: int, matches: MatchedLanelets) -> Iterator[MatchedLanelets]:
+    """The matches of a participant, parted where the recording does not have it for a while."""
+    absent = np.cumsum(~tracks.present[row])
+    for _, columns in groupby(matches, key=lambda column: int(absent[column])):
+        yield {column: matches[column] for column in columns}

@@ -1,4 +1,4 @@
-"""Recorded drives, judged: each vehicle as ego in turn."""
+"""The verdicts on recorded drives: each vehicle is ego in turn."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.scenario.recorded.recording import Recording
 
 MOST_STATES = 1 << 13
-"""Drives with so many states together are judged together."""
+"""Drives are verified together once they have this many states; more take more memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveVerdict:
-    """A drive and what the rulebook says of it."""
+    """A drive and the rulebook's verdict on it."""
 
     drive: Drive
     answer: Verdict | NotJudged
 
 
 class RecordingVerdicts:
-    """A recording's drives before a rulebook; they are worked out when they are asked for.
+    """The verdicts of a rulebook on a recording's drives, computed when they are asked for.
 
     Raises:
         RulecError: R0407 if the rulebook has bounds that are no multiples of the recording's step,
@@ -44,43 +44,48 @@ class RecordingVerdicts:
         rules = rulebook.fitted_to(recording.step_s)
         self.rules = rules
         self.drives = selected_drives(
-            recording, wanted, file, rules.traffic, rules.vocabulary, _read_by(rules)
+            recording,
+            wanted,
+            file,
+            traffic=rules.traffic,
+            vocabulary=rules.vocabulary,
+            names=_names_read(rules),
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
         self.egos = self.drives.egos
 
     def answers(self) -> Iterator[DriveVerdict | NoDrive]:
-        """What each vehicle did, in the order of the file."""
+        """The verdict on each drive, in the order of the file."""
         waiting: list[Drive | NoDrive] = []
         states = 0
-        for one in (one for ego in self.egos for one in self.drives.of(ego)):
-            waiting.append(one)
-            states += len(one.trace.states) if isinstance(one, Drive) else 0
+        for drive in (drive for ego in self.egos for drive in self.drives.of(ego)):
+            waiting.append(drive)
+            states += len(drive.trace.states) if isinstance(drive, Drive) else 0
             if states >= MOST_STATES:
-                yield from self._judged(waiting)
+                yield from self._verified(waiting)
                 waiting, states = [], 0
-        yield from self._judged(waiting)
+        yield from self._verified(waiting)
 
-    def _judged(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
-        traces = [one.trace for one in drives if isinstance(one, Drive)]
+    def _verified(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
+        traces = [drive.trace for drive in drives if isinstance(drive, Drive)]
         answers = iter(verify_chunk(traces, self.rules))
-        for one in drives:
-            yield DriveVerdict(one, next(answers)) if isinstance(one, Drive) else one
+        for drive in drives:
+            yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """For every rule what it reads beyond these words, so that it has its default all along.
+        """The names that each rule reads beyond these ``words``, in the order of the vocabulary.
 
-        In the order of the vocabulary.
+        They have their defaults in all states.
         """
         declared = self.rules.vocabulary.declarations
-        found = {}
+        by_rule = {}
         for rule in self.rules.rules:
-            read = set(names_in(rule.formula))
-            found[rule.name] = tuple(x for x in declared if x in read and x not in words)
-        return found
+            missing = set(names_in(rule.formula)) - words
+            by_rule[rule.name] = tuple(name for name in declared if name in missing)
+        return by_rule
 
 
-def _read_by(rules: CompiledRulebook) -> frozenset[str]:
-    formulas = [one.formula for one in rules.rules] + [one.formula for one in rules.axioms]
+def _names_read(rules: CompiledRulebook) -> frozenset[str]:
+    formulas = [rule.formula for rule in rules.rules] + [axiom.formula for axiom in rules.axioms]
     return frozenset(name for formula in formulas for name in names_in(formula))

@@ -1,8 +1,8 @@
-"""A drive told state by state, in rulebooks' words."""
+"""A drive as a trace: states of the signals that a rulebook's vocabulary declares."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,15 +25,27 @@ from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import known_types
 from rulec.vocabulary import Vocabulary
 
+_SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
+    ego_signals,
+    other_signals,
+    map_signals,
+    junction_signals,
+    crossing_signals,
+    flow_signals,
+    lane_change_signals,
+    lane_mark_signals,
+)
+"""The signal passes, in the order in which traces name their signals."""
+
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """What ``ego`` did from ``start_s`` (s of the recording) on.
+    """A drive of ``ego`` as a trace that begins at ``start_s`` (s of the recording).
 
-    ``kinds`` are the words that the recording supplies, whether or not there is anybody to say them
-    of, and what their values are.
+    ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
+    object is there to have them.
     """
 
     ego: str
@@ -43,20 +55,20 @@ class Drive:
 
     @property
     def words(self) -> frozenset[str]:
-        """The words that the recording supplies."""
+        """The names of the signals that the recording supplies."""
         return frozenset(self.kinds)
 
     def time_s(self, state: int | None) -> float:
-        """When a state was (s of the recording); None is the last one."""
+        """The time of a state (s of the recording); None is the last one."""
         number = len(self.trace.states) - 1 if state is None else state
         return round(self.start_s + number * self.trace.step_s, 9)
 
 
 @dataclass(frozen=True, slots=True)
 class TraceWriter:
-    """In which words: those of a vocabulary, if there is one, and of these only some ``names``.
+    """The signals to write: those of a vocabulary if one is given, and of these only ``names``.
 
-    ``assumed`` is what holds in every state, whatever the recording says.
+    ``assumed`` are values that hold in every state, whatever the recording says.
     """
 
     vocabulary: Vocabulary | None = None
@@ -67,63 +79,56 @@ class TraceWriter:
 ALL_SIGNALS = TraceWriter()
 
 
-def to_trace(seen: DriveContext, ego: str, name: str, telling: TraceWriter) -> Drive:
-    """What ``ego`` did, as a trace of that name."""
-    words = ego_signals(seen) | other_signals(seen) | map_signals(seen) | junction_signals(seen)
-    words |= (
-        crossing_signals(seen)
-        | flow_signals(seen)
-        | lane_change_signals(seen)
-        | lane_mark_signals(seen)
+def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) -> Drive:
+    """The drive of ``ego`` as a trace called ``name``."""
+    signals = SignalColumns()
+    for signals_of in _SIGNALS:
+        signals |= signals_of(context)
+    participants = context.tracks.participants
+    types = [OBSTACLE_TYPES.get(x.type, OBSTACLE_TYPES["unknown"]) for x in participants]
+    if writer.vocabulary is not None:
+        signals = project_columns(signals, types, writer.vocabulary, writer.names)
+    signals |= SignalColumns(
+        {name: np.full(context.states, value) for name, value in writer.assumed.items()}
     )
-    types = [
-        OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"]) for one in seen.people.participants
-    ]
-    if telling.vocabulary is not None:
-        words = project_columns(words, types, telling.vocabulary, telling.names)
-    words |= SignalColumns(
-        {name: np.full(seen.states, value) for name, value in telling.assumed.items()}
-    )
-    there = list(presences(seen))
-    own_types = {one.name: types[one.row] for one in there}
-    if telling.vocabulary is None:
+    present = list(presences(context))
+    own_types = {presence.name: types[presence.row] for presence in present}
+    if writer.vocabulary is None:
         objects = {object_name: own[0] for object_name, own in own_types.items()}
     else:
-        objects = known_types(own_types, telling.vocabulary)
-    there = [one for one in there if one.name in objects]
-    last = seen.states - 1
+        objects = known_types(own_types, writer.vocabulary)
+    present = [presence for presence in present if presence.name in objects]
+    spans = {presence.name: (presence.first, presence.last) for presence in present}
+    whole = (0, context.states - 1)
     trace = Trace(
         name,
-        seen.recording.step_s,
+        context.recording.step_s,
         objects,
-        _states(words, there, seen.states),
-        {one.name: (one.first, one.last) for one in there if (one.first, one.last) != (0, last)},
+        _states(signals, present, context.states),
+        {object_name: span for object_name, span in spans.items() if span != whole},
     )
-    start_s = round(seen.first_step * seen.recording.step_s, 9)
-    return Drive(ego, start_s, trace, _kinds(words))
+    start_s = round(context.first_step * context.recording.step_s, 9)
+    columns = {**signals.world, **signals.about}
+    kinds = {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
+    return Drive(ego, start_s, trace, kinds)
 
 
-def _kinds(words: SignalColumns) -> dict[str, type]:
-    columns = {**words.world, **words.about}
-    return {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
-
-
-def _states(words: SignalColumns, there: Sequence[Presence], count: int) -> tuple[State, ...]:
+def _states(signals: SignalColumns, present: Sequence[Presence], count: int) -> tuple[State, ...]:
     states: list[dict[str, Any]] = [{} for _ in range(count)]
-    for name, column in words.world.items():
-        unknown = words.unknown.get(name)
+    for name, column in signals.world.items():
+        unknown = signals.unknown.get(name)
         for state, value in enumerate(column.tolist()):
             if unknown is None or not unknown[state]:
                 states[state][name] = value
-    for name, rows in words.about.items():
-        only = words.only.get(name)
-        said: list[dict[str, Any]] = [{} for _ in range(count)]
-        for one in there:
-            if only is None or only[one.row]:
-                span = range(one.first, one.last + 1)
-                for state, value in zip(span, rows[one.row, span].tolist(), strict=True):
-                    said[state][one.name] = value
-        for state, values in enumerate(said):
+    for name, rows in signals.about.items():
+        only = signals.only.get(name)
+        by_state: list[dict[str, Any]] = [{} for _ in range(count)]
+        for presence in present:
+            if only is None or only[presence.row]:
+                span = range(presence.first, presence.last + 1)
+                for state, value in zip(span, rows[presence.row, span].tolist(), strict=True):
+                    by_state[state][presence.name] = value
+        for state, values in enumerate(by_state):
             if values:
                 states[state][name] = values
     return tuple(states)

@@ -1,4 +1,4 @@
-"""Which rules were violated by whom, and when first."""
+"""A tally of violations over the drives of a recording."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rulec.monitoring.verdict import Verdict
 
 @dataclass(slots=True)
 class ViolationTally:
-    """Filled drive by drive.
+    """Verdicts, counted drive by drive.
 
-    ``first_s``: rule -> vehicle -> when it first violated it (s of the recording). ``words`` are
-    those that every drive supplies.
+    ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``words`` are
+    the names of the signals that every drive supplies.
     """
 
     satisfied: list[str] = field(default_factory=list)
@@ -25,21 +25,21 @@ class ViolationTally:
 
     @property
     def judged(self) -> int:
-        """How many drives have a verdict."""
+        """The number of drives that have a verdict."""
         return len(self.satisfied) + len(self.violated)
 
-    def add(self, one: DriveVerdict | NoDrive) -> None:
+    def add(self, verdict: DriveVerdict | NoDrive) -> None:
         """Count a drive."""
-        if isinstance(one, NoDrive):
-            self.not_judged.append(one)
+        if isinstance(verdict, NoDrive):
+            self.not_judged.append(verdict)
             return
-        drive = one.drive
-        if not isinstance(one.answer, Verdict):
-            self.not_judged.append(NoDrive(drive.ego, one.answer.error.diagnostics[0].message))
+        drive, answer = verdict.drive, verdict.answer
+        if not isinstance(answer, Verdict):
+            self.not_judged.append(NoDrive(drive.ego, answer.error.diagnostics[0].message))
             return
         self.words = drive.words if self.words is None else self.words & drive.words
-        (self.satisfied if one.answer.satisfied else self.violated).append(drive.trace.id)
-        for violation in one.answer.violations:
+        (self.satisfied if answer.satisfied else self.violated).append(drive.trace.id)
+        for violation in answer.violations:
             times = self.first_s.setdefault(violation.rule, {})
             at = drive.time_s(violation.step)
             times[drive.trace.id] = min(at, times.get(drive.trace.id, at))

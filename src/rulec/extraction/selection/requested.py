@@ -1,4 +1,4 @@
-"""What can be chosen about a recording, and its drives accordingly."""
+"""The drives of a recording that a user requests."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class RequestedDrives:
-    """Whose drives, by which thresholds, and what is taken for granted.
+    """A choice of egos and thresholds, and what is assumed.
 
-    No ``egos`` is everybody. ``assumed`` holds in every state. ``as_recorded``: a recording of
+    No ``egos`` are all vehicles. ``assumed`` holds in every state. ``as_recorded``: a recording of
     traffic on the other side than the rulebook's is not mirrored.
     """
 
@@ -41,7 +41,7 @@ class SelectedDrives:
     drives: Drives
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
-        """Those of one vehicle, worked out when they are asked for."""
+        """The drives of one vehicle, computed when they are asked for."""
         return self.drives.of(ego)
 
 
@@ -51,6 +51,7 @@ def selected_drives(
     file: str,
     traffic: Traffic = "",
     vocabulary: Vocabulary | None = None,
+    *,
     names: frozenset[str] | None = None,
 ) -> SelectedDrives:
     """The drives of a recording, for rules of a side of traffic, in the words of a vocabulary.
@@ -58,14 +59,13 @@ def selected_drives(
     Raises:
         RulecError: R0612 for a vehicle that is not there.
     """
-    own = recording.side
-    side = traffic or own or "right"
-    other = own is not None and own != side and not wanted.as_recorded
-    if other:
+    side = traffic or recording.side or "right"
+    mirrored = recording.side not in (None, side) and not wanted.as_recorded
+    if mirrored:
         recording = mirrored_recording(recording)
-    telling = TraceWriter(vocabulary, names, wanted.assumed)
-    drives = Drives(recording, side, wanted.thresholds, telling)
-    return SelectedDrives(recording, other, _chosen(drives.egos(), wanted.egos, file), drives)
+    writer = TraceWriter(vocabulary, names, wanted.assumed)
+    drives = Drives(recording, side, wanted.thresholds, writer)
+    return SelectedDrives(recording, mirrored, _chosen(drives.egos(), wanted.egos, file), drives)
 
 
 def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple[str, ...]:
@@ -74,7 +74,7 @@ def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple
             raise NOT_IN_RECORDING.error(
                 SourceLocation(file),
                 f"there is no vehicle `{ego}` that drives",
-                help=did_you_mean(ego, known) or _some(known),
+                help=did_you_mean(ego, known) or _examples(known),
             )
     return tuple(ego for ego in known if not wanted or ego in wanted)
 
@@ -82,7 +82,7 @@ def _chosen(known: tuple[str, ...], wanted: tuple[str, ...], file: str) -> tuple
 _MOST_NAMED = 12
 
 
-def _some(known: tuple[str, ...]) -> str:
+def _examples(known: tuple[str, ...]) -> str:
     if not known:
         return "nobody in this file does"
     more = f", or one of {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""

@@ -1,6 +1,6 @@
-"""What people on foot do at the pedestrian crossing before ego, and who has stopped for them.
+"""Signals of pedestrians at the crossing ahead of ego, and of vehicles that stop for them.
 
-Nobody has recorded what they intend. Who is on the crossing is on it, unless it walks away from
+Intentions are not recorded. Who is on the crossing is on it, unless it walks away from
 ego's lanes, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
 towards it is about to, if it will be there soon.
 """
@@ -19,57 +19,57 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def crossing_signals(view: DriveContext) -> SignalColumns:
-    """Words about those who walk, and about those who stop for them."""
-    use = _crossing_uses(view)
-    somebody = ((use > 0) & view.near).any(axis=0)
+def crossing_signals(context: DriveContext) -> SignalColumns:
+    """The signals of pedestrians, and of vehicles that stop for them."""
+    uses = _crossing_uses(context)
+    used = ((uses > 0) & context.relevant).any(axis=0)
     return SignalColumns(
         about={
-            "crossing_use": named_values(use, _USES),
-            "stopped_for_pedestrian": _stopped(view) & somebody,
+            "crossing_use": named_values(uses, _USES),
+            "stopped_for_pedestrian": _stopped(context) & used,
         },
         only={
-            "crossing_use": view.people.of_kind("pedestrian"),
-            "stopped_for_pedestrian": view.people.of_kind("vehicle"),
+            "crossing_use": context.tracks.of_type("pedestrian"),
+            "stopped_for_pedestrian": context.tracks.of_type("vehicle"),
         },
     )
 
 
-def _crossing_uses(view: DriveContext) -> NDArray[intp]:
-    """The number of the use in ``_USES``, of everybody; it means something of who walks only."""
-    others, limits = view.others, view.thresholds
-    straight = view.road.lanes.straight
-    start, end = next_crossing(view)
+def _crossing_uses(context: DriveContext) -> NDArray[intp]:
+    """Indices into ``_USES`` for all participants; they are meaningful for pedestrians only."""
+    others, limits = context.extents, context.thresholds
+    straight = context.road.lanes.straight
+    start, end = next_crossing(context)
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
-    walks = view.people.speed * KMH >= limits.standing_kmh
-    towards = _towards(view)
-    crossing = beside & view.on_crosswalk & view.in_the_road
-    on = crossing & (view.touched.any(axis=-1) | ~walks | (towards > 0))
+    walks = context.tracks.speed * KMH >= limits.standing_kmh
+    towards = _towards(context)
+    crossing = beside & context.on_crosswalk & context.on_lane
+    on = crossing & (context.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross
-    comes = walks & (towards > np.abs(others.along))
-    soon = beside & comes & (to_road <= towards * limits.about_to_s)
+    approaches = walks & (towards > np.abs(others.along))
+    soon = beside & approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
-    found: NDArray[intp] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
-    return found
+    uses: NDArray[intp] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+    return uses
 
 
-def _towards(view: DriveContext) -> Floats:
+def _towards(context: DriveContext) -> Floats:
     """The speed towards the middle of the road, across it (m/s)."""
-    straight = view.road.lanes.straight
-    left = view.others.across
-    towards: Floats = np.where(view.others.w < (straight[0] + straight[-1]) / 2, left, -left)
+    straight = context.road.lanes.straight
+    left = context.extents.across
+    towards: Floats = np.where(context.extents.w < (straight[0] + straight[-1]) / 2, left, -left)
     return towards
 
 
-def _stopped(view: DriveContext) -> Flags:
-    """Who stands before the crossing that lies ahead of ego, near to it."""
-    start, _ = next_crossing(view)
-    stands = view.people.speed * KMH < view.thresholds.standing_kmh
-    way = start - view.others.s_max
-    found: Flags = (
-        stands & view.touched.any(axis=-1) & (way >= 0) & (way <= 2 * view.thresholds.zone_m)
+def _stopped(context: DriveContext) -> Flags:
+    """Whether a participant stands on ego's lanes shortly before the crossing ahead of ego."""
+    start, _ = next_crossing(context)
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    way = start - context.extents.s_max
+    stopped: Flags = (
+        stands & context.touched.any(axis=-1) & (way >= 0) & (way <= 2 * context.thresholds.zone_m)
     )
-    return found
+    return stopped

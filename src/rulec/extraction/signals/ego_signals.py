@@ -1,4 +1,4 @@
-"""What ego does: its speed, its lane, and how it keeps in it."""
+"""Signals of ego: its type, speed, lane, and place in it."""
 
 from __future__ import annotations
 
@@ -22,77 +22,77 @@ _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def ego_signals(view: DriveContext) -> SignalColumns:
-    """Words about ego alone."""
-    limits = view.thresholds
-    count = view.states
-    (participant,) = view.ego.participants
-    speed = rounded(zero_if_standing(view.ego.speed[0] * KMH, limits))
-    gained = view.ego.acceleration[0]
-    there = view.road.lanes_at(view.own.s[0])
-    lane = steady_lane(view, there)
+def ego_signals(context: DriveContext) -> SignalColumns:
+    """The signals of ego alone."""
+    limits = context.thresholds
+    count = context.states
+    (participant,) = context.ego.participants
+    speed = rounded(zero_if_standing(context.ego.speed[0] * KMH, limits))
+    gained = context.ego.acceleration[0]
+    existing = context.road.lanes_at(context.ego_extents.s[0])
+    lane = steady_lane(context, existing)
     return SignalColumns(
         {
             "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
-            "ego_length": rounded(np.full(count, _length(view))),
+            "ego_length": rounded(np.full(count, _length(context))),
             "speed": speed,
             "accelerating": gained > limits.accelerating_mps2,
             "braking_hard": gained < -limits.braking_hard_mps2,
             "can_stop_at_once": speed <= limits.stops_at_once_kmh,
-            "lane": named_values(_from_kerb(view, lane, there), _LANES),
-            "lanes": named_values(np.clip(there.sum(axis=1) - 1, 0, 2), _COUNTS),
-            "straddling": _straddling(view, there),
-            "lane_position": named_values(_place_in_lane(view, lane), _PLACES),
+            "lane": named_values(_from_kerb(context, lane, existing), _LANES),
+            "lanes": named_values(np.clip(existing.sum(axis=1) - 1, 0, 2), _COUNTS),
+            "straddling": _straddling(context, existing),
+            "lane_position": named_values(_place_in_lane(context, lane), _PLACES),
         }
     )
 
 
-def _length(view: DriveContext) -> float:
-    """How long ego is: the longest that it is along its road, which bends make a little longer."""
-    return float(np.nanmedian(view.own.s_max - view.own.s_min))
+def _length(context: DriveContext) -> float:
+    """Ego's length along its road (m), the median over its states."""
+    return float(np.nanmedian(context.ego_extents.s_max - context.ego_extents.s_min))
 
 
-def steady_lane(view: DriveContext, there: Flags) -> NDArray[intp]:
-    """Ego's lane by its middle; one is left only when the middle is well beyond the mark."""
-    straight = view.road.lanes.straight
-    found = np.array(view.lane)
-    middle = view.own.w[0]
-    for state in range(1, len(found)):
-        before = found[state - 1]
+def steady_lane(context: DriveContext, existing: Flags) -> NDArray[intp]:
+    """Ego's lane by its middle, with hysteresis: left only ``changed_m`` beyond its mark."""
+    straight = context.road.lanes.straight
+    lane = np.array(context.ego_lane)
+    middle = context.ego_extents.w[0]
+    for state in range(1, len(lane)):
+        before = lane[state - 1]
         beyond = max(straight[before] - middle[state], middle[state] - straight[before + 1])
-        if beyond < view.thresholds.changed_m and there[state, before]:
-            found[state] = before
-    return found
+        if beyond < context.thresholds.changed_m and existing[state, before]:
+            lane[state] = before
+    return lane
 
 
-def _from_kerb(view: DriveContext, lane: NDArray[intp], there: Flags) -> NDArray[intp]:
-    """0 for the lane at the kerb, 2 for the one farthest from it, 1 for one between."""
+def _from_kerb(context: DriveContext, lane: NDArray[intp], existing: Flags) -> NDArray[intp]:
+    """Indices into ``_LANES``: 0 at the kerb, 2 farthest from it, 1 between."""
     state = np.arange(len(lane))
-    right: NDArray[intp] = np.cumsum(there, axis=1)[state, lane] - there[state, lane]
-    count = there.sum(axis=1)
-    rank = right if view.side == "right" else count - 1 - right
-    found: NDArray[intp] = np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
-    return found
+    right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
+    count = existing.sum(axis=1)
+    rank = right if context.side == "right" else count - 1 - right
+    from_kerb: NDArray[intp] = np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
+    return from_kerb
 
 
-def _straddling(view: DriveContext, there: Flags) -> Flags:
-    """Is ego in two lanes at once?"""
-    straight = view.road.lanes.straight
-    reach = view.thresholds.touching_m
-    low, high = view.own.w_min[0][:, None], view.own.w_max[0][:, None]
+def _straddling(context: DriveContext, existing: Flags) -> Flags:
+    """Whether ego reaches into two lanes."""
+    straight = context.road.lanes.straight
+    reach = context.thresholds.touching_m
+    low, high = context.ego_extents.w_min[0][:, None], context.ego_extents.w_max[0][:, None]
     inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
-    both: Flags = ((inside > reach) & there).sum(axis=1) > 1
+    both: Flags = ((inside > reach) & existing).sum(axis=1) > 1
     return both
 
 
-def _place_in_lane(view: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
-    """0 centred, 1 at the near edge, 2 at the far one."""
-    straight = view.road.lanes.straight
-    right: Floats = view.own.w_min[0] - straight[lane]
-    left: Floats = straight[lane + 1] - view.own.w_max[0]
-    near, far = (right, left) if view.side == "right" else (left, right)
+def _place_in_lane(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
+    """Indices into ``_PLACES``: 0 centred, 1 at the near edge, 2 at the far one."""
+    straight = context.road.lanes.straight
+    right: Floats = context.ego_extents.w_min[0] - straight[lane]
+    left: Floats = straight[lane + 1] - context.ego_extents.w_max[0]
+    near, far = (right, left) if context.side == "right" else (left, right)
     # In a lane that is hardly wider than ego both edges are near, and neither is kept to
-    edge = view.thresholds.at_edge_m
+    edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)
-    found: NDArray[intp] = np.where(kept, np.where(near < far, 1, 2), 0)
-    return found
+    places: NDArray[intp] = np.where(kept, np.where(near < far, 1, 2), 0)
+    return places

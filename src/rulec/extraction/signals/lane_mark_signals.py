@@ -1,4 +1,4 @@
-"""What ego does to the marks of its road, where the map has marks."""
+"""Signals of road marks, where the map has marks."""
 
 from __future__ import annotations
 
@@ -12,22 +12,24 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.scenario.recorded.recording import Lanelet
 
 
-def lane_mark_signals(view: DriveContext) -> SignalColumns:
-    """Words about marks; none at all if the map has none."""
-    if not any(x.left_mark or x.right_mark for x in view.recording.lanelets.values()):
+def lane_mark_signals(context: DriveContext) -> SignalColumns:
+    """The signals of marks; none at all if the map has none."""
+    known = context.recording.lanelets.values()
+    if not any(lanelet.left_mark or lanelet.right_mark for lanelet in known):
         return SignalColumns()
-    there = view.road.lanes_at(view.own.s[0])
-    pieces = view.road.piece(view.own.s[0]).tolist()
-    lanes = steady_lane(view, there).tolist()
+    existing = context.road.lanes_at(context.ego_extents.s[0])
+    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
+    lanes = steady_lane(context, existing).tolist()
     names = ("marked_lanes", "on_solid_line", "broken_on_own_side")
-    columns = np.zeros((len(names), view.states), dtype=bool)
-    unknown = np.zeros(view.states, dtype=bool)
+    columns = np.zeros((len(names), context.states), dtype=bool)
+    unknown = np.zeros(context.states, dtype=bool)
     for state, (piece, lane) in enumerate(zip(pieces, lanes, strict=True)):
-        row = [x if on else None for x, on in zip(view.road.rows[piece], there[state], strict=True)]
+        lanelets = zip(context.road.rows[piece], existing[state], strict=True)
+        row = [lanelet if exists else None for lanelet, exists in lanelets]
         between = [_between(*pair) for pair in pairwise(row) if all(pair)]
         unknown[state] = any(not any(marks) for marks in between)
         columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
-        over = [_own_first(marks, line, lane) for line, marks in _over(view, state, row)]
+        over = [_own_first(marks, line, lane) for line, marks in _over(context, state, row)]
         columns[1, state] = any("solid" in marks for marks in over)
         columns[2, state] = any(marks == ("broken", "solid") for marks in over)
     return SignalColumns(dict(zip(names, columns, strict=True)), unknown={"marked_lanes": unknown})
@@ -39,12 +41,12 @@ def _between(right: Lanelet | None, left: Lanelet | None) -> tuple[str | None, s
 
 
 def _over(
-    view: DriveContext, state: int, row: list[Lanelet | None]
+    context: DriveContext, state: int, row: list[Lanelet | None]
 ) -> list[tuple[int, tuple[str | None, str | None]]]:
-    """The lines that ego has a part of itself on either side of: their numbers and marks."""
-    straight = view.road.lanes.straight
-    low, high = float(view.own.w_min[0, state]), float(view.own.w_max[0, state])
-    reach = view.thresholds.touching_m
+    """The numbers and marks of the lines that ego's body lies across."""
+    straight, own = context.road.lanes.straight, context.ego_extents
+    low, high = (float(bound[0, state]) for bound in (own.w_min, own.w_max))
+    reach = context.thresholds.touching_m
     padded = [None, *row, None]
     return [
         (line, _between(padded[line], padded[line + 1]))
@@ -56,6 +58,6 @@ def _over(
 def _own_first(
     marks: tuple[str | None, str | None], line: int, lane: int
 ) -> tuple[str | None, str | None]:
-    """The mark at ego's side of a line first; a line has the number of the lane to its left."""
+    """Put the mark at ego's side first; a line has the number of the lane to its left."""
     right, left = marks
     return (left, right) if lane >= line else (right, left)

@@ -1,4 +1,4 @@
-"""What the map says where ego is: surface, limits, the class of the road, signs, crossings."""
+"""Signals of the map where ego is: surface, limit, class of the road, signs, crossings."""
 
 from __future__ import annotations
 
@@ -17,71 +17,75 @@ _SIGNS = {
     "STOP": ("stop_sign", True),
     "NO_OVERTAKING_START": ("no_overtaking_sign", False),
 }
-"""Sign -> word, and whether it is for the line at the lanelet's end."""
+"""Sign -> signal, and whether it is for the line at the lanelet's end."""
 
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
 
 
-def map_signals(view: DriveContext) -> SignalColumns:
-    """Words about the road where ego is. What the map has no word about at all is not there."""
-    lanelets = _lanelets_at(view, view.own.s[0])
-    # Where ego's front was one state before, so that who crosses a line still has its sign
-    front = view.own.s_max[0]
-    left = _lanelets_at(view, np.append(front[:1], front[:-1]))
-    to_crossing = distance_to_crossing(view)
+def map_signals(context: DriveContext) -> SignalColumns:
+    """The signals of the road where ego is; none of what the map says nothing about."""
+    lanelets = _lanelets_at(context, context.ego_extents.s[0])
+    # Where ego's front was one state before, so that its sign still holds when ego crosses a line
+    front = context.ego_extents.s_max[0]
+    being_left = _lanelets_at(context, np.append(front[:1], front[:-1]))
+    to_crossing = distance_to_crossing(context)
     on = to_crossing <= 0
     world = {
-        "surface": _surface(view, on),
+        "surface": _surface(context, on),
         "distance_to_crossing": rounded(to_crossing),
-        "crossing_zone": to_crossing <= view.thresholds.zone_m,
+        "crossing_zone": to_crossing <= context.thresholds.zone_m,
     }
     unknown: dict[str, Flags] = {}
-    if any(one.limit_mps is not None for one in view.recording.lanelets.values()):
-        limits = [NO_LIMIT_KMH if x.limit_mps is None else x.limit_mps * KMH for x in lanelets]
-        world["limit"] = rounded(np.array(limits))
-    classes = [next((_CLASSES[t] for t in x.types if t in _CLASSES), "") for x in lanelets]
+    if any(lanelet.limit_mps is not None for lanelet in context.recording.lanelets.values()):
+        limits = [lanelet.limit_mps for lanelet in lanelets]
+        known = [NO_LIMIT_KMH if limit is None else limit * KMH for limit in limits]
+        world["limit"] = rounded(np.array(known))
+    classes = [
+        next((_CLASSES[kind] for kind in lanelet.types if kind in _CLASSES), "")
+        for lanelet in lanelets
+    ]
     if any(classes):
         world["road_class"] = np.array(classes)
         unknown["road_class"] = world["road_class"] == ""
-    for sign, (word, at_line) in _SIGNS.items():
-        if any(sign in one.signs for one in view.recording.lanelets.values()):
-            under = left if at_line else lanelets
-            world[word] = np.array([sign in one.signs for one in under])
+    for sign, (name, at_line) in _SIGNS.items():
+        if any(sign in lanelet.signs for lanelet in context.recording.lanelets.values()):
+            under = being_left if at_line else lanelets
+            world[name] = np.array([sign in lanelet.signs for lanelet in under])
     return SignalColumns(world, unknown=unknown)
 
 
-def _lanelets_at(view: DriveContext, s: Floats) -> list[Lanelet]:
+def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
     """The lanelet of ego's lane at places, one for each state."""
-    pieces = view.road.piece(s).tolist()
-    lanes = view.lane.tolist()
-    return [view.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
+    pieces = context.road.piece(s).tolist()
+    lanes = context.ego_lane.tolist()
+    return [context.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
 
 
-def distance_to_crossing(view: DriveContext) -> Floats:
-    """From ego's front to the next pedestrian crossing, 0 on it (m)."""
-    start, _ = next_crossing(view)
-    way: Floats = np.clip(start - view.own.s_max[0], 0.0, NO_CROSSING_M)
-    return way
+def distance_to_crossing(context: DriveContext) -> Floats:
+    """The distance (m) from ego's front to the next pedestrian crossing, 0 on it."""
+    start, _ = next_crossing(context)
+    distance: Floats = np.clip(start - context.ego_extents.s_max[0], 0.0, NO_CROSSING_M)
+    return distance
 
 
-def next_crossing(view: DriveContext) -> tuple[Floats, Floats]:
-    """Where the pedestrian crossing that ego is on, or the next one, begins and ends, by state.
+def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
+    """Begin and end of the pedestrian crossing that ego is on, or of the next one, by state.
 
     Infinite where there is none.
     """
-    start, end = np.full((2, view.states), np.inf)
-    for low, high in sorted(view.road.crossings, reverse=True):
-        before = view.own.s_min[0] < high
+    start, end = np.full((2, context.states), np.inf)
+    for low, high in sorted(context.road.crossings, reverse=True):
+        before = context.ego_extents.s_min[0] < high
         start, end = np.where(before, low, start), np.where(before, high, end)
     return start, end
 
 
-def _surface(view: DriveContext, on_crossing: Flags) -> SignalColumn:
-    """What ego is on; of crossings any part of it counts, of the rest its middle."""
-    middle = view.own.s[0]
-    found = np.full(view.states, "carriageway", dtype="<U11")
-    for start, end in view.road.junctions:
-        found[(middle > start) & (middle < end)] = "junction"
-    found[["busLane" in one.types for one in _lanelets_at(view, middle)]] = "bus_lane"
-    found[on_crossing] = "crossing"
-    return found
+def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
+    """The surface under ego: any part of it counts on a crossing, its middle elsewhere."""
+    middle = context.ego_extents.s[0]
+    surfaces = np.full(context.states, "carriageway", dtype="<U11")
+    for start, end in context.road.junctions:
+        surfaces[(middle > start) & (middle < end)] = "junction"
+    surfaces[["busLane" in lanelet.types for lanelet in _lanelets_at(context, middle)]] = "bus_lane"
+    surfaces[on_crossing] = "crossing"
+    return surfaces

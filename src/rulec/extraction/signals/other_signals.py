@@ -1,4 +1,4 @@
-"""What is measured of others, and what they do: relations, gaps, speeds, who stands, who comes."""
+"""Signals of other participants: relations, gaps, speeds, oncoming and standing ones."""
 
 from __future__ import annotations
 
@@ -11,93 +11,93 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
 
 LONGEST_S = 1000.0
-"""No headway is longer."""
+"""The longest headway (s), also that of an ego that stands."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def other_signals(view: DriveContext) -> SignalColumns:
-    """Words about objects."""
-    own, others, limits = view.own, view.others, view.thresholds
+def other_signals(context: DriveContext) -> SignalColumns:
+    """The signals of objects."""
+    own, others, limits = context.ego_extents, context.extents, context.thresholds
     station = relations.station(own, others)
-    lateral = relations.lateral(own, others, view.touched, view.road)
+    lateral = relations.lateral(own, others, context.touched, context.road)
     gap = relations.gap(own, others)
-    walking = view.people.of_kind("pedestrian")
+    bodies = context.tracks.participants
+    walking = context.tracks.of_type("pedestrian")
     follows = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
     return SignalColumns(
         about={
-            "position": relations.position(own, others, view.touched, walking, view.road),
+            "position": relations.position(own, others, context.touched, walking, context.road),
             "station": named_values(station, STATIONS),
             "lateral": named_values(lateral, LATERALS),
             "gap": rounded(gap),
-            "time_headway": rounded(_headway(view, gap)),
+            "time_headway": rounded(_headway(context, gap)),
             "lateral_gap": rounded(relations.lateral_gap(own, others)),
-            "speed_difference": rounded(own.along * KMH - view.speeds()),
-            "safe_gap": np.logical_or(~follows, gap >= safe_distance(view)),
-            "precedes": _precedes(view, follows, gap),
-            "oncoming": is_oncoming(view) | _waits_to_come(view),
-            "stopped": view.people.speed * KMH < limits.standing_kmh,
-            "parked": _for_good(view, [one.standing for one in view.people.participants]),
-            "two_wheeled": _for_good(
-                view, [one.type in _TWO_WHEELED for one in view.people.participants]
-            ),
-            "in_the_road": view.in_the_road,
+            "speed_difference": rounded(own.along * KMH - context.speeds()),
+            "safe_gap": np.logical_or(~follows, gap >= safe_distance(context)),
+            "precedes": _precedes(context, follows, gap),
+            "oncoming": is_oncoming(context) | _waits_oncoming(context),
+            "stopped": context.tracks.speed * KMH < limits.standing_kmh,
+            "parked": _constant(context, [body.standing for body in bodies]),
+            "two_wheeled": _constant(context, [body.type in _TWO_WHEELED for body in bodies]),
+            "in_the_road": context.on_lane,
         },
-        only={"in_the_road": view.people.of_kind("vulnerable_user")},
+        only={"in_the_road": context.tracks.of_type("vulnerable_user")},
     )
 
 
-def _headway(view: DriveContext, gap: Floats) -> Floats:
-    """How long ego takes for the gap at its speed (s); as good as for ever if it stands."""
-    moves = view.own.along * KMH >= view.thresholds.standing_kmh
-    seconds = gap / np.where(moves, view.own.along, 1.0)
+def _headway(context: DriveContext, gap: Floats) -> Floats:
+    """The time (s) that ego takes for the gap at its speed; ``LONGEST_S`` if it stands."""
+    moves = context.ego_extents.along * KMH >= context.thresholds.standing_kmh
+    seconds = gap / np.where(moves, context.ego_extents.along, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
-def safe_distance(view: DriveContext) -> Floats:
-    """How far behind somebody ego has to be not to run into it if it brakes as hard as it can.
+def safe_distance(context: DriveContext) -> Floats:
+    """The distance (m) at which ego can stop behind a participant that brakes as hard as it can.
 
-    Ego brakes as hard after its reaction time. Who comes towards ego counts as standing.
+    Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
+    Shammah, Shashua 2017). An oncoming participant counts as standing.
     """
-    limits = view.thresholds
-    own = np.maximum(view.own.along, 0.0)
-    other = np.maximum(view.others.along, 0.0)
+    limits = context.thresholds
+    own = np.maximum(context.ego_extents.along, 0.0)
+    other = np.maximum(context.extents.along, 0.0)
     distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
     return distance
 
 
-def is_oncoming(view: DriveContext) -> Flags:
-    """Who moves against ego's direction?"""
-    moves = np.abs(view.others.along) * KMH >= view.thresholds.standing_kmh
-    against: Flags = moves & (view.others.along < 0)
-    return against & _faces_ego(view)
+def is_oncoming(context: DriveContext) -> Flags:
+    """Whether a participant moves against ego's direction."""
+    moves = np.abs(context.extents.along) * KMH >= context.thresholds.standing_kmh
+    against: Flags = moves & (context.extents.along < 0)
+    return against & _faces_ego(context)
 
 
-def _waits_to_come(view: DriveContext) -> Flags:
-    """Which vehicles stand on lanes that lead against ego's way, as in a queue there?
+def _waits_oncoming(context: DriveContext) -> Flags:
+    """Whether a vehicle stands on lanes that lead against ego's way, as in a queue there.
 
-    Ego does not overtake them, no more than those that move. Who stands in ego's own lanes the
-    wrong way round is an obstacle there.
+    Ego does not overtake it, no more than one that moves. A vehicle that stands the wrong way
+    round in ego's own lanes is an obstacle there.
     """
-    stands = np.abs(view.others.along) * KMH < view.thresholds.standing_kmh
-    vehicles = np.array(view.people.of_kind("vehicle"), dtype=bool)[:, None]
-    waits: Flags = stands & vehicles & ~view.touched.any(axis=-1)
-    return waits & _faces_ego(view)
+    stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
+    vehicles = np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
+    waits: Flags = stands & vehicles & ~context.touched.any(axis=-1)
+    return waits & _faces_ego(context)
 
 
-def _faces_ego(view: DriveContext) -> Flags:
-    faces: Flags = np.cos(view.others.turned) < -0.5
+def _faces_ego(context: DriveContext) -> Flags:
+    faces: Flags = np.cos(context.extents.turned) < -0.5
     return faces
 
 
-def _precedes(view: DriveContext, follows: Flags, gap: Floats) -> Flags:
-    """Who is the next one ahead of ego in its lane?"""
-    ahead = np.where(follows & view.near & ~is_oncoming(view), gap, np.inf)
+def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
+    """Whether a participant is the next one ahead of ego in its lane."""
+    ahead = np.where(follows & context.relevant & ~is_oncoming(context), gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
     next_one: Flags = (ahead == nearest) & np.isfinite(ahead)
     return next_one
 
 
-def _for_good(view: DriveContext, flags: list[bool]) -> Flags:
-    """The same in every state."""
-    return np.repeat(np.array(flags, dtype=bool)[:, None], view.states, axis=1)
+def _constant(context: DriveContext, flags: list[bool]) -> Flags:
+    """A flag for each participant, repeated in every state."""
+    return np.repeat(np.array(flags, dtype=bool)[:, None], context.states, axis=1)

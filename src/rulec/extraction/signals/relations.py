@@ -1,4 +1,4 @@
-"""Where ego is, seen from others: along the road, across it, and how far away.
+"""Relations of ego to others: along the road, across it, and the distance between.
 
 Along the road bodies count: ego is behind somebody until its front is level with the other's rear.
 Across the road lanes count, those of the other's body and that of ego's middle, so that who keeps
@@ -28,39 +28,39 @@ _STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
-def lanes_touched(placed: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
-    """Which lanes bodies reach into; the last axis is that of the lanes."""
+def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
+    """Whether bodies reach into lanes; the last axis is that of the lanes."""
     right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
-    low, high = placed.w_min[..., None], placed.w_max[..., None]
+    low, high = extents.w_min[..., None], extents.w_max[..., None]
     inside = np.minimum(high, left) - np.maximum(low, right)
     # A narrow body, such as a pedestrian's, is in a lane with most of it
     enough = np.minimum(thresholds.touching_m, (high - low) / 2)
-    touched: Flags = (inside > enough) & road.lanes_at(placed.s)
+    touched: Flags = (inside > enough) & road.lanes_at(extents.s)
     return touched
 
 
-def station(own: RoadExtents, others: RoadExtents) -> Codes:
-    """Behind, beside or in front of others."""
-    behind = own.s_max <= others.s_min
-    ahead = own.s_min >= others.s_max
+def station(ego: RoadExtents, others: RoadExtents) -> Codes:
+    """Ego behind, beside or in front of others, as indices into ``STATIONS``."""
+    behind = ego.s_max <= others.s_min
+    ahead = ego.s_min >= others.s_max
     return np.where(behind, BEHIND, np.where(ahead, IN_FRONT_OF, BESIDE))
 
 
-def lateral(own: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenRoad) -> Codes:
-    """Right of others, in their lanes, or left of them."""
+def lateral(ego: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenRoad) -> Codes:
+    """Ego right of others, in their lanes, or left of them, as indices into ``LATERALS``."""
     low, high = _widened(others, touched, road)
-    return _side(own.w, low, high)
+    return _side(ego.w, low, high)
 
 
 def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Floats, Floats]:
-    """The bounds of the lanes that others are in; of who is in none, its own."""
+    """The bounds of the lanes that others are in; their own where they are in none."""
     straight = road.lanes.straight
     first = touched.argmax(axis=-1)
     last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
-    some = touched.any(axis=-1)
+    inside = touched.any(axis=-1)
     return (
-        np.where(some, straight[first], others.w_min),
-        np.where(some, straight[last], others.w_max),
+        np.where(inside, straight[first], others.w_min),
+        np.where(inside, straight[last], others.w_max),
     )
 
 
@@ -68,20 +68,20 @@ def _side(w: Floats, low: Floats, high: Floats) -> Codes:
     return np.where(w <= low, RIGHT_OF, np.where(w >= high, LEFT_OF, SAME_LANE))
 
 
-def gap(own: RoadExtents, others: RoadExtents) -> Floats:
-    """The distance along the road between bodies, 0 beside each other."""
-    return np.maximum(np.maximum(others.s_min - own.s_max, own.s_min - others.s_max), 0.0)
+def gap(ego: RoadExtents, others: RoadExtents) -> Floats:
+    """The distance (m) along the road between bodies, 0 beside each other."""
+    return np.maximum(np.maximum(others.s_min - ego.s_max, ego.s_min - others.s_max), 0.0)
 
 
-def lateral_gap(own: RoadExtents, others: RoadExtents) -> Floats:
-    """The distance across the road between bodies, 0 behind each other."""
-    return np.maximum(np.maximum(others.d_min - own.d_max, own.d_min - others.d_max), 0.0)
+def lateral_gap(ego: RoadExtents, others: RoadExtents) -> Floats:
+    """The distance (m) across the road between bodies, 0 behind each other."""
+    return np.maximum(np.maximum(others.d_min - ego.d_max, ego.d_min - others.d_max), 0.0)
 
 
 def position(
-    own: RoadExtents, others: RoadExtents, touched: Flags, walking: Flags, road: DrivenRoad
+    ego: RoadExtents, others: RoadExtents, touched: Flags, walking: Flags, road: DrivenRoad
 ) -> NDArray[np.str_]:
-    """The paper's letters, b, f, l and r; who walks is seen in its own frame.
+    """The paper's letters, b, f, l and r; pedestrians have a frame of their own.
 
     Where bodies are beside each other in one lane their middles decide.
     """
@@ -96,19 +96,19 @@ def position(
             np.where(on, np.minimum(s_min, start), s_min),
             np.where(on, np.maximum(s_max, end), s_max),
         )
-    column = np.where(own.s_max <= s_min, BEHIND, np.where(own.s_min >= s_max, IN_FRONT_OF, BESIDE))
-    row = _side(own.w, low, high)
+    column = np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
+    row = _side(ego.w, low, high)
     inside = (row == SAME_LANE) & (column == BESIDE)
-    column = np.where(inside, np.where(own.s < others.s, BEHIND, IN_FRONT_OF), column)
+    column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])
     letters: NDArray[np.str_] = tables[facing, 3 * row + column]
     return letters
 
 
 def _facing(others: RoadExtents) -> Codes:
-    """Where people go, or look if they stand, rounded to a right angle of the road.
+    """The direction of motion, of the heading at rest, rounded to a right angle of the road.
 
-    Half-way counts as across it.
+    Indices into ``_FACING``; half-way counts as across the road.
     """
     moves = np.hypot(others.along, others.across) > _STANDS_MPS
     angle = np.where(moves, np.arctan2(others.across, others.along), others.turned)

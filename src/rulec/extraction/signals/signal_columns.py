@@ -1,4 +1,4 @@
-"""What is said of a drive: columns of values by name, about the world or about objects."""
+"""The signals of a drive as columns: by name, about the world or about objects."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ SignalColumn = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class SignalColumns:
-    """``world``: a value for every state. ``about``: a row of them for everybody there.
+    """``world``: a value for each state. ``about``: a row of values for each participant.
 
-    ``unknown``: where nothing can be said of a word of the world. ``only``: of whom a word about
-    objects can be said at all.
+    ``unknown``: the states in which a signal of the world has no value. ``only``: the participants
+    that a signal about objects applies to.
     """
 
     world: Mapping[str, SignalColumn] = field(default_factory=dict)
@@ -37,10 +37,10 @@ class SignalColumns:
 
 
 def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
-    """The names that whole numbers stand for."""
+    """The names that indices stand for."""
     return np.array(names)[codes]
 
 
 def rounded(values: SignalColumn) -> SignalColumn:
-    """Numbers as they are written: to a hundredth, as places are no better known."""
+    """Numbers to a hundredth, as places are no better known, without negative zeros."""
     return np.round(values, 2) + 0.0

@@ -1,9 +1,10 @@
-"""The road that a vehicle really drove: the chain of lanelets along which its states lie.
+"""Map matching, second step: the chain of lanelets along which a vehicle's states lie.
 
-Lanelets overlap in junctions, and ego changes lanes, so that the lanelet of a single state says
-little. Of all chains in which each lanelet leads to the next, the one is chosen that ego's states
-are best on, a lane beside counting as worse the farther away it is (a shortest path over the
-moments). Where no chain goes on, as when a recording jumps, the drive is parted.
+Lanelets overlap in junctions, and ego changes lanes, so that the match of a single state says
+little. Of all chains in which each lanelet leads to the next, the cheapest is chosen: a shortest
+path over the moments by dynamic programming (Viterbi, "Error bounds for convolutional codes", 1967;
+for map matching Newson, Krumm 2009), where a lane beside a match costs more the farther away it is.
+Where no chain goes on, as when a recording jumps, the drive is parted.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.route import is_lane, lanes_beside
 
 MOST_HOPS = 4
-"""A vehicle passes at most so many lanelets between two of its states."""
+"""The number of lanelets that a vehicle passes at most between two of its states."""
 
 _HOP_COST = 0.05
 _LANE_COST = 1.0
@@ -24,93 +25,95 @@ _LANE_COST = 1.0
 
 @dataclass(frozen=True, slots=True)
 class RouteStretch:
-    """Ego drives along ``way`` from the first column to the last, both included."""
+    """Columns ``first`` to ``last``, both included, in which ego follows a chain of lanelets."""
 
     first: int
     last: int
-    way: tuple[str, ...]
+    route: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class _Path:
-    """The best chain so far that ends in a lanelet: its cost, and its last hop."""
+class _ChainEnd:
+    """The cheapest chain so far that ends in a lanelet: its cost, its last hops, what precedes."""
 
     cost: float
     hops: tuple[str, ...]
-    before: _Path | None
+    before: _ChainEnd | None
 
 
-def driven_stretches(recording: Recording, moments: MatchedLanelets) -> Iterator[RouteStretch]:
-    """The pieces of a drive, each along one road, in their order."""
+def driven_stretches(recording: Recording, matches: MatchedLanelets) -> Iterator[RouteStretch]:
+    """The stretches of a drive, each along one road, in their order."""
     first = last = -1
-    best: dict[str, _Path] = {}
-    for column, places in moments.items():
-        wanted = _rows(recording, places)
-        onward = _onward(recording, best, wanted)
+    best: dict[str, _ChainEnd] = {}
+    for column, matched in matches.items():
+        costs = _costs_of_rows(recording, matched)
+        onward = _onward(recording, best, costs)
         if not onward:
             if best:
-                yield RouteStretch(first, last, _way(best))
+                yield RouteStretch(first, last, _cheapest_route(best))
             first = column
-            onward = {number: _Path(cost, (number,), None) for number, cost in wanted.items()}
+            onward = {number: _ChainEnd(cost, (number,), None) for number, cost in costs.items()}
         best, last = onward, column
     if best:
-        yield RouteStretch(first, last, _way(best))
+        yield RouteStretch(first, last, _cheapest_route(best))
 
 
-def _rows(recording: Recording, places: Mapping[str, float]) -> dict[str, float]:
-    """The lanelets that hold a state, and those beside them, with how badly they fit."""
-    found: dict[str, float] = {}
-    for number, cost in places.items():
+def _costs_of_rows(recording: Recording, matched: Mapping[str, float]) -> dict[str, float]:
+    """The costs of the lanelets that match a state, and of those beside them."""
+    costs: dict[str, float] = {}
+    for number, cost in matched.items():
         for left in (True, False):
             row = (number, *lanes_beside(recording, number, left=left))
-            for lanes, one in enumerate(row):
-                found[one] = min(
-                    found.get(one, cost + lanes * _LANE_COST), cost + lanes * _LANE_COST
-                )
-    return found
+            for lanes, lanelet in enumerate(row):
+                beside_cost = cost + lanes * _LANE_COST
+                costs[lanelet] = min(costs.get(lanelet, beside_cost), beside_cost)
+    return costs
 
 
 def _onward(
-    recording: Recording, best: Mapping[str, _Path], wanted: Mapping[str, float]
-) -> dict[str, _Path]:
-    found: dict[str, _Path] = {}
-    for start, path in best.items():
-        for hops in _chains(recording, start, wanted):
+    recording: Recording, best: Mapping[str, _ChainEnd], costs: Mapping[str, float]
+) -> dict[str, _ChainEnd]:
+    """The cheapest chains that go on to a next state's lanelets; empty if none does."""
+    onward: dict[str, _ChainEnd] = {}
+    for start, chain in best.items():
+        for hops in _hops(recording, start, costs):
             end = hops[-1] if hops else start
-            cost = path.cost + wanted[end] + _HOP_COST * len(hops)
-            if end not in found or cost < found[end].cost:
-                found[end] = (
-                    _Path(cost, hops, path) if hops else _Path(cost, path.hops, path.before)
+            cost = chain.cost + costs[end] + _HOP_COST * len(hops)
+            if end not in onward or cost < onward[end].cost:
+                onward[end] = (
+                    _ChainEnd(cost, hops, chain)
+                    if hops
+                    else _ChainEnd(cost, chain.hops, chain.before)
                 )
-    return found
+    return onward
 
 
-def _chains(
-    recording: Recording, start: str, wanted: Mapping[str, float]
+def _hops(
+    recording: Recording, start: str, targets: Mapping[str, float]
 ) -> Iterator[tuple[str, ...]]:
-    """The shortest chain of successors to each wanted lanelet; the empty one to the start."""
-    if start in wanted:
+    """The shortest chain of successors to each target; the empty one to the start."""
+    if start in targets:
         yield ()
-    seen = {start}
-    ends: list[tuple[str, ...]] = [()]
+    reached = {start}
+    chains: list[tuple[str, ...]] = [()]
     for _ in range(MOST_HOPS):
         longer = []
-        for chain in ends:
+        for chain in chains:
             for number in recording.lanelets[chain[-1] if chain else start].successors:
                 lanelet = recording.lanelets.get(number)
-                if lanelet is None or number in seen or not is_lane(lanelet):
+                if lanelet is None or number in reached or not is_lane(lanelet):
                     continue
-                seen.add(number)
+                reached.add(number)
                 longer.append((*chain, number))
-                if number in wanted:
+                if number in targets:
                     yield (*chain, number)
-        ends = longer
+        chains = longer
 
 
-def _way(best: Mapping[str, _Path]) -> tuple[str, ...]:
-    path: _Path | None = min(best.values(), key=lambda one: (one.cost, one.hops))
-    found: list[tuple[str, ...]] = []
-    while path is not None:
-        found.append(path.hops)
-        path = path.before
-    return tuple(number for hops in reversed(found) for number in hops)
+def _cheapest_route(best: Mapping[str, _ChainEnd]) -> tuple[str, ...]:
+    chain: _ChainEnd | None = min(best.values(), key=lambda end: (end.cost, end.hops))
+    parts: list[tuple[str, ...]] = []
+    while chain is not None:
+        parts.append(chain.hops)
+        chain = chain.before
+    return tuple(number for hops in reversed(parts) for number in hops)

@@ -1,4 +1,9 @@
-"""Which lanelets everybody is on at every moment, as far as the lanelets lead their way."""
+"""Map matching, first step: the lanelets on which each state of a vehicle may lie.
+
+A state matches the lanelets within ``NEAR_M`` that lead its way; each match has a cost. The second
+step, ``driven_route``, takes the cheapest chain of them, as matching by hidden Markov models does
+(Newson, Krumm, "Hidden Markov map matching through noise and sparseness", GIS 2009).
+"""
 
 from __future__ import annotations
 
@@ -8,51 +13,40 @@ from math import pi
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Floats, Tracks
-from rulec.scenario.recorded.recording import Lanelet, Recording
-from rulec.scenario.recorded.route import is_lane
+from rulec.extraction.tracks.tracks import Tracks
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area
 
 NEAR_M = 3.0
-"""Who is on no lane is on one that is so near."""
+"""The farthest that a vehicle may be beside a lanelet that it is matched to."""
 
 _BESIDE_COST = 1.0
-_AGAINST = pi / 2
+_LARGEST_ANGLE = pi / 2
 
 MatchedLanelets = Mapping[int, Mapping[str, float]]
-"""Column -> lanelet -> how badly it fits: 0 on it and along it, 1 nearly across it or beside it."""
+"""Column -> lanelet -> cost: 0 on it and along it, up to 1 for its angle, 1 to 2 more beside it."""
 
 
-def match_to_map(recording: Recording, people: Tracks) -> dict[int, MatchedLanelets]:
-    """For the rows of those who move: where they are, but for columns without a fitting lane."""
-    lanes = [one for one in recording.lanelets.values() if is_lane(one)]
-    moving = np.array([not one.standing for one in people.participants], dtype=bool)
-    rows, columns = np.nonzero(people.there & moving[:, None])
+def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanelets]:
+    """The matches of each moving participant, by its row; columns without a match are left out."""
+    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
+    moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
+    rows, columns = np.nonzero(tracks.present & moving[:, None])
     if not lanes or not len(rows):
         return {}
-    points = shapely.points(people.x[rows, columns], people.y[rows, columns])
-    areas = [
-        shapely.make_valid(shapely.Polygon(np.concatenate((x.right, x.left[::-1])))) for x in lanes
-    ]
-    who, which = shapely.STRtree(areas).query(points, predicate="dwithin", distance=NEAR_M)
-    found: dict[int, dict[int, dict[str, float]]] = defaultdict(lambda: defaultdict(dict))
-    for number in np.unique(which):
-        some = who[which == number]
-        headings = _directions(lanes[number], points[some])
-        error = np.abs((people.heading[rows[some], columns[some]] - headings + pi) % (2 * pi) - pi)
-        outside = shapely.distance(areas[number], points[some]) / NEAR_M
-        cost = error / _AGAINST + np.where(outside > 0, _BESIDE_COST + outside, 0.0)
-        for at, one in zip(some[error < _AGAINST], cost[error < _AGAINST].tolist(), strict=True):
-            found[int(rows[at])][int(columns[at])][lanes[number].id] = one
-    return {row: dict(sorted(moments.items())) for row, moments in found.items()}
-
-
-def _directions(lanelet: Lanelet, points: NDArray[np.object_]) -> Floats:
-    """The lanelet's direction at the piece of its centre line nearest to each place."""
-    steps = np.diff(lanelet.centre, axis=0)
-    reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
-    along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
-    piece = np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(steps) - 1)
-    directions: Floats = np.arctan2(steps[piece, 1], steps[piece, 0])
-    return directions
+    points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
+    areas = [lanelet_area(lanelet) for lanelet in lanes]
+    near, near_lanes = shapely.STRtree(areas).query(points, predicate="dwithin", distance=NEAR_M)
+    matches: dict[int, dict[int, dict[str, float]]] = defaultdict(lambda: defaultdict(dict))
+    for lane in np.unique(near_lanes):
+        chosen = near[near_lanes == lane]
+        directions = directions_beside(lanes[lane], points[chosen])
+        headings = tracks.heading[rows[chosen], columns[chosen]]
+        angle = np.abs((headings - directions + pi) % (2 * pi) - pi)
+        outside = shapely.distance(areas[lane], points[chosen]) / NEAR_M
+        costs = angle / _LARGEST_ANGLE + np.where(outside > 0, _BESIDE_COST + outside, 0.0)
+        along = angle < _LARGEST_ANGLE
+        for index, cost in zip(chosen[along], costs[along].tolist(), strict=True):
+            matches[int(rows[index])][int(columns[index])][lanes[lane].id] = cost
+    return {row: dict(sorted(by_column.items())) for row, by_column in matches.items()}

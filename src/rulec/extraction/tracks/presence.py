@@ -1,7 +1,7 @@
-"""When others are there, as objects of a trace.
+"""The presence of participants in a trace, each as one object while it is relevant for ego.
 
-Who comes back after having been away is another object, ``id_2``, as everywhere in rulec: a rule is
-judged on one stretch of presence.
+Who comes back after an absence is another object, ``id_2``, as everywhere in rulec: a rule is
+judged on one contiguous presence.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rulec.extraction.drive_context import DriveContext
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """An object of a trace: the participant's row, and from which column to which it is there."""
+    """An object of a trace: a participant's row, and the first and last column of its presence."""
 
     name: str
     row: int
@@ -24,27 +24,30 @@ class Presence:
     last: int
 
 
-def presences(view: DriveContext) -> Iterator[Presence]:
-    """The stretches in which somebody is there, brief absences forgotten."""
-    most = round(view.thresholds.away_s / view.recording.step_s)
-    people = view.people.participants
-    taken = {one.id for one in people}
-    nowhere = np.cumsum(np.isnan(view.others.w), axis=1)
-    for row, one in enumerate(people):
-        name = one.id
-        columns = np.flatnonzero(view.near[row])
-        gone = nowhere[row]
+def presences(context: DriveContext) -> Iterator[Presence]:
+    """The contiguous presences of all participants; absences up to ``away_s`` are bridged.
+
+    An absence in which a participant is not beside the road is never bridged: there its extents
+    are not known.
+    """
+    longest = round(context.thresholds.away_s / context.recording.step_s)
+    participants = context.tracks.participants
+    taken = {body.id for body in participants}
+    unknown = np.cumsum(np.isnan(context.extents.w), axis=1)
+    for row, body in enumerate(participants):
+        columns = np.flatnonzero(context.relevant[row])
+        gone = unknown[row]
         breaks = [
             k
             for k in range(1, len(columns))
-            if columns[k] - columns[k - 1] > most + 1 or gone[columns[k]] > gone[columns[k - 1]]
+            if columns[k] - columns[k - 1] > longest + 1 or gone[columns[k]] > gone[columns[k - 1]]
         ]
         for number, part in enumerate(np.split(columns, breaks), 1):
-            called = name if number == 1 else _spare(name, taken)
-            yield Presence(called, row, int(part[0]), int(part[-1]))
+            name = body.id if number == 1 else _free_name(body.id, taken)
+            yield Presence(name, row, int(part[0]), int(part[-1]))
 
 
-def _spare(name: str, taken: set[str]) -> str:
+def _free_name(name: str, taken: set[str]) -> str:
     number = 2
     while f"{name}_{number}" in taken:
         number += 1

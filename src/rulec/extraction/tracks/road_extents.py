@@ -1,7 +1,9 @@
-"""Where everybody is along and across a road.
+"""The extents of participants along and across a road, in Frenet coordinates.
 
-Rows are participants and columns time steps, as in ``everyone``; NaN where somebody is nowhere near
-the road. ``d`` is in metres, ``w`` between the lanes' straight bounds, so that lanes have numbers.
+Rows are participants and columns time steps, as in ``Tracks``; NaN for who is not beside the road.
+Frenet coordinates are the arc length ``s`` along a reference line and the offset ``d`` from it (m,
+positive to the left); ``w`` is ``d`` between the lanes' straight bounds, so that lanes are numbered
+by it.
 """
 
 from __future__ import annotations
@@ -9,18 +11,20 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RoadExtents:
-    """The bounds of what everybody occupies, and the middle of these.
+    """The bounds of what participants occupy, and their motion as seen from the road.
 
-    ``turned`` is the heading as seen from the road's direction (radians), ``along`` and ``across``
-    the velocity along the road and to its left (m/s).
+    ``turned`` is the heading relative to the road's direction (rad, in [-pi, pi)), ``along`` and
+    ``across`` are the velocity along the road and to its left (m/s).
     """
 
     s_min: Floats
@@ -35,50 +39,56 @@ class RoadExtents:
 
     @property
     def s(self) -> Floats:
-        """The middle along the road."""
+        """The middle along the road (m)."""
         return (self.s_min + self.s_max) / 2
 
     @property
     def w(self) -> Floats:
-        """The middle across the road."""
+        """The middle across the road (m, straightened)."""
         return (self.w_min + self.w_max) / 2
 
     def of(self, row: int) -> RoadExtents:
-        """One participant's, with an axis of length 1 for it."""
-        return RoadExtents(*(getattr(self, field.name)[row : row + 1] for field in fields(self)))
+        """One participant's extents, with an axis of length 1 for it."""
+        return self.part(np.array([row]), slice(None))
+
+    def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
+        """The extents of some participants in a range of steps."""
+        return RoadExtents(
+            **{field.name: getattr(self, field.name)[rows][:, columns] for field in fields(self)}
+        )
 
 
-def road_extents(people: Tracks, road: DrivenRoad) -> RoadExtents:
-    """Everybody, in the coordinates of a road."""
-    shape = people.there.shape
-    bounds = [np.full(shape, np.nan) for _ in range(6)]
-    known = list(people.outlines())
-    if known:
-        low, high = outline_bounds([outline for _, _, outline in known], road.line, road.lanes)
-        rows, columns = np.array([(row, column) for row, column, _ in known]).T
+def road_extents(tracks: Tracks, road: DrivenRoad) -> RoadExtents:
+    """The extents of all participants in the coordinates of a road."""
+    bounds = [np.full(tracks.present.shape, np.nan) for _ in range(6)]
+    located = list(tracks.outlines())
+    if located:
+        low, high = outline_bounds([outline for _, _, outline in located], road.line, road.lanes)
+        rows, columns = np.array([(row, column) for row, column, _ in located]).T
         for axis in range(3):
             bounds[2 * axis][rows, columns] = low[:, axis]
             bounds[2 * axis + 1][rows, columns] = high[:, axis]
-        standing = [row for row, one in enumerate(people.participants) if one.standing]
+        standing = [row for row, body in enumerate(tracks.participants) if body.standing]
         for bound in bounds:
             bound[standing] = bound[standing][:, :1]
-    directions = _directions(road, (bounds[0] + bounds[1]) / 2)
-    cos, sin = np.cos(directions), np.sin(directions)
     s_min, s_max, d_min, d_max, w_min, w_max = bounds
+    directions = _directions(road, (s_min + s_max) / 2)
+    cos, sin = np.cos(directions), np.sin(directions)
     return RoadExtents(
-        s_min,
-        s_max,
-        d_min,
-        d_max,
-        w_min,
-        w_max,
-        (people.heading - directions + np.pi) % (2 * np.pi) - np.pi,
-        people.vx * cos + people.vy * sin,
-        people.vy * cos - people.vx * sin,
+        s_min=s_min,
+        s_max=s_max,
+        d_min=d_min,
+        d_max=d_max,
+        w_min=w_min,
+        w_max=w_max,
+        turned=(tracks.heading - directions + np.pi) % (2 * np.pi) - np.pi,
+        along=tracks.vx * cos + tracks.vy * sin,
+        across=tracks.vy * cos - tracks.vx * sin,
     )
 
 
 def _directions(road: DrivenRoad, s: Floats) -> Floats:
+    """The direction of the reference line at places (rad)."""
     line = road.line
     piece = np.searchsorted(line.arc, np.nan_to_num(s), "right") - 1
     ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]

@@ -1,4 +1,4 @@
-"""Everyone in a recording as arrays: who is where when, how fast, and headed where.
+"""The tracks of all participants as arrays: places, headings, velocities.
 
 Rows are participants, in the order of the file; columns are time steps, from ``first`` on.
 """
@@ -20,14 +20,20 @@ from rulec.scenario.recorded.recording import Participant, Points, Recording
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
 
+_ARRAYS = ("present", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
 
-@dataclass(frozen=True, eq=False, slots=True)
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Tracks:
-    """NaN where somebody is not there. Velocities (m/s) and accelerations are from displacement."""
+    """Arrays of participants by steps, NaN where one is not present.
+
+    ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
+    (m/s²) are differences of places, since what files say of speeds may not agree with them.
+    """
 
     participants: tuple[Participant, ...]
     first: int
-    there: Flags
+    present: Flags
     x: Floats
     y: Floats
     heading: Floats
@@ -36,88 +42,94 @@ class Tracks:
     speed: Floats
     acceleration: Floats
 
-    @property
-    def steps(self) -> int:
-        """How many time steps there are."""
-        return int(self.there.shape[1])
-
     def outlines(self) -> Iterator[tuple[int, int, Points]]:
-        """Row, column and outline of everybody at every time; of who stands for good, once."""
-        for row, one in enumerate(self.participants):
-            if one.standing:
-                yield row, 0, next(iter(one.outlines.values()))
+        """Row, column and outline of all participants; of those that stand for good, once."""
+        for row, body in enumerate(self.participants):
+            if body.standing:
+                yield row, 0, next(iter(body.outlines.values()))
                 continue
-            for column in np.flatnonzero(self.there[row]).tolist():
-                yield row, column, one.outlines[self.first + column]
+            for column in np.flatnonzero(self.present[row]).tolist():
+                yield row, column, body.outlines[self.first + column]
 
     def part(self, rows: NDArray[np.intp], columns: slice) -> Tracks:
-        """Some of them, for some time."""
-        names = ("there", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
+        """The tracks of some participants in a range of steps."""
         return replace(
             self,
             participants=tuple(self.participants[row] for row in rows),
             first=self.first + columns.start,
-            **{name: getattr(self, name)[rows][:, columns] for name in names},
+            **{name: getattr(self, name)[rows][:, columns] for name in _ARRAYS},
         )
 
-    def of_kind(self, word: str) -> Flags:
-        """Whose type is this one, or one of its subtypes?"""
-        kinds = [
-            OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"]) for one in self.participants
-        ]
-        return np.array([word in words for words in kinds], dtype=bool)
+    def of_type(self, name: str) -> Flags:
+        """Whether each participant is of an object type or one of its subtypes."""
+        types = [OBSTACLE_TYPES.get(x.type, OBSTACLE_TYPES["unknown"]) for x in self.participants]
+        return np.array([name in own for own in types], dtype=bool)
 
 
 def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
-    """The participants of a recording that occupy something, with what follows from positions."""
-    people = tuple(one for one in recording.participants if one.outlines)
-    steps = [step for one in people if not one.standing for step in one.outlines]
+    """The tracks of the participants of a recording that occupy something.
+
+    Velocities are central differences over ``smoothing_s``, one-sided where a track begins or ends.
+    """
+    bodies = tuple(body for body in recording.participants if body.outlines)
+    steps = [step for body in bodies if not body.standing for step in body.outlines]
     first, last = min(steps, default=0), max(steps, default=0)
-    shape = len(people), last - first + 1
-    x, y, heading = (np.full(shape, np.nan) for _ in range(3))
-    said = np.full(shape, np.nan)
-    for row, one in enumerate(people):
-        places = _places(one)
-        if one.standing:
-            x[row], y[row], heading[row], said[row] = next(iter(places.values()))
+    shape = len(bodies), last - first + 1
+    x, y, heading, stated = (np.full(shape, np.nan) for _ in range(4))
+    for row, body in enumerate(bodies):
+        poses = _poses(body)
+        if body.standing:
+            x[row], y[row], heading[row], stated[row] = next(iter(poses.values()))
             continue
-        at = np.fromiter(places, dtype=int, count=len(places)) - first
-        x[row, at], y[row, at], heading[row, at], said[row, at] = np.array([*places.values()]).T
-    there = ~np.isnan(x)
+        at = np.fromiter(poses, dtype=int, count=len(poses)) - first
+        x[row, at], y[row, at], heading[row, at], stated[row, at] = np.array([*poses.values()]).T
+    present = ~np.isnan(x)
     reach = max(1, round(thresholds.smoothing_s / 2 / recording.step_s))
-    duration, before, after = _around(there, reach)
-    lines = np.arange(shape[0])[:, None]
+    duration, before, after = _windows(present, reach)
+    rows = np.arange(shape[0])[:, None]
     seconds = np.where(duration > 0, duration, np.nan) * recording.step_s
-    vx = (x[lines, after] - x[lines, before]) / seconds
-    vy = (y[lines, after] - y[lines, before]) / seconds
-    once = there & (duration == 0)
-    vx, vy = np.where(once, said * np.cos(heading), vx), np.where(once, said * np.sin(heading), vy)
+    vx = (x[rows, after] - x[rows, before]) / seconds
+    vy = (y[rows, after] - y[rows, before]) / seconds
+    # A single moment has no displacement: there the stated speed counts
+    single = present & (duration == 0)
+    vx = np.where(single, stated * np.cos(heading), vx)
+    vy = np.where(single, stated * np.sin(heading), vy)
     speed = np.hypot(vx, vy)
-    gained = (speed[lines, after] - speed[lines, before]) / seconds
-    acceleration = np.where(there, np.nan_to_num(gained), np.nan)
-    return Tracks(people, first, there, x, y, heading, vx, vy, speed, acceleration)
+    gained = (speed[rows, after] - speed[rows, before]) / seconds
+    return Tracks(
+        participants=bodies,
+        first=first,
+        present=present,
+        x=x,
+        y=y,
+        heading=heading,
+        vx=vx,
+        vy=vy,
+        speed=speed,
+        acceleration=np.where(present, np.nan_to_num(gained), np.nan),
+    )
 
 
-def _places(one: Participant) -> dict[int, tuple[float, float, float, float]]:
-    """Step -> centre, heading and the speed that is written down."""
-    found = {}
-    for step, outline in one.outlines.items():
-        state = one.states.get(step)
+def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
+    """Centre, heading and stated speed by step."""
+    poses = {}
+    for step, outline in body.outlines.items():
+        state = body.states.get(step)
         if state is None:
             x, y = outline.mean(axis=0).tolist()
-            found[step] = x, y, 0.0, 0.0
+            poses[step] = x, y, 0.0, 0.0
         else:
-            found[step] = state.x, state.y, state.heading, state.speed
-    return found
+            poses[step] = state.x, state.y, state.heading, state.speed
+    return poses
 
 
-def _around(there: Flags, reach: int) -> tuple[NDArray[np.intp], ...]:
-    """How many steps lie between two moments around each, without a break, and these moments."""
-    columns = np.arange(there.shape[1])
-    gone = np.where(there, -1, columns)
-    since = np.maximum.accumulate(gone, axis=1) + 1
-    gone = np.where(there, len(columns), columns)
-    until = np.minimum.accumulate(gone[:, ::-1], axis=1)[:, ::-1] - 1
-    before = np.where(there, np.maximum(columns - reach, since), columns)
-    after = np.where(there, np.minimum(columns + reach, until), columns)
+def _windows(present: Flags, reach: int) -> tuple[NDArray[np.intp], ...]:
+    """The length in steps of the unbroken window around each moment, its first and its last."""
+    columns = np.arange(present.shape[1])
+    absent = np.where(present, -1, columns)
+    since = np.maximum.accumulate(absent, axis=1) + 1
+    absent = np.where(present, len(columns), columns)
+    until = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1] - 1
+    before = np.where(present, np.maximum(columns - reach, since), columns)
+    after = np.where(present, np.minimum(columns + reach, until), columns)
     return after - before, before, after

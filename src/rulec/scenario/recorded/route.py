@@ -8,6 +8,7 @@ from math import atan2, pi, radians
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording, TrackState, id_order
 
@@ -28,6 +29,21 @@ def is_lane(lanelet: Lanelet) -> bool:
     return not lanelet.types & NO_LANES
 
 
+def lanelet_area(lanelet: Lanelet) -> shapely.Polygon:
+    """The area between a lanelet's bounds."""
+    return shapely.make_valid(shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1]))))
+
+
+def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[np.float64]:
+    """The direction (rad) of the piece of a lanelet's centre line nearest to each point."""
+    steps = np.diff(lanelet.centre, axis=0)
+    reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
+    along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
+    piece = np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(steps) - 1)
+    directions: NDArray[np.float64] = np.arctan2(steps[piece, 1], steps[piece, 0])
+    return directions
+
+
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
     """The lanelet that a vehicle is on: of those in its place the one that leads its way best.
 
@@ -35,12 +51,12 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
     """
     place = shapely.Point(state.x, state.y)
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    far = {x.id: float(shapely.distance(_area(x), place)) for x in lanes}
+    far = {x.id: float(shapely.distance(lanelet_area(x), place)) for x in lanes}
     near = [x for x in lanes if far[x.id] <= _NEAR_M]
     inside = [x for x in near if far[x.id] == 0.0]
 
     def rank(lanelet: Lanelet) -> tuple[float, float, tuple[int, str]]:
-        error = abs(_turn(_heading_beside(lanelet, state), state.heading))
+        error = abs(_turn(float(directions_beside(lanelet, np.array([place]))[0]), state.heading))
         return (0.0 if inside else far[lanelet.id], round(error, 6), id_order(lanelet.id))
 
     return min(inside or near, key=rank).id if near else None
@@ -52,7 +68,7 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
     found = {
         lanelet.id
         for lanelet in recording.lanelets.values()
-        if is_lane(lanelet) and bool(shapely.intersects(_area(lanelet), points).any())
+        if is_lane(lanelet) and bool(shapely.intersects(lanelet_area(lanelet), points).any())
     }
     return frozenset(
         y
@@ -158,21 +174,8 @@ def _straight_on(
     return way
 
 
-def _area(lanelet: Lanelet) -> shapely.Polygon:
-    return shapely.make_valid(shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1]))))
-
-
 def _length(lanelet: Lanelet) -> float:
     return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
-
-
-def _heading_beside(lanelet: Lanelet, state: TrackState) -> float:
-    """The lanelet's direction at the piece of its centre line nearest to a vehicle."""
-    centre = shapely.LineString(lanelet.centre)
-    along = shapely.line_locate_point(centre, shapely.Point(state.x, state.y))
-    reached = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(lanelet.centre, axis=0).T))))
-    piece = int(np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(reached) - 2))
-    return _direction(lanelet.centre[piece], lanelet.centre[piece + 1])
 
 
 def _end_heading(lanelet: Lanelet, backwards: bool) -> float:
