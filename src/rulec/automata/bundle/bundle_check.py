@@ -1,10 +1,13 @@
-"""A compiled rulebook's file into data, with everything checked that running relies on."""
+"""Semantic checks of a compiled rulebook's file: all that running relies on."""
 
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
 from fractions import Fraction
 from itertools import chain
+from math import prod
+
+from msgspec.structs import astuple
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
@@ -16,16 +19,19 @@ from rulec.logic.bounds import BOOLEAN, in_steps, operations_of, speaks_of_secon
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
 from rulec.logic.printing import in_words
-from rulec.rulebook.model import Certainty, Semantics, SourceFile, Strength, Variable
+from rulec.rulebook.model import SourceFile, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
-def checked(read: schema.File) -> CompiledRulebook:
-    """The file's content, if it is sound. ValueError with what is wrong otherwise."""
+def rulebook_of(read: schema.File) -> CompiledRulebook:
+    """The compiled rulebook of a sound file. ValueError with what is wrong otherwise."""
     vocabulary = Vocabulary(
         read.vocabulary.name,
         {name: ObjectType(name, parent) for name, parent in read.vocabulary.types.items()},
-        {item.name: _declaration(item) for item in read.vocabulary.declarations},
+        {
+            item.name: _DECLARATIONS[type(item)](*astuple(item))
+            for item in read.vocabulary.declarations
+        },
     )
     _check_vocabulary(vocabulary)
     names = [rule.name for rule in read.rules]
@@ -34,24 +40,13 @@ def checked(read: schema.File) -> CompiledRulebook:
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
         _require(bool(plain), f"`{name}` is not a name")
     _require(len(set(names)) == len(names), "two rules have the same name")
-    semantics: Semantics = read.semantics
     return CompiledRulebook(
-        read.name,
-        vocabulary,
-        tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
-        read.title,
-        read.law,
-        read.as_of,
-        tuple(SourceFile(source.name, source.sha256) for source in read.sources),
-        read.rulec,
-        read.spot,
-        semantics,
-        tuple(read.levels),
-        _priorities(read),
-        tuple(read.extends),
-        read.at,
-        tuple(_fact(fact, vocabulary) for fact in read.facts),
-        read.traffic,
+        **{name: getattr(read, name) for name in schema.RULEBOOK_FIELDS},
+        vocabulary=vocabulary,
+        rules=tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
+        sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
+        priorities=_priorities(read),
+        axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
 
 
@@ -70,17 +65,11 @@ def _priorities(read: schema.File) -> frozenset[tuple[str, str]]:
     return pairs
 
 
-def _declaration(
-    item: schema.Enumeration | schema.Signal | schema.Quantity,
-) -> Enumeration | Signal | Quantity:
-    parameters = tuple(item.parameters)
-    match item:
-        case schema.Enumeration():
-            return Enumeration(item.name, parameters, tuple(item.values), item.default)
-        case schema.Signal():
-            return Signal(item.name, parameters, item.default)
-        case schema.Quantity():
-            return Quantity(item.name, parameters, item.unit, item.default)
+_DECLARATIONS: dict[type, type[Enumeration | Signal | Quantity]] = {
+    schema.Enumeration: Enumeration,
+    schema.Signal: Signal,
+    schema.Quantity: Quantity,
+}
 
 
 def _check_vocabulary(vocabulary: Vocabulary) -> None:
@@ -99,12 +88,12 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
-def _fact(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledAxiom:
+def _axiom(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledAxiom:
     variables = _variables(fact.variables, vocabulary, "a fact")
     formula = from_data(fact.tree)
-    problem = problem_in(formula, vocabulary, {one.name for one in variables})
+    problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
     _require(problem is None, f"a fact {problem}")
-    timeless = all(one.operator in BOOLEAN for one in operations_of(formula))
+    timeless = all(part.operator in BOOLEAN for part in operations_of(formula))
     _require(timeless, "a fact speaks of more than one state")
     _require(in_words(formula) == fact.formula, "a fact has two different formulas")
     return CompiledAxiom(
@@ -126,7 +115,7 @@ def _variables(
 def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
     variables = _variables(rule.variables, vocabulary, f"rule `{rule.name}`")
     formula = from_data(rule.tree)
-    problem = problem_in(formula, vocabulary, {one.name for one in variables})
+    problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
     _require(problem is None, f"rule `{rule.name}` {problem}")
     _require(in_words(formula) == rule.formula, f"rule `{rule.name}` has two different formulas")
     machine = _machine(rule.machine, rule.name)
@@ -136,23 +125,13 @@ def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> 
     _require(not level or level in levels, f"rule `{rule.name}` has an unknown level")
     weight = number_from_data(rule.weight)
     _require(weight > 0, f"rule `{rule.name}` has no weight")
-    strength: Strength = rule.strength
-    certainty: Certainty = rule.certainty
     return CompiledRule(
-        rule.name,
-        strength,
-        variables,
-        rule.cite,
-        rule.says,
-        formula,
-        machine,
-        rule.hoa,
-        _step(rule, formula),
-        level,
-        weight,
-        rule.source,
-        certainty,
-        rule.book,
+        **{name: getattr(rule, name) for name in schema.RULE_FIELDS},
+        variables=variables,
+        formula=formula,
+        machine=machine,
+        step_s=_step(rule, formula),
+        weight=weight,
     )
 
 
@@ -168,15 +147,12 @@ def _step(rule: schema.Rule, formula: Formula) -> Fraction | None:
 
 
 def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
-    reads = tuple(_read(one) for one in read.reads)
-    n_letters = 1
-    for item in reads:
-        n_letters *= item.size
+    reads = tuple(_read(item) for item in read.reads)
     n_states = len(read.successors)
     n_classes = len(read.successors[0]) if read.successors else 0
     fits: list[bool] = [
         n_states > 0,
-        len(read.letters) == n_letters,
+        len(read.letters) == prod(item.size for item in reads),
         all(IMPOSSIBLE <= letter < n_classes for letter in read.letters),
         all(len(row) == n_classes for row in read.successors),
         all(len(row) == n_classes for row in read.outputs),
@@ -189,25 +165,16 @@ def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
         traps == [read.rejecting_sink, read.accepting_sink],
         f"rule `{rule}` names a wrong dead or safe state",
     )
-    return MealyMonitor(
-        reads,
-        tuple(read.letters),
-        tuple(tuple(row) for row in read.successors),
-        tuple(tuple(row) for row in read.outputs),
-        read.rejecting_sink,
-        read.accepting_sink,
-    )
+    return MealyMonitor(reads, *astuple(read)[1:])
 
 
 def _read(read: schema.Read | schema.NumberRead) -> Read | NumberRead:
-    match read:
-        case schema.Read():
-            return Read(read.name, tuple(read.variables), tuple(read.values), read.others)
-        case schema.NumberRead():
-            thresholds = (
-                Threshold(number_from_data(one.limit), one.inclusive) for one in read.thresholds
-            )
-            return NumberRead(terms_from_data(read.terms), tuple(thresholds))
+    if isinstance(read, schema.Read):
+        return Read(*astuple(read))
+    return NumberRead(
+        terms_from_data(read.terms),
+        tuple(Threshold(number_from_data(item.limit), item.inclusive) for item in read.thresholds),
+    )
 
 
 def _require(condition: bool, problem: str) -> None:

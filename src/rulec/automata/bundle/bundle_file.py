@@ -5,16 +5,16 @@ from __future__ import annotations
 import codecs
 import json
 import re
+from collections.abc import Iterable
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from rulec.automata.bundle.bundle_check import checked
+from rulec.automata.bundle import bundle_schema as schema
+from rulec.automata.bundle.bundle_check import rulebook_of
 from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE
-from rulec.automata.bundle.bundle_schema import WRITTEN_AS, File, Header
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
@@ -22,42 +22,26 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.printing import in_words
-
-FORMAT = "rulec compiled rulebook"
-VERSION = 3
+from rulec.rulebook.model import Variable
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
     """The file's text: indented, with every row of numbers on a line of its own."""
     vocabulary = rulebook.vocabulary
-    data = {
-        "format": FORMAT,
-        "version": VERSION,
-        "rulec": rulebook.rulec,
-        "spot": rulebook.spot,
-        "name": rulebook.name,
-        "title": rulebook.title,
-        "law": rulebook.law,
-        "as_of": rulebook.as_of,
-        "sources": rulebook.sources,
-        "semantics": rulebook.semantics,
-        "traffic": rulebook.traffic,
-        "levels": rulebook.levels,
-        "priorities": sorted(rulebook.priorities),
-        "extends": rulebook.extends,
-        "at": rulebook.at,
-        "vocabulary": {
-            "name": vocabulary.name,
-            "types": {item.name: item.parent for item in vocabulary.types.values()},
-            "declarations": [
-                {"kind": type(item).__name__.lower(), **msgspec.to_builtins(item)}
-                for item in vocabulary.declarations.values()
-            ],
-        },
-        "facts": [_fact(fact) for fact in rulebook.axioms],
-        "rules": [_rule(rule) for rule in rulebook.rules],
-    }
-    text = json.dumps(msgspec.to_builtins(data), indent=1, ensure_ascii=False)
+    file = schema.File(
+        **{name: getattr(rulebook, name) for name in schema.RULEBOOK_FIELDS},
+        sources=[schema.Source(source.name, source.sha256) for source in rulebook.sources],
+        priorities=sorted(rulebook.priorities),
+        vocabulary=schema.Vocabulary(
+            vocabulary.name,
+            {item.name: item.parent for item in vocabulary.types.values()},
+            [_declaration(item) for item in vocabulary.declarations.values()],
+        ),
+        facts=[_axiom(axiom) for axiom in rulebook.axioms],
+        rules=[_rule(rule) for rule in rulebook.rules],
+    )
+    text = json.dumps(msgspec.to_builtins(file), indent=1, ensure_ascii=False)
     return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
 
 
@@ -69,57 +53,65 @@ def _on_one_line(found: re.Match[str]) -> str:
     return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
 
 
-def _fact(fact: CompiledAxiom) -> dict[str, Any]:
-    place = fact.place
-    return {
-        "variables": [(variable.name, variable.type) for variable in fact.variables],
-        "formula": in_words(fact.formula),
-        "tree": to_data(fact.formula),
+def _declaration(item: Declaration) -> schema.Enumeration | schema.Signal | schema.Quantity:
+    match item:
+        case Enumeration():
+            return schema.Enumeration(item.name, item.parameters, item.values, item.default)
+        case Signal():
+            return schema.Signal(item.name, item.parameters, item.default)
+        case Quantity():
+            return schema.Quantity(item.name, item.parameters, item.unit, item.default)
+
+
+def _axiom(axiom: CompiledAxiom) -> schema.Fact:
+    place = axiom.place
+    return schema.Fact(
+        _variables(axiom.variables),
+        in_words(axiom.formula),
+        to_data(axiom.formula),
         # Where it is written on this machine is no business of others.
-        "file": "" if place is None else Path(place.file).name,
-        "line": None if place is None else place.line,
-    }
+        file="" if place is None else Path(place.file).name,
+        line=None if place is None else place.line,
+    )
 
 
-def _rule(rule: CompiledRule) -> dict[str, Any]:
-    return {
-        "name": rule.name,
-        "strength": rule.strength,
-        "level": rule.level,
-        "weight": str(rule.weight),
-        "variables": [(variable.name, variable.type) for variable in rule.variables],
-        "cite": rule.cite,
-        "says": rule.says,
-        "source": rule.source,
-        "certainty": rule.certainty,
-        "book": rule.book,
-        "step_s": None if rule.step_s is None else str(rule.step_s),
-        "formula": in_words(rule.formula),
-        "tree": to_data(rule.formula),
-        "machine": {
-            **{
-                WRITTEN_AS.get(name, name): value
-                for name, value in msgspec.to_builtins(replace(rule.machine, reads=())).items()
-            },
-            "reads": [read_to_data(read) for read in rule.machine.reads],
-        },
-        "hoa": rule.hoa,
-    }
+def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
+    return [(variable.name, variable.type) for variable in variables]
+
+
+def _rule(rule: CompiledRule) -> schema.Rule:
+    machine = rule.machine
+    return schema.Rule(
+        **{name: getattr(rule, name) for name in schema.RULE_FIELDS},
+        weight=str(rule.weight),
+        variables=_variables(rule.variables),
+        step_s=None if rule.step_s is None else str(rule.step_s),
+        formula=in_words(rule.formula),
+        tree=to_data(rule.formula),
+        machine=schema.Machine(
+            reads=[_read(read) for read in machine.reads],
+            letters=machine.letters,
+            successors=machine.successors,
+            outputs=machine.outputs,
+            rejecting_sink=machine.rejecting_sink,
+            accepting_sink=machine.accepting_sink,
+        ),
+    )
+
+
+def _read(read: Read | NumberRead) -> schema.Read | schema.NumberRead:
+    match read:
+        case Read(name, variables, values, others):
+            return schema.Read(name, variables, values, others)
+        case NumberRead(terms, thresholds):
+            limits = [schema.Threshold(str(item.limit), item.inclusive) for item in thresholds]
+            return schema.NumberRead(terms_to_data(terms), limits)
 
 
 def read_to_data(read: Read | NumberRead) -> dict[str, Any]:
-    """A read as the file has it."""
-    match read:
-        case Read():
-            return {"kind": "state", **msgspec.to_builtins(read)}
-        case NumberRead(terms, thresholds):
-            return {
-                "kind": "number",
-                "terms": terms_to_data(terms),
-                "thresholds": [
-                    {"limit": str(one.limit), "inclusive": one.inclusive} for one in thresholds
-                ],
-            }
+    """The object of a read in the file."""
+    data: dict[str, Any] = msgspec.to_builtins(_read(read))
+    return data
 
 
 def from_json(data: bytes, file: str) -> CompiledRulebook:
@@ -131,20 +123,19 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
     """
     data = data.removeprefix(codecs.BOM_UTF8)
     try:
-        header = msgspec.json.decode(data, type=Header)
+        header = msgspec.json.decode(data, type=schema.Header)
     except msgspec.MsgspecError as problem:
         raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
         raise _damaged(file, "this is not a compiled rulebook") from None
-    if header.version != VERSION:
+    if header.version != schema.VERSION:
         raise _damaged(
             file,
             f"this compiled rulebook is of version {header.version}; "
-            f"this rulec reads version {VERSION}",
+            f"this rulec reads version {schema.VERSION}",
         )
     try:
-        read = msgspec.json.decode(data, type=File)
-        return checked(read)
+        return rulebook_of(msgspec.json.decode(data, type=schema.File))
     except (msgspec.MsgspecError, ValueError) as problem:
         raise _damaged(file, f"this compiled rulebook is damaged: {json_words(problem)}") from None
 

@@ -1,4 +1,4 @@
-"""The fields of a compiled rulebook's file, version 3, as docs/compiled.md describes them."""
+"""The fields of a compiled rulebook's file, version 3, in their order (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -6,72 +6,81 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from rulec.rulebook.model import Certainty, Semantics, Strength, Traffic
 
-class Source(msgspec.Struct, forbid_unknown_fields=True):
-    """A file that went into it."""
+FORMAT = "rulec compiled rulebook"
+VERSION = 3
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True):
+    """An object of the file: it has these fields and no others."""
+
+
+class Source(_Strict):
+    """A file that went into the rulebook."""
 
     name: str
     sha256: str
 
 
-class Enumeration(msgspec.Struct, tag="enumeration", tag_field="kind", forbid_unknown_fields=True):
-    """A state with one of several values."""
+class Enumeration(_Strict, tag="enumeration", tag_field="kind"):
+    """A declaration: one of several values."""
 
     name: str
-    parameters: list[str]
-    values: list[str]
+    parameters: tuple[str, ...]
+    values: tuple[str, ...]
     default: str | None
 
 
-class Signal(msgspec.Struct, tag="signal", tag_field="kind", forbid_unknown_fields=True):
-    """A Boolean."""
+class Signal(_Strict, tag="signal", tag_field="kind"):
+    """A declaration: a Boolean."""
 
     name: str
-    parameters: list[str]
+    parameters: tuple[str, ...]
     default: bool | None
 
 
-class Quantity(msgspec.Struct, tag="quantity", tag_field="kind", forbid_unknown_fields=True):
-    """A number with a unit."""
+class Quantity(_Strict, tag="quantity", tag_field="kind"):
+    """A declaration: a number with a unit."""
 
     name: str
-    parameters: list[str]
+    parameters: tuple[str, ...]
     unit: str
     default: float | None
 
 
-class Vocabulary(msgspec.Struct, forbid_unknown_fields=True):
-    """What the rules speak of."""
+class Vocabulary(_Strict):
+    """Types, each with its parent, and declarations."""
 
     name: str
     types: dict[str, str | None]
     declarations: list[Enumeration | Signal | Quantity]
 
 
-class Read(msgspec.Struct, tag="state", tag_field="kind", forbid_unknown_fields=True):
-    """An enumeration or a signal that a machine asks of a state."""
+class Read(_Strict, tag="state", tag_field="kind"):
+    """An enumeration or a signal that a machine reads."""
 
     name: str
-    variables: list[str]
-    values: list[str]
+    variables: tuple[str, ...]
+    values: tuple[str, ...]
     others: bool
 
 
-class Threshold(msgspec.Struct, forbid_unknown_fields=True):
+class Threshold(_Strict):
     """A place on the number line; the limit is a fraction."""
 
     limit: str
     inclusive: bool
 
 
-class NumberRead(msgspec.Struct, tag="number", tag_field="kind", forbid_unknown_fields=True):
-    """A number that a machine asks of a state."""
+class NumberRead(_Strict, tag="number", tag_field="kind"):
+    """A number that a machine reads."""
 
     terms: Any
     thresholds: list[Threshold]
 
 
-WRITTEN_AS = {
+_WRITTEN_AS = {
     "successors": "following",
     "outputs": "accepting",
     "rejecting_sink": "dead",
@@ -80,29 +89,29 @@ WRITTEN_AS = {
 """Fields of a Mealy monitor by the names that version 3 of the format gives them."""
 
 
-class Machine(msgspec.Struct, forbid_unknown_fields=True, rename=WRITTEN_AS):
-    """A rule as a table."""
+class Machine(_Strict, rename=_WRITTEN_AS):
+    """The Mealy monitor of a rule."""
 
     reads: list[Read | NumberRead]
-    letters: list[int]
-    successors: list[list[int]]
-    outputs: list[list[bool]]
+    letters: tuple[int, ...]
+    successors: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[bool, ...], ...]
     rejecting_sink: int | None
     accepting_sink: int | None
 
 
-class Rule(msgspec.Struct, forbid_unknown_fields=True):
+class Rule(_Strict):
     """One rule."""
 
     name: str
-    strength: Literal["hard", "soft"]
+    strength: Strength
     level: str
     weight: str
     variables: list[tuple[str, str]]
     cite: str
     says: str
     source: str
-    certainty: Literal["", "verified", "secondary", "unverified"]
+    certainty: Certainty
     book: str
     step_s: str | None
     formula: str
@@ -111,8 +120,8 @@ class Rule(msgspec.Struct, forbid_unknown_fields=True):
     hoa: str
 
 
-class Fact(msgspec.Struct, forbid_unknown_fields=True):
-    """What holds in every state, and where it is written: file and line, from 1."""
+class Fact(_Strict):
+    """An axiom, and where it is written: file and line, from 1."""
 
     variables: list[tuple[str, str]]
     formula: str
@@ -122,17 +131,17 @@ class Fact(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Header(msgspec.Struct):
-    """What is looked at first: is it such a file, and of which version?"""
+    """The fields that say whether it is such a file, and of which version."""
 
     format: Literal["rulec compiled rulebook"]
     version: int
 
 
-class File(msgspec.Struct, forbid_unknown_fields=True):
+class File(_Strict, kw_only=True):
     """The whole file."""
 
-    format: str
-    version: int
+    format: str = FORMAT
+    version: int = VERSION
     rulec: str
     spot: str
     name: str
@@ -140,12 +149,22 @@ class File(msgspec.Struct, forbid_unknown_fields=True):
     law: str
     as_of: str
     sources: list[Source]
-    semantics: Literal["stutter", "finite"]
-    levels: list[str]
+    semantics: Semantics
+    traffic: Traffic = ""
+    levels: tuple[str, ...]
     priorities: list[tuple[str, str]]
-    extends: list[str]
+    extends: tuple[str, ...]
     at: str
     vocabulary: Vocabulary
     facts: list[Fact]
     rules: list[Rule]
-    traffic: Literal["", "left", "right"] = ""
+
+
+RULEBOOK_FIELDS = (
+    *("name", "title", "law", "as_of", "rulec", "spot", "semantics", "levels", "extends", "at"),
+    "traffic",
+)
+"""Fields of a compiled rulebook that the file has as they are."""
+
+RULE_FIELDS = ("name", "strength", "cite", "says", "hoa", "level", "source", "certainty", "book")
+"""Fields of a compiled rule that the file has as they are."""

@@ -84,17 +84,6 @@ class Obligations:
         }
         self._variables: dict[_Obligation, Any] = {}
         self._taken = {*spot_formulas.names.values(), spot_formulas.alive or ""}
-        self._algebra: Algebra[_Signed] = Algebra(
-            proposition=self._proposition,
-            constant=lambda value: (
-                lambda wanted: buddy.bddtrue if value is wanted else buddy.bddfalse
-            ),
-            negation=lambda operand: lambda wanted: operand(not wanted),
-            conjunction=partial(_joined, True),
-            disjunction=partial(_joined, False),
-            equivalence=_equivalence,
-            operation=self._operation,
-        )
         self.first = self._now(formula, True)
         self.unfolded = {
             buddy.bdd_var(self._variables[one]): self._unfolded(one) for one in self._all()
@@ -119,7 +108,19 @@ class Obligations:
 
     def _now(self, formula: Formula, wanted: bool) -> Any:
         """That the formula, or its negation, holds: by this letter and what it leaves to do."""
-        return fold(formula, self._algebra)(wanted)
+        # Not kept: that would be a reference circle, and BDDs would outlive their use.
+        algebra: Algebra[_Signed] = Algebra(
+            proposition=self._proposition,
+            constant=lambda value: (
+                lambda wanted: buddy.bddtrue if value is wanted else buddy.bddfalse
+            ),
+            negation=lambda operand: lambda wanted: operand(not wanted),
+            conjunction=partial(_joined, True),
+            disjunction=partial(_joined, False),
+            equivalence=_equivalence,
+            operation=self._operation,
+        )
+        return fold(formula, algebra)(wanted)
 
     def _proposition(self, proposition: Proposition) -> _Signed:
         letters = self._letters[proposition]

@@ -34,7 +34,24 @@ class SpotFormulas:
         for name in sorted({*names.values(), *([] if alive is None else [alive])}):
             self._keeper.register_ap(name)
         self._known: dict[Formula, Any] = {}
-        self._algebra: Algebra[Any] = Algebra(
+
+    def translate(self, language: Any, *shape: str) -> Any:
+        """The automaton of an LTL formula of Spot's. All that share a dictionary go together."""
+        return spot.translate(language, *shape, dict=self.dictionary)
+
+    def formula_of(self, formula: Formula) -> Any:
+        """The formula; where words are finite, in Spot's LTLf."""
+        return fold(formula, self._algebra(), self._known)
+
+    def language(self, formulas: Iterable[Any]) -> Any:
+        """The words that all these formulas of Spot's hold for, as an LTL formula."""
+        together = F.And(list(formulas))
+        return together if self.alive is None else spot.from_ltlf(together, self.alive)
+
+    def _algebra(self) -> Algebra[Any]:
+        # Kept, it would be a reference circle: what is Spot's must go as soon as it is done with,
+        # for the numbers that Spot gives to formulas decide in which order edges come.
+        return Algebra(
             proposition=lambda proposition: F.ap(self.names[proposition]),
             constant=lambda value: F.tt() if value else F.ff(),
             negation=F.Not,
@@ -51,19 +68,6 @@ class SpotFormulas:
                 strong_release=self._strong_release,
             ),
         )
-
-    def translate(self, language: Any, *shape: str) -> Any:
-        """The automaton of an LTL formula of Spot's. All that share a dictionary go together."""
-        return spot.translate(language, *shape, dict=self.dictionary)
-
-    def formula_of(self, formula: Formula) -> Any:
-        """The formula; where words are finite, in Spot's LTLf."""
-        return fold(formula, self._algebra, self._known)
-
-    def language(self, formulas: Iterable[Any]) -> Any:
-        """The words that all these formulas of Spot's hold for, as an LTL formula."""
-        together = F.And(list(formulas))
-        return together if self.alive is None else spot.from_ltlf(together, self.alive)
 
     def _until(self, left: Any | None, right: Any, span: Range) -> Any:
         left, (low, high) = F.tt() if left is None else left, span
