@@ -2,6 +2,7 @@
 
 import ast
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,13 @@ def test_the_registry_has_what_is_defined():
 def test_every_name_is_given_once():
     names = [name for name, _ in DEFINED.values()]
     assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("text", CODES)
+def test_what_is_read_is_what_is_imported(text):
+    name, path = DEFINED[text]
+    module = path.relative_to(ROOT / "src").with_suffix("")
+    assert getattr(import_module(".".join(module.parts)), name) == CODES[text]
 
 
 @pytest.mark.parametrize("text", CODES)
