@@ -35,12 +35,18 @@ def definitions():
         node.value.args[0].value: (node.targets[0].id, path)
         for path, tree in TREES.items()
         for node in tree.body
-        if isinstance(node, ast.Assign) and node.value in calls(node, "Code")
+        if isinstance(node, ast.Assign) and calls(node, "Code")
     }
 
 
 DEFINED = definitions()
 CODES = all_codes()
+LOADED = {
+    node.id
+    for tree in TREES.values()
+    for node in ast.walk(tree)
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+}
 
 
 def test_each_code_stands_in_the_sources_once():
@@ -79,13 +85,7 @@ def test_what_is_no_code_is_not_found():
 @pytest.mark.parametrize("text", CODES)
 def test_a_code_is_used_and_tested(text):
     name, _ = DEFINED[text]
-    uses = [
-        node
-        for tree in TREES.values()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load)
-    ]
-    assert uses
+    assert name in LOADED
     assert text in TESTS
 
 

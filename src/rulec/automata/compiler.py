@@ -24,7 +24,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, in_steps, speaks_of_seconds
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
-from rulec.rulebook.elaborate.step_messages import no_multiple
+from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.version import __version__
 

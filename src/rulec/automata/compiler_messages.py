@@ -1,4 +1,4 @@
-"""What is to say of rules that cannot be compiled."""
+"""Messages about rules that cannot be compiled."""
 
 from __future__ import annotations
 
@@ -91,11 +91,11 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
 
 
 def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:
-    axioms = list(dict.fromkeys(one.fact for one in instances))
+    axioms = list(dict.fromkeys(instance.fact for instance in instances))
     first, *others = axioms
-    said = ", ".join(f"`{in_words(one.formula)}`" for one in axioms)
+    said = ", ".join(f"`{in_words(axiom.formula)}`" for axiom in axioms)
     types = {variable.name: variable.type for variable in rule.variables}
-    who = sorted({f"a `{types[name]}`" for one in instances for name in one.variables})
+    who = sorted({f"a `{types[name]}`" for instance in instances for name in instance.variables})
     return CONTRADICTORY_AXIOMS.at(
         first.span,
         f"these facts contradict each other: {said}" if others else f"{said} can never be a fact",
@@ -103,14 +103,16 @@ def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnost
         help="a fact is what holds in every state: correct or remove one of them"
         if others
         else "a fact is what holds in every state: correct or remove it",
-        labels=tuple(Label(one.span.place, "and so") for one in others if one.span is not None),
+        labels=tuple(
+            Label(axiom.span.place, "and so") for axiom in others if axiom.span is not None
+        ),
         notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
     )
 
 
 def _bounds_help(rule: Rule) -> str:
     # Seconds or steps, it is the number of them that makes it large.
-    has_bounds = any(one.bound is not None for one in operations_of(rule.formula))
+    has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
     return "; each bound takes as many states as it has steps" if has_bounds else ""
 
 

@@ -1,4 +1,4 @@
-"""What went wrong, as data: places in a text, messages, and the registry of codes.
+"""Mistakes as data: places in a text, codes, messages.
 
 Nothing here prints. ``rulec.report`` turns diagnostics into text.
 """

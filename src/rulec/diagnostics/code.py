@@ -20,7 +20,7 @@ ExampleKind: TypeAlias = Literal[
     "python",
     "circumstance",
 ]
-"""What an example is, and so how it is run.
+"""Kinds of examples, by how they are run.
 
 ``rules``: a rulebook or a vocabulary, to check. ``compiled``: a rulebook, to compile.
 ``analyzed``: a rulebook, to analyze. ``examples``: a rulebook, to run the examples of.

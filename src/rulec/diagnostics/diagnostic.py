@@ -1,4 +1,4 @@
-"""A diagnostic is a value: a code, one place, words. Rendering is elsewhere."""
+"""Diagnostics: values of a code, a place and words."""
 
 from __future__ import annotations
 

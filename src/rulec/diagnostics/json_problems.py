@@ -1,4 +1,4 @@
-"""What is wrong with a JSON document, in a reader's words."""
+"""Mistakes in JSON documents, in a reader's words."""
 
 from __future__ import annotations
 

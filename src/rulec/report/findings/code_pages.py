@@ -1,4 +1,4 @@
-"""What a code means: as text, as Markdown, as JSON, and the page docs/codes.md."""
+"""Explanations of codes as text, Markdown and JSON, and the page docs/codes.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said about bounds of time."""
+"""Messages about bounds of time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said about numbers, truths and objects where another of them is needed."""
+"""Messages about numbers, truths and objects where another of them is needed."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from rulec.logic.formula import Formula
 from rulec.rulebook.elaborate.linear_arithmetic import Number
 from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE, UNUSED_VARIABLE
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
-from rulec.rulebook.names.declaration_messages import UNKNOWN_UNIT, unit_help
 from rulec.rulebook.names.scope import SIDES, Scope
 from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.printer import print_formula
 from rulec.vocabulary import Enumeration
-from rulec.vocabulary.units import DIMENSIONS, Dimension, unit_refusal
+from rulec.vocabulary.units import DIMENSIONS, Dimension
 
 OPERATOR_BEFORE_THEN = Code(
     "R0311",
@@ -53,7 +52,7 @@ MISPLACED_TEMPORAL_OPERATOR = Code(
 
 
 def kind_of(dimension: Dimension | None) -> str:
-    """What a number is of, in words."""
+    """A dimension in words."""
     return "a number" if dimension is None else f"a {dimension.name}"
 
 
@@ -63,11 +62,11 @@ def short(node: tree.Formula) -> str:
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
-def what_of(found: object) -> str:
+def what_of(operand: object) -> str:
     """The kind of a meaning in words."""
-    if isinstance(found, Number):
-        return kind_of(found.dimension)
-    return "true or false" if isinstance(found, Formula) else "an object"
+    if isinstance(operand, Number):
+        return kind_of(operand.dimension)
+    return "true or false" if isinstance(operand, Formula) else "an object"
 
 
 def origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
@@ -93,7 +92,7 @@ def _once(labels: Iterator[Label]) -> tuple[Label, ...]:
     return tuple(dict.fromkeys(labels))
 
 
-def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnostic:
+def number_for_truth(node: tree.Formula, number: Number, scope: Scope) -> Diagnostic:
     """A number where a formula needs something true or false."""
     unit = ""
     if isinstance(node, tree.AtomUse):
@@ -102,7 +101,7 @@ def number_for_truth(node: tree.Formula, found: Number, scope: Scope) -> Diagnos
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     return NUMBER_OR_FORMULA.at(
         node.span,
-        f"`{short(node)}` is {kind_of(found.dimension)}{inside} and cannot be true or false",
+        f"`{short(node)}` is {kind_of(number.dimension)}{inside} and cannot be true or false",
         expected="expected something that is true or false",
         help=f"compare it, such as `{short(node)} {test}`",
         labels=_once(origins(node, scope)),
@@ -120,11 +119,11 @@ def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
     )
 
 
-def no_number(node: tree.Formula, found: object, scope: Scope) -> Diagnostic:
+def no_number(node: tree.Formula, operand: object, scope: Scope) -> Diagnostic:
     """Something true or false, or an object, where a number is needed."""
     return NUMBER_OR_FORMULA.at(
         node.span,
-        f"`{short(node)}` is {what_of(found)}, not a number",
+        f"`{short(node)}` is {what_of(operand)}, not a number",
         expected="expected a number",
         help="a number is a quantity, a parameter, a count, or such as `1.5 m`",
         labels=_once(origins(node, scope)),
@@ -135,17 +134,19 @@ def values_compared(
     node: tree.Compare,
     side: tree.AtomUse,
     item: Enumeration,
-    other: tree.Formula,
+    compared: tree.Formula,
     scope: Scope,
 ) -> Diagnostic:
     """``surface = crossing``: an enumeration's value is an atom by itself."""
     name = side.name.text
-    value = other.name.text if isinstance(other, tree.AtomUse) else ""
+    value = compared.name.text if isinstance(compared, tree.AtomUse) else ""
     relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
-    arguments = f"({', '.join(one.text for one in side.arguments)})" if side.arguments else ""
+    arguments = (
+        f"({', '.join(argument.text for argument in side.arguments)})" if side.arguments else ""
+    )
     if value not in item.values and not relative:
         way_out = did_you_mean(value, item.values) or (
-            f"write {any_of([f'`{one}{arguments}`' for one in item.values])}"
+            f"write {any_of([f'`{known}{arguments}`' for known in item.values])}"
         )
     else:
         way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
@@ -177,12 +178,12 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
 
 
 def not_comparable(
-    node: tree.Formula, found: object, around: tree.Compare, scope: Scope
+    node: tree.Formula, operand: object, around: tree.Compare, scope: Scope
 ) -> Diagnostic:
     """A side of a comparison that is no number."""
     return NUMBER_OR_FORMULA.at(
         node.span,
-        f"`{short(node)}` is {what_of(found)}, not a number",
+        f"`{short(node)}` is {what_of(operand)}, not a number",
         expected=f"expected a number beside `{around.relation}`",
         help="numbers are compared, and objects by `=` and `!=`",
         labels=_once(origins(node, scope)),
@@ -206,13 +207,13 @@ def two_dimensions(
         *origins(first, scope),
         *origins(second, scope),
     ]
-    one, other = kind_of(left.dimension), kind_of(right.dimension)
+    first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
     verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
-    message = f"`{short(first)}` is {one} and `{short(second)}` {other}"
+    message = f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}"
     return MIXED_DIMENSIONS.at(
         second.span,
         f"{message}: they cannot be {verb}",
-        expected=f"this is {other}",
+        expected=f"this is {second_kind}",
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
         or _kind_help(first, left, second, right),
@@ -220,16 +221,16 @@ def two_dimensions(
     )
 
 
-def _unit_help(node: tree.Formula, other: tree.Formula, scope: Scope) -> str:
+def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     """A number without its unit."""
-    if isinstance(node, tree.Number) and not node.unit and isinstance(other, tree.AtomUse):
-        unit = scope.declared.unit_text(other.name.text)
+    if isinstance(node, tree.Number) and not node.unit and isinstance(beside, tree.AtomUse):
+        unit = scope.declared.unit_text(beside.name.text)
         return f"write the unit, such as `{node.text} {unit}`" if unit else ""
     return ""
 
 
 def _kind_help(first: tree.Formula, left: Number, second: tree.Formula, right: Number) -> str:
-    """What one could be multiplied with to become the other."""
+    """The factor that makes the two comparable."""
     if left.dimension is not None and right.dimension is not None:
         for node, ratio in (
             (second, left.dimension / right.dimension),
@@ -254,20 +255,6 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
         expected=f"this is {what_of(otherwise)}",
         help="both sides of `if … else` are numbers, or both are true or false",
         labels=_once(origins(node.value, scope)),
-    )
-
-
-def unknown_unit(node: tree.Number) -> Diagnostic:
-    """A unit that nobody knows, or that cannot be converted exactly."""
-    refusal = unit_refusal(node.unit)
-    if refusal is not None:
-        message = f"the unit `{node.unit}` cannot be used: {refusal.why}"
-        return UNKNOWN_UNIT.at(node.span, message, help=refusal.instead)
-    return UNKNOWN_UNIT.at(
-        node.span,
-        f"there is no unit `{node.unit}`",
-        expected="expected a unit of measure",
-        help=unit_help(node.unit),
     )
 
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.linear_arithmetic import Number, constant
+from rulec.rulebook.names.declaration_messages import unknown_unit
 from rulec.rulebook.names.scope import Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
@@ -27,7 +28,7 @@ def literal(node: tree.Number, scope: Scope) -> Number | None:
         return constant(value, None if value == 0 else DIMENSIONS["number"], node.text)
     unit = scope.declared.unit(node.unit)
     if unit is None:
-        scope.report(say.unknown_unit(node))
+        scope.report(unknown_unit(node.unit, node.span))
         return None
     return constant(value * unit.factor, unit.dimension, f"{node.text} {node.unit}")
 

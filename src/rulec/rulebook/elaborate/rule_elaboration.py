@@ -9,8 +9,8 @@ from fractions import Fraction
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
-from rulec.rulebook.elaborate import exemption_messages as say
 from rulec.rulebook.elaborate import rule_messages
+from rulec.rulebook.elaborate import rule_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
 from rulec.rulebook.elaborate.exemptions import (
     BoundedPhaseError,
@@ -20,9 +20,8 @@ from rulec.rulebook.elaborate.exemptions import (
 )
 from rulec.rulebook.elaborate.linear_arithmetic import negated
 from rulec.rulebook.elaborate.literals import exact_value
-from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE
+from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE, no_multiple
 from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, excess
-from rulec.rulebook.elaborate.step_messages import no_multiple
 from rulec.rulebook.examples.example_elaboration import example_of
 from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.names.rule_variables import variables_of

@@ -1,13 +1,16 @@
-"""What is said about rules and definitions as a whole."""
+"""Messages about rules and definitions as a whole."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
+from rulec.logic.bounds import NotAMultipleError
+from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS
+from rulec.rulebook.model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
 
@@ -184,4 +187,53 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
         expected="not used",
         help="leave it out, or speak of it in a rule",
         severity="warning",
+    )
+
+
+def no_stretch(unless: tree.Unless, scope: str, require: Span | None) -> Diagnostic:
+    """A scope of an exception to a formula that guards no stretch of time."""
+    written = f"`{scope}`" if unless.scope else "this exception"
+    labels = () if require is None else (Label(require.place, "this is what the rule requires"),)
+    return UNFITTING_SCOPE.at(
+        unless.span,
+        f"{written} speaks of a sequence, and the rule guards none: it does not begin with "
+        "`never` or `always`",
+        expected="expected `initially`",
+        help="write `initially`, which looks at the first state, or say what must `never` happen",
+        labels=labels,
+    )
+
+
+def bounded_phase(unless: tree.Unless) -> Diagnostic:
+    """``throughout`` phases whose length is bounded."""
+    return UNFITTING_SCOPE.at(
+        unless.span,
+        "an exception cannot hold `throughout` phases whose length is bounded",
+        expected="expected another scope",
+        help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
+    )
+
+
+def too_many_exceptions(unless: tree.Unless) -> Diagnostic:
+    """More exceptions that hold throughout than a formula can take."""
+    return FORMULA_TOO_LARGE.at(
+        unless.span,
+        "with this one, too many exceptions of the rule have to hold `throughout` its phases: "
+        "each multiplies the formula",
+        help="join some of them by `or` in one `unless`, if one of them may follow the other",
+    )
+
+
+def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
+    """R0407: a bound of the rule falls between two states."""
+    below = error.offending // error.step_s * error.step_s
+    nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
+    return NOT_A_MULTIPLE.at(
+        error.span or rule.span,
+        f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
+        f"{time_in_words(error.step_s, 's')}",
+        help=f"the nearest multiples are {' and '.join(nearest)}"
+        if len(nearest) > 1
+        else f"the nearest multiple is {nearest[0]}",
+        notes=(f"rule `{rule.name}` would have to know what happens between two states",),
     )

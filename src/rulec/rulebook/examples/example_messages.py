@@ -1,4 +1,4 @@
-"""What is said about states of examples."""
+"""Messages about states of examples."""
 
 from __future__ import annotations
 
@@ -142,11 +142,11 @@ def other_dimension(
 ) -> Diagnostic:
     """A value in a unit of another dimension."""
     assert fact.value is not None, "only a value has a unit"
-    found = given.dimension.name if given.dimension else "number"
+    given_kind = given.dimension.name if given.dimension else "number"
     return MIXED_DIMENSIONS.at(
         fact.value.span,
         f"`{term_in_words(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
-        f"a {found}",
+        f"a {given_kind}",
         expected=f"expected a {unit.dimension.name}",
         help=f"write it in {unit.text}",
     )

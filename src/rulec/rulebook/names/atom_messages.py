@@ -1,4 +1,4 @@
-"""Names that are no atom, or are used as if they took other arguments: what was meant?"""
+"""Messages about names in formulas."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def _unknown(
 
 
 def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
-    """How a signal would be declared that fits its use: `braking(v: vehicle)` for `braking(v)`."""
+    """The declaration that fits a use: `braking(v: vehicle)` for `braking(v)`."""
     types = [variables.get(argument.text) for argument in use.arguments]
     if not types or None in types:
         return use.name.text
@@ -207,7 +207,7 @@ def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
 
 
 def _short_form(name: str, declared: SymbolTable, variables: Sequence[str]) -> str:
-    """What may be wrong with ``b_v`` where it stands for ``b(v)``."""
+    """The mistake in ``b_v`` where it stands for ``b(v)``."""
     head, _, tail = name.rpartition("_")
     item = declared.behind_atom(head)
     if item is not None and len(item.parameters) == 1:

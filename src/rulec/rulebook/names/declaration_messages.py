@@ -1,4 +1,4 @@
-"""What is said about declarations that are wrong."""
+"""Messages about declarations that are wrong."""
 
 from __future__ import annotations
 
@@ -143,42 +143,40 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
 
 def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:
     """Two vocabularies that cannot be used together, since they share names."""
-    one, other = first.name.text, again.name.text
     return DECLARED_TWICE.at(
         again.span,
-        f"the vocabularies `{one}` and `{other}` both declare {named(sorted(set(names)))}",
-        expected=f"cannot be used beside `{one}`",
+        f"the vocabularies `{first.name.text}` and `{again.name.text}` both declare "
+        f"{named(sorted(set(names)))}",
+        expected=f"cannot be used beside `{first.name.text}`",
         help="use one of them, and declare here what you miss of the other",
-        labels=(Label(first.span.place, f"`{one}` is used here"),),
+        labels=(Label(first.span.place, f"`{first.name.text}` is used here"),),
     )
 
 
-def unknown_unit(item: tree.QuantityItem, name: tree.Name) -> Diagnostic:
-    """A quantity in a unit that nobody knows, or that cannot be converted exactly."""
-    refusal = unit_refusal(item.unit)
+def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
+    """A unit, such as that of a quantity, that nobody knows or that cannot be converted exactly."""
+    refusal = unit_refusal(unit)
     if refusal is not None:
-        message = f"the unit `{item.unit}` of `{name.text}` cannot be used: {refusal.why}"
-        return UNKNOWN_UNIT.at(item.unit_span, message, help=refusal.instead)
-    return UNKNOWN_UNIT.at(
-        item.unit_span,
-        f"there is no unit `{item.unit}`",
-        expected="expected a unit of measure",
-        help=unit_help(item.unit),
+        of_quantity = f" of `{quantity}`" if quantity else ""
+        message = f"the unit `{unit}`{of_quantity} cannot be used: {refusal.why}"
+        return UNKNOWN_UNIT.at(span, message, help=refusal.instead)
+    way_out = (
+        "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
+        if unit in ("step", "steps")
+        else did_you_mean(unit, known_unit_names())
     )
-
-
-def unit_help(unit: str) -> str:
-    """The way out of an unknown unit."""
-    if unit in ("step", "steps"):
-        return "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
-    near = did_you_mean(unit, known_unit_names())
-    return near or "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`"
+    return UNKNOWN_UNIT.at(
+        span,
+        f"there is no unit `{unit}`",
+        expected="expected a unit of measure",
+        help=way_out or "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`",
+    )
 
 
 def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
     """A kind of number that nobody knows."""
-    other = _OTHER_DIMENSIONS.get(name.text.casefold())
-    way_out = f"write `{other}`" if other else did_you_mean(name.text, known)
+    synonym = _OTHER_DIMENSIONS.get(name.text.casefold())
+    way_out = f"write `{synonym}`" if synonym else did_you_mean(name.text, known)
     return UNKNOWN_DIMENSION.at(
         name.span,
         f"there is no kind of number `{name.text}`",

@@ -229,7 +229,7 @@ def _declare_item(
         case tree.QuantityItem(name, parameters, unit, number):
             types = _parameter_types(declared, name, parameters, roots)
             if declared.unit(unit) is None:
-                declared.mistakes.append(unknown_unit(item, name))
+                declared.mistakes.append(unknown_unit(item.unit, item.unit_span, name.text))
             _add(declared, name, Quantity(name.text, types, unit, number))
         case tree.EnumerationItem(name, parameters, values, chosen):
             types = _parameter_types(declared, name, parameters, roots)

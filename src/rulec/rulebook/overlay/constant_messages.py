@@ -1,4 +1,4 @@
-"""What is said about uses of options, parameters and definitions, and about their values."""
+"""Messages about options, parameters and definitions, and their values."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
 
 def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
     """A definition used with too few or too many objects."""
-    names = ", ".join(one.name.text for one in item.parameters)
+    names = ", ".join(parameter.name.text for parameter in item.parameters)
     shape = f"{item.name.text}({names})" if names else item.name.text
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
@@ -126,14 +126,14 @@ def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnos
 
 
 def parameter_of_another_kind(
-    item: tree.ParamItem | tree.SetItem, found: Number, wanted: Dimension, first: tree.Name
+    item: tree.ParamItem | tree.SetItem, number: Number, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
     """A parameter's value of another dimension than it has."""
     assert not isinstance(item.value, bool), "only an option is on or off"
     return MIXED_DIMENSIONS.at(
         item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "
-        f"{kind_of(found.dimension)}",
+        f"{kind_of(number.dimension)}",
         expected=f"expected a {wanted.name}",
         help="check the unit",
         labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),

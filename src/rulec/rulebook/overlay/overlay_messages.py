@@ -1,4 +1,4 @@
-"""What is said about rulebooks that build upon others."""
+"""Messages about rulebooks that build upon others."""
 
 from __future__ import annotations
 
@@ -187,14 +187,17 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
 
 def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagnostic:
     """An override without variables that the clauses which it inherits speak of."""
-    names = " and ".join(f"`{one.name.text}`" for one in lost)
+    names = " and ".join(f"`{variable.name.text}`" for variable in lost)
     first, last = item.variables[0].span, item.variables[-1].span
     return UNKNOWN_VARIABLE.at(
         Span(first.source, first.start, last.end),
         f"what `{item.name.text}` inherits speaks of {names}, and here is no such variable",
         expected=f"expected {names}",
         help="call variables as they are called there, or write every clause and example anew",
-        labels=tuple(Label(one.span.place, f"`{one.name.text}` comes from here") for one in lost),
+        labels=tuple(
+            Label(variable.span.place, f"`{variable.name.text}` comes from here")
+            for variable in lost
+        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""What is said about text that is not in the language, one diagnostic for each mistake.
+"""Messages about text that is not in the language, one for each mistake.
 
 ``mismatch`` speaks where a piece cannot be parsed: ``expectations`` turns what the grammar would
 have taken into words, ``advice`` guesses what was meant. ``structure`` speaks about braces.

@@ -1,4 +1,4 @@
-"""Help for mistakes that people make: what stands there, what could, and so what was meant."""
+"""Help for mistakes that people make, by what was probably meant."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def advise(scene: ParseContext) -> str:
 
 
 def _quotes(scene: ParseContext) -> str:
-    found, before = scene.found, scene.before
-    if found is None:
+    token, before = scene.unexpected, scene.before
+    if token is None:
         return ""
     grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
-    if found.kind == "quoted" or (found.text in _SINGLE and not grouped):
+    if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
         return 'texts stand in straight double quotes: "…"'
-    if scene.accepted == {"STRING"} and found.kind != "symbol":
+    if scene.accepted == {"STRING"} and token.kind != "symbol":
         return 'put the text in double quotes: "…"'
-    if found.kind == "string" and "STRING" not in scene.accepted:
-        said = found.text[1:-1]
+    if token.kind == "string" and "STRING" not in scene.accepted:
+        said = token.text[1:-1]
         if said in map(spelling, scene.accepted) or ("NAME" in scene.accepted and _names(said)):
             return f"write `{said}` without quotes"
     if before is not None and before.kind == "string" and scene.is_word() and scene.touches():
@@ -50,27 +50,27 @@ def _comment(scene: ParseContext) -> str:
 
 def _misspelt(scene: ParseContext) -> str:
     """A word that looks much like one that could stand there, or in place of the one before."""
-    found, before = scene.found, scene.before
-    if found is None or found.kind != "word" or found.text.casefold() in RESERVED:
+    token, before = scene.unexpected, scene.before
+    if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""
-    if found.text.casefold() == "infinite":
+    if token.text.casefold() == "infinite":
         return ""  # it is much like `finite` and means the opposite
     words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
-    near = did_you_mean(found.text, words)
+    near = did_you_mean(token.text, words)
     if near or before is None or before.text in RESERVED or not scene.operator:
         return near
     return did_you_mean(before.text, UNARY_OPERATORS)
 
 
 def _name(scene: ParseContext) -> str:
-    found, before = scene.found, scene.before
-    if found is None or before is None:
+    token, before = scene.unexpected, scene.before
+    if token is None or before is None:
         return ""
-    named = "NAME" in scene.accepted and not scene.quantity and found.kind in ("number", "string")
-    hyphen = found.text == "-" and scene.touches() and "MINUS" not in scene.accepted
+    named = "NAME" in scene.accepted and not scene.quantity and token.kind in ("number", "string")
+    hyphen = token.text == "-" and scene.touches() and "MINUS" not in scene.accepted
     if scene.kind != "state" and (named or (hyphen and before.kind == "word")):
         return "names are made of letters, digits and `_`, and begin with a letter"
-    words = (before.text, found.text) if before.kind == found.kind == "word" else ()
+    words = (before.text, token.text) if before.kind == token.kind == "word" else ()
     if scene.accepted == {"$END"} and words and not RESERVED.intersection(words):
         lists = scene.first in ITEM_WORDS and scene.at == 2
         return f"a name is one word, such as `{'_'.join(words)}`" if lists else ""
@@ -99,8 +99,8 @@ def _parentheses(scene: ParseContext) -> str:
 
 
 def _form(scene: ParseContext) -> str:
-    """How the whole line is written, where there is nothing better to say."""
-    unfinished = scene.found is None and scene.text_before == "="
+    """The form of the whole line, where there is nothing better to say."""
+    unfinished = scene.unexpected is None and scene.text_before == "="
     formula = not unfinished and (scene.operand or scene.operator or scene.quantity)
     return "" if formula or scene.kind != "item" else FORMS.get(scene.first, "")
 

@@ -1,4 +1,4 @@
-"""What the grammar would have accepted, in words."""
+"""Words for the tokens that the grammar would have accepted."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _SPELLINGS: Final = {
     "TIMES": "*",
     "OVER": "/",
 }
-"""How the tokens are written whose names in the grammar are not their words in capitals."""
+"""Spelling of the tokens whose names in the grammar are not their words in capitals."""
 
 _ORDER: Final = (
     *("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT"),
@@ -57,7 +57,7 @@ _ORDER: Final = (
 
 
 def spelling(kind: str) -> str:
-    """How a word or a sign of the grammar is written: ``AT_END`` is ``at end``."""
+    """The spelling of a word or a sign of the grammar: ``AT_END`` is ``at end``."""
     return _SPELLINGS.get(kind) or kind.lower().replace("_", " ")
 
 
@@ -91,15 +91,15 @@ def _rank(kind: str) -> int:
 
 
 def wants_operand(accepted: frozenset[str]) -> bool:
-    """Could a formula begin here?"""
+    """Whether a formula could begin here."""
     return accepted >= _OPERANDS
 
 
 def wants_quantity(accepted: frozenset[str]) -> bool:
-    """Could a quantity or a number stand here?"""
+    """Whether a quantity or a number could stand here."""
     return accepted >= _QUANTITIES
 
 
 def wants_operator(accepted: frozenset[str]) -> bool:
-    """Could a binary operator stand here?"""
+    """Whether a binary operator could stand here."""
     return accepted >= _OPERATORS

@@ -61,9 +61,9 @@ def advise_on_formula(scene: ParseContext) -> str:
     if not (scene.operand or scene.operator or scene.quantity or "AND" in scene.accepted):
         return _arguments(scene)
     for advice in (_conditionals, _numbers, _comparisons, _operators, _joined):
-        found = advice(scene)
-        if found:
-            return found
+        way_out = advice(scene)
+        if way_out:
+            return way_out
     return ""
 
 
@@ -71,7 +71,7 @@ def advise_on_aggregate(scene: ParseContext) -> str:
     """At ``some``, ``every``, ``count``, and what others call them."""
     text, before = scene.text, scene.text_before
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
-    if word and (scene.operand or scene.operator) and scene.found is not None:
+    if word and (scene.operand or scene.operator) and scene.unexpected is not None:
         return f"write `{word} x: vehicle (…)`"
     if before in _AGGREGATES and scene.accepted == {"NAME"}:
         return f"it is written `{before} x: vehicle (…)`"
@@ -125,8 +125,8 @@ def _conditionals(scene: ParseContext) -> str:
 
 
 def _numbers(scene: ParseContext) -> str:
-    found, text = scene.found, scene.text
-    if found is None or not (scene.operator or scene.quantity):
+    token, text = scene.unexpected, scene.text
+    if token is None or not (scene.operator or scene.quantity):
         return ""
     around = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if text == "," and around:
@@ -173,7 +173,7 @@ def _comparisons(scene: ParseContext) -> str:
 
 
 def _operators(scene: ParseContext) -> str:
-    if scene.found is None:
+    if scene.unexpected is None:
         return ""
     text, before = scene.text, scene.text_before
     if scene.operator and len(before) > 1 and set(before) <= set(PREFIX_LETTERS):

@@ -42,7 +42,7 @@ _OTHER_WORDS: Final = {
 
 
 def other_word(word: str) -> str:
-    """What an item is called whose word is one of other languages; empty if it is unknown."""
+    """The word for an item whose word is one of other languages; empty if it is unknown."""
     form = _OTHER_WORDS.get(word)
     return f"write `{form}`" if form else ""
 
@@ -88,7 +88,7 @@ def advise_on_item(scene: ParseContext) -> str:
 
 def advise_on_dates(scene: ParseContext) -> str:
     """At ``in force from DATE until DATE``."""
-    if scene.accepted == {"DATE"} and scene.found is not None:
+    if scene.accepted == {"DATE"} and scene.unexpected is not None:
         return "a date is written year-month-day, such as `2006-03-28`"
     if scene.first not in _DATED and scene.kind != "clause":
         return ""

@@ -38,7 +38,7 @@ _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "
 
 
 def other_clause(word: str, others: Container[str] = ()) -> str:
-    """What to write for a clause's word of other languages; empty if it is unknown.
+    """The way out of a clause's word of other languages; empty if it is unknown.
 
     ``others`` are the words and signs behind it.
     """
@@ -62,7 +62,7 @@ def advise_on_rule_head(scene: ParseContext) -> str:
     if text == "override" and scene.accepted == {"RULE"}:
         return f"`override` comes first: `override {scene.first} rule`"
     if "RULE" in scene.accepted:
-        return f"write `{' '.join(one.text for one in scene.tokens[: scene.at])} rule {name}`"
+        return f"write `{' '.join(token.text for token in scene.tokens[: scene.at])} rule {name}`"
     if (scene.text_before, text) == ("(", ")"):
         return "a rule without variables has no parentheses"
     if scene.accepted == {"COLON"}:
@@ -91,7 +91,11 @@ def advise_on_clause(scene: ParseContext) -> str:
 def _example_head(scene: ParseContext) -> str:
     if scene.accepted == {"COLON"}:
         return "an object is written with its type, such as `v: vehicle`"
-    if scene.found is not None and scene.found.kind == "string" and scene.text_before == ")":
+    if (
+        scene.unexpected is not None
+        and scene.unexpected.kind == "string"
+        and scene.text_before == ")"
+    ):
         return f'the label stands before the objects: `{scene.first} "…" (v: vehicle)`'
     if scene.is_word() and "STRING" in scene.accepted:
         return 'put the text in double quotes: "…"'
@@ -103,7 +107,7 @@ def advise_on_state(scene: ParseContext) -> str:
     if scene.kind != "state":
         return ""
     text = scene.text
-    if scene.found is None and "NAME" in scene.accepted:
+    if scene.unexpected is None and "NAME" in scene.accepted:
         return "say what holds in this state; a `;` stands only between two states"
     if text == ",":
         return "states are separated by `;`, the facts of one state by `and`"

@@ -1,4 +1,4 @@
-"""A piece that cannot be parsed, as a diagnostic: exactly one for each."""
+"""Messages about pieces that cannot be parsed: exactly one for each."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ _WHAT = {
     "reject": "the example",
 }
 _CLAUSE_BEGINS = CLAUSE_WORDS | {"throughout", "initially"}
-"""What may stand first on a line of a rule: clauses, and the scope of the exception above."""
+"""Words that may stand first on a line of a rule: clauses, and the scope of the exception above."""
 
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
 
@@ -106,28 +106,28 @@ _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "th
 def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
     """Why the piece cannot be read."""
     # A rulebook's name is a name, as far as messages are concerned.
-    accepted = frozenset("NAME" if one == "BOOK" else one for one in mismatch.accepted)
+    accepted = frozenset("NAME" if kind == "BOOK" else kind for kind in mismatch.accepted)
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
-    found = inside[at] if at < len(inside) else None
+    token = inside[at] if at < len(inside) else None
     scene = ParseContext(source, piece.kind, inside, at, accepted)
     first = scene.first
     end = span_of(source, tokens, piece).end
-    span = Span(source, end, end) if found is None else _span(source, found)
-    if found is not None and found.kind == "unterminated":
+    span = Span(source, end, end) if token is None else _span(source, token)
+    if token is not None and token.kind == "unterminated":
         return _unterminated(span)
-    if found is not None and _is_word_for_name(scene):
-        return _reserved(span, found.text)
+    if token is not None and _is_word_for_name(scene):
+        return _reserved(span, token.text)
     if piece.kind == "item" and at < 2 and first not in ITEM_WORDS:
         return _unknown_item(source, inside)
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
     begins = at == (first == "require")
-    if found is None:
+    if token is None:
         message = f"{what} is empty" if begins else f"{what} ends too early"
     elif begins:
-        message = f"{what} cannot begin with `{_short(found.text)}`"
+        message = f"{what} cannot begin with `{_short(token.text)}`"
     else:
-        message = f"{what} cannot go on with `{_short(found.text)}`"
+        message = f"{what} cannot go on with `{_short(token.text)}`"
     return UNEXPECTED_WORD.at(
         span,
         message,
@@ -139,32 +139,32 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
     """A piece that begins with nothing that the language has, inside a rule."""
-    found = tokens[piece.first]
+    token = tokens[piece.first]
     others = tokens[piece.first + 1 : piece.last]
-    symbols = any(token.kind == "symbol" for token in (found, *others))
+    symbols = any(token.kind == "symbol" for token in (token, *others))
     formula = "a formula stands behind `require`" if symbols else ""
     words = frozenset(token.text for token in others)
     return UNEXPECTED_WORD.at(
-        _span(source, found),
-        f"no clause begins with `{_short(found.text)}`",
+        _span(source, token),
+        f"no clause begins with `{_short(token.text)}`",
         expected="expected a clause such as `require` or `accept`",
-        help=other_clause(found.text, words) or did_you_mean(found.text, _CLAUSE_BEGINS) or formula,
+        help=other_clause(token.text, words) or did_you_mean(token.text, _CLAUSE_BEGINS) or formula,
     )
 
 
 def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
-    found, *others = inside
+    token, *others = inside
     way_out = ""
-    if found.kind == "word":
-        way_out = other_word(found.text) or did_you_mean(found.text, ITEM_WORDS | CLAUSE_WORDS)
+    if token.kind == "word":
+        way_out = other_word(token.text) or did_you_mean(token.text, ITEM_WORDS | CLAUSE_WORDS)
         named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
         if others and others[0].text in ("=", ":="):
-            way_out = way_out or f"write `param {found.text} = …` or `define {found.text} = …`"
-        if not (way_out or named or found.text in RESERVED):
-            way_out = f"an enumeration is declared by `{found.text} is one of a, b`"
+            way_out = way_out or f"write `param {token.text} = …` or `define {token.text} = …`"
+        if not (way_out or named or token.text in RESERVED):
+            way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
     return UNEXPECTED_WORD.at(
-        _span(source, found),
-        f"nothing in the language begins with `{_short(found.text)}`",
+        _span(source, token),
+        f"nothing in the language begins with `{_short(token.text)}`",
         expected="expected a declaration or a rule",
         help=way_out,
     )
@@ -198,16 +198,16 @@ def _short(text: str) -> str:
 
 def _is_word_for_name(scene: ParseContext) -> bool:
     """A reserved word where only a name could stand: it was meant as one."""
-    found = scene.found
-    if found is None or found.kind != "word" or found.text not in RESERVED:
+    token = scene.unexpected
+    if token is None or token.kind != "word" or token.text not in RESERVED:
         return False
     if "NAME" not in scene.accepted:
         return False
-    if found.text in ("because", "rule") and scene.first in PROVISION_WORDS:
+    if token.text in ("because", "rule") and scene.first in PROVISION_WORDS:
         return False  # the name before it is missing, or `rule` stands where it need not
     if scene.operand or scene.quantity:
-        return found.text in ITEM_WORDS | CLAUSE_WORDS
-    return scene.kind != "state" or found.text in ITEM_WORDS | CLAUSE_WORDS
+        return token.text in ITEM_WORDS | CLAUSE_WORDS
+    return scene.kind != "state" or token.text in ITEM_WORDS | CLAUSE_WORDS
 
 
 def _reserved(span: Span, word: str) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""Where a piece cannot go on: what stands there, what stands around it, what could stand there."""
+"""The place where a piece cannot go on, and what surrounds it."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class ParseContext:
         return token.text if token else ""
 
     @property
-    def found(self) -> Token | None:
-        """What cannot stand where it stands; None if the piece ends too early."""
+    def unexpected(self) -> Token | None:
+        """The token that cannot stand where it stands; None if the piece ends too early."""
         return self.token(self.at)
 
     @property
     def before(self) -> Token | None:
-        """What stands before that."""
+        """The token before that."""
         return self.token(self.at - 1)
 
     @property
@@ -46,7 +46,7 @@ class ParseContext:
 
     @property
     def text(self) -> str:
-        """The text of ``found``."""
+        """The text of ``unexpected``."""
         return self.text_at(self.at)
 
     @property
@@ -56,35 +56,35 @@ class ParseContext:
 
     @property
     def text_behind(self) -> str:
-        """The text behind ``found``."""
+        """The text behind ``unexpected``."""
         return self.text_at(self.at + 1)
 
     def is_number(self, index: int) -> bool:
-        """Does a number stand at an index?"""
+        """Whether a number stands at an index."""
         token = self.token(index)
         return token is not None and token.kind == "number"
 
     def is_word(self) -> bool:
-        """Is ``found`` a word?"""
-        return self.found is not None and self.found.kind == "word"
+        """Whether ``unexpected`` is a word."""
+        return self.unexpected is not None and self.unexpected.kind == "word"
 
     def touches(self) -> bool:
-        """Does ``found`` stand right behind the token before, without a space?"""
-        return bool(self.found and self.before and self.before.end == self.found.start)
+        """Whether ``unexpected`` stands right behind the token before, without a space."""
+        return bool(self.unexpected and self.before and self.before.end == self.unexpected.start)
 
     @property
     def operand(self) -> bool:
-        """Could a formula begin here?"""
+        """Whether a formula could begin here."""
         return wants_operand(self.accepted)
 
     @property
     def quantity(self) -> bool:
-        """Could a quantity or a number stand here?"""
+        """Whether a quantity or a number could stand here."""
         return wants_quantity(self.accepted)
 
     @property
     def operator(self) -> bool:
-        """Could a binary operator stand here?"""
+        """Whether a binary operator could stand here."""
         return wants_operator(self.accepted)
 
     def opened(self, opening: str, closing: str) -> int | None:

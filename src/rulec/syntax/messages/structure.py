@@ -1,4 +1,4 @@
-"""What is said about braces and about clauses that stand in the wrong place."""
+"""Messages about braces, and clauses in the wrong place."""
 
 from __future__ import annotations
 
