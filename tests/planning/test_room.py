@@ -8,7 +8,7 @@ from rulec.api.workflow import navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_instances import HARD, SOFT, instances
 from rulec.planning.product.graph_product import explore
-from rulec.planning.product.limits import room_for
+from rulec.planning.product.limits import largest_product
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import ranks_of
@@ -59,6 +59,6 @@ def test_a_large_graph_has_more_room(monkeypatch):
 
     graph = navigation_graph("s1").trace_graph()
     n_nodes = sum(map(len, graph.states))
-    assert room_for(graph) == 1 << 17
+    assert largest_product(graph) == 1 << 17
     monkeypatch.setattr("rulec.planning.product.limits.MOST", 32 * n_nodes - 1)
-    assert room_for(graph) == 32 * n_nodes
+    assert largest_product(graph) == 32 * n_nodes

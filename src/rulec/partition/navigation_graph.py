@@ -96,7 +96,14 @@ def navigation_graph(
         plane(places.roadway, regions, partition, names)
         for regions, names in zip(places.swept, places.names, strict=True)
     ]
-    start = start_cell(planes[0], places, scenario, times, partition, extent)
+    start = start_cell(
+        first=planes[0],
+        places=places,
+        scenario=scenario,
+        timing=times,
+        partition=partition,
+        extent=extent,
+    )
     instants = [
         plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
         for regions in places.instants
@@ -114,23 +121,27 @@ def navigation_graph(
     successors, margins = edges(layers, onward)
     goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
     return NavigationGraph(
-        scenario,
-        partition,
-        adjacency,
-        extent,
-        times.step,
-        {
+        scenario=scenario,
+        partition=partition,
+        adjacency=adjacency,
+        extent=extent,
+        step=times.step,
+        objects={
             name: predicted.obstacle
             for name, predicted in places.predicted_of.items()
             if not predicted.number
         },
-        {name: predicted for name, predicted in places.predicted_of.items() if predicted.number},
-        places.present,
-        layers,
-        successors,
-        margins,
-        start,
-        tuple(i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)),
+        alternatives={
+            name: predicted for name, predicted in places.predicted_of.items() if predicted.number
+        },
+        present=places.present,
+        layers=layers,
+        successors=successors,
+        margins=margins,
+        start=start,
+        goals=tuple(
+            i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)
+        ),
     )
 
 

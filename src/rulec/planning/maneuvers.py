@@ -12,17 +12,17 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
-from rulec.planning.product.cell_tracks import Places, cell_tracks
+from rulec.planning.product.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
-from rulec.planning.product.graph_product import Product, count_paths, explore
+from rulec.planning.product.graph_product import Joint, Product, count_paths, explore
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
-from rulec.planning.ranking.pruning import violating, violating_alone
-from rulec.planning.results import Pruning, RankedManeuver
-from rulec.planning.rule_instances import applied, in_words, past_for
+from rulec.planning.ranking.pruning import Blaming, violating, violating_alone
+from rulec.planning.results import RankedManeuver, RulePruning
+from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Maneuvers:
     paths: TraceGraph
     traces: int
     hard: NodeTransformers
-    product: Product
+    product: Product[Joint]
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
 
@@ -103,7 +103,7 @@ class Maneuvers:
             )
         )
 
-    def prunings(self) -> list[Pruning]:
+    def prunings(self) -> list[RulePruning]:
         """Effect of every rule on the number of maneuvers.
 
         Raises RulecError as ``best`` does.
@@ -131,7 +131,7 @@ class Maneuvers:
         return [rule for rule in hard if not stutter_invariant(rule.machine)]
 
     @cached_property
-    def _places(self) -> Places:
+    def _places(self) -> CellTracks:
         return cell_tracks(self.graph.trace_graph())
 
     @cached_property
@@ -142,7 +142,7 @@ class Maneuvers:
     def _every(self) -> NodeTransformers:
         """Transformers of hard and soft rules that can be violated."""
         past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
-        soft = applied(self.graph, self.paths, self.rules, SOFT, past)
+        soft = bind_rules(self.graph, self.paths, self.rules, SOFT, past)
         return node_transformers(self.paths, [*self.hard.instances, *soft])
 
     def _ranked(
@@ -157,11 +157,13 @@ class Maneuvers:
             violations(self._every.instances, maneuver.nodes),
         )
 
-    def _pruning(self, rule: CompiledRule, every: Product | None, alone: Product | None) -> Pruning:
+    def _pruning(
+        self, rule: CompiledRule, every: Product[Blaming] | None, alone: Product[Blaming] | None
+    ) -> RulePruning:
         rejected = alone or every
         example = next(cheapest(rejected)) if rejected else None
         lost = violations(self._every.instances, example.nodes) if example else ()
-        return Pruning(
+        return RulePruning(
             rule,
             every.accepted if every else 0,
             None if rule.strength == "soft" else alone.accepted if alone else 0,
@@ -187,9 +189,18 @@ def evaluate(
             rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
     """
     rules = rules.fitted_to(graph.step)
-    paths = in_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
+    paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, after)
-    hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))
+    hard = node_transformers(paths, bind_rules(graph, paths, rules, HARD, past))
     before = None if after is None else past.violations
     counted = count_paths(paths)
-    return Maneuvers(graph, rules, paths, counted, hard, explore(hard), after, before)
+    return Maneuvers(
+        graph=graph,
+        rules=rules,
+        paths=paths,
+        traces=counted,
+        hard=hard,
+        product=explore(hard),
+        after=after,
+        violated_before=before,
+    )

@@ -29,7 +29,7 @@ class RankedManeuver:
 
 
 @dataclass(frozen=True, slots=True)
-class Pruning:
+class RulePruning:
     """Numbers of maneuvers that violate a rule, and that rule alone.
 
     The latter is None for a soft rule: it rejects nothing. The example is one of the cheapest of

@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.planning.partition_choice import SUPPLIED
-from rulec.planning.product.graph_instances import Instance, instances
+from rulec.planning.product.graph_instances import GraphInstance, instances
 from rulec.rulebook.model import Strength
 from rulec.trace import TraceGraph
 from rulec.trace.vocabulary_projection import project_graph
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rulec.scenario import Obstacle
 
 
-def in_words(
+def in_rule_words(
     graph: NavigationGraph,
     traces: TraceGraph,
     obstacles: Mapping[str, Obstacle],
@@ -56,13 +56,13 @@ def past_for(
     return past_of(paths, after, rules, graph.step, strengths)
 
 
-def applied(
+def bind_rules(
     graph: NavigationGraph,
     paths: TraceGraph,
     rules: CompiledRulebook,
     strengths: Collection[Strength],
     past: CarriedState,
-) -> list[Instance]:
+) -> list[GraphInstance]:
     """Bind rules of these strengths to the objects of a graph.
 
     Raises RulecError as ``instances`` does, with the scenario as the place.

@@ -65,13 +65,13 @@ def scene(
     def regions(interval: tuple[float, float], looking: tuple[float, float]) -> tuple[Region, ...]:
         generator = (
             region_of(
-                obstacles[i],
-                i,
-                snapped(body, s, d),
-                looking,
-                partition,
-                road,
-                snapped(wide[i, interval], s, d) if wide else None,
+                obstacle=obstacles[i],
+                index=i,
+                body=snapped(body, s, d),
+                interval=looking,
+                partition=partition,
+                roadway=road,
+                body_wide=snapped(wide[i, interval], s, d) if wide else None,
             )
             for i in range(len(obstacles))
             if (body := bodies.get((i, interval))) is not None
@@ -89,15 +89,15 @@ def scene(
     )
     names, index_of, present = _appearances(obstacles, layer_regions)
     return Occupancy(
-        road,
-        layer_regions,
-        tuple(tuple(name for name in here if index_of[name] < likeliest) for here in names),
-        tuple(tuple(name for name in here if index_of[name] >= likeliest) for here in names),
-        instants,
-        {name: everybody[i] for name, i in index_of.items()},
-        present,
-        s,
-        d,
+        roadway=road,
+        swept=layer_regions,
+        names=tuple(tuple(name for name in here if index_of[name] < likeliest) for here in names),
+        others=tuple(tuple(name for name in here if index_of[name] >= likeliest) for here in names),
+        instants=instants,
+        predicted_of={name: everybody[i] for name, i in index_of.items()},
+        present=present,
+        s=s,
+        d=d,
     )
 
 

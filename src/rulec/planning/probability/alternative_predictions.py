@@ -10,7 +10,7 @@ from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
-from rulec.planning.rule_instances import applied, in_words, past_for
+from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ def _counts(maneuvers: Maneuvers, obstacle: str, number: int) -> tuple[int, int]
     traces = world_graph(graph, world)
     if traces is None:
         return 0, 0
-    paths = in_words(graph, traces, named_in(graph, world), rules.vocabulary)
+    paths = in_rule_words(graph, traces, named_in(graph, world), rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, maneuvers.after)
-    hard = node_transformers(paths, applied(graph, paths, rules, HARD, past))
+    hard = node_transformers(paths, bind_rules(graph, paths, rules, HARD, past))
     return count_paths(paths), explore(hard).accepted

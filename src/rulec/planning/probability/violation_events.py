@@ -16,7 +16,7 @@ from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
 from rulec.planning.probability.prediction_classes import PredictionClasses, counted_types
 from rulec.planning.product.graph_instances import HARD, SOFT
-from rulec.planning.rule_instances import in_words, past_for
+from rulec.planning.rule_instances import in_rule_words, past_for
 
 MOST_WORLDS = 10_000
 """So many worlds are looked at one by one for a rule that counts objects, and no more."""
@@ -32,7 +32,9 @@ class ViolationEvents:
         self._book = maneuvers.rules
         self._path = path
         obstacles = {name: predicted.obstacle for name, predicted in path.predicted.items()}
-        self._words = in_words(maneuvers.graph, path.traces, obstacles, maneuvers.rules.vocabulary)
+        self._words = in_rule_words(
+            maneuvers.graph, path.traces, obstacles, maneuvers.rules.vocabulary
+        )
         self._states = [state for (state,) in self._words.states]
         self._past = past_for(
             maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after

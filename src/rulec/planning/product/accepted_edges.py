@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rulec.planning.product.graph_product import Product, ProductNode
+from rulec.planning.product.graph_product import Memory, Product, ProductNode
 from rulec.planning.product.node_transformers import NodeTransformers
 
 Edge = tuple[int, int]
@@ -24,22 +24,27 @@ class AcceptedEdges:
     accepted: tuple[frozenset[Edge], ...]
 
 
-def accepted_edges(effects: NodeTransformers, product: Product) -> AcceptedEdges:
-    """The passages of a graph; ``product`` has been explored from ``effects``."""
-    nodes = [frozenset(i for i, there in enumerate(row) if there) for row in effects.on_the_way]
+def accepted_edges(transformers: NodeTransformers, product: Product[Memory]) -> AcceptedEdges:
+    """Edges of a graph on accepted and on possible paths.
+
+    ``product`` has been explored from ``transformers``.
+    """
+    nodes = [
+        frozenset(i for i, there in enumerate(row) if there) for row in transformers.on_the_way
+    ]
     edges = [
         frozenset((node, target) for node in here for target, _ in rows[node])
-        for here, rows in zip(nodes, effects.steps, strict=False)
+        for here, rows in zip(nodes, transformers.steps, strict=False)
     ]
     accepted_nodes, accepted = _accepted(product)
     return AcceptedEdges(tuple(nodes), accepted_nodes, tuple(edges), accepted)
 
 
 def _accepted(
-    product: Product,
+    product: Product[Memory],
 ) -> tuple[tuple[frozenset[int], ...], tuple[frozenset[Edge], ...]]:
     """Trim the product backwards from its ends."""
-    ahead: frozenset[ProductNode] | set[ProductNode] = product.ends
+    ahead: frozenset[ProductNode[Memory]] | set[ProductNode[Memory]] = product.ends
     nodes = [frozenset(node for node, _ in ahead)]
     edges = []
     for steps in reversed(product.steps):

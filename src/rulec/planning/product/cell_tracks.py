@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from rulec.trace import TraceGraph
 
-Places = tuple[tuple[int, ...], ...]
+CellTracks = tuple[tuple[int, ...], ...]
 """For every layer and node the number of its place."""
 
 
-def cell_tracks(graph: TraceGraph) -> Places:
+def cell_tracks(graph: TraceGraph) -> CellTracks:
     """The place of every node.
 
     Nodes of consecutive layers are one place if one continues as the other, so that going there is

@@ -24,7 +24,7 @@ SOFT: tuple[Strength, ...] = ("soft",)
 
 
 @dataclass(frozen=True, slots=True)
-class Instance:
+class GraphInstance:
     """A rule with objects bound, and the letter class of every node.
 
     ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
@@ -53,7 +53,7 @@ def instances(
     step_s: Fraction | None = None,
     strengths: Collection[Strength] = HARD,
     past: CarriedState = NO_PAST,
-) -> list[Instance]:
+) -> list[GraphInstance]:
     """Bind rules of these strengths to a graph's objects.
 
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
@@ -87,7 +87,7 @@ def instances(
     for layer, read in enumerate(columns):
         where = f"a cell of layer {layer}".format
         check_counting_axioms(rulebook, len(graph.states[layer]), read.moment, where, None)
-    result: list[Instance] = []
+    result: list[GraphInstance] = []
     for rule in rules:
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
@@ -101,13 +101,13 @@ def instances(
                 start = past.states.get(about, 0) if stays else 0
                 alike.setdefault((binding.first, start, letters), []).append(binding)
         result += [
-            Instance(rule, tuple(bound), letters, start)
+            GraphInstance(rule, tuple(bound), letters, start)
             for (_, start, letters), bound in alike.items()
         ]
     return result
 
 
-def violations(rules: Sequence[Instance], nodes: Sequence[int]) -> tuple[Violation, ...]:
+def violations(rules: Sequence[GraphInstance], nodes: Sequence[int]) -> tuple[Violation, ...]:
     """Violations of a path, with the layer of each bad prefix."""
     result = []
     for rule in rules:

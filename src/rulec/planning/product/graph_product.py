@@ -6,13 +6,13 @@ futures. So paths are counted per node and state, layer by layer.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import getitem
-from typing import Any
+from typing import Generic, TypeVar
 
-from rulec.planning.product.limits import room_for, too_many
+from rulec.planning.product.limits import largest_product, too_large
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.product.reachability import Step
 from rulec.trace import TraceGraph
@@ -20,8 +20,8 @@ from rulec.trace import TraceGraph
 Joint = tuple[int, ...]
 """The state of each instance's machine; SAFE where nothing can be lost any more."""
 
-Memory = Any
-"""What of a path's past bears on its future: a joint state, maybe with more; hashable."""
+Memory = TypeVar("Memory", bound=Hashable)
+"""What of a path's past bears on its future: a joint state, maybe with more."""
 
 ProductNode = tuple[int, Memory]
 """A node's index in its layer, and the memory behind it."""
@@ -29,26 +29,27 @@ ProductNode = tuple[int, Memory]
 Enter = Callable[[Sequence[Effect], Memory], Memory | None]
 """The memory behind a node that has these effects; None if the path is dropped there."""
 
-_Steps = dict[ProductNode, list[tuple[ProductNode, int]]]
+Steps = dict[ProductNode[Memory], list[tuple[ProductNode[Memory], int]]]
+"""The successors of product nodes, with costs."""
 
 _DROPPED = -1
 """In place of a target's index: no path goes on there. As an index it means one behind all."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ways:
+class ProductEdges(Generic[Memory]):
     """Edges of the product from one layer to ``targets`` in the next.
 
     Each of the ``origins`` has in ``into`` the index of the target that each follower of its node
     in ``rows`` leads to.
     """
 
-    origins: list[ProductNode]
+    origins: list[ProductNode[Memory]]
     rows: Sequence[Sequence[Step]]
-    targets: list[ProductNode]
+    targets: list[ProductNode[Memory]]
     into: list[list[int]]
 
-    def steps(self) -> _Steps:
+    def steps(self) -> Steps[Memory]:
         """Successors of the product nodes of each layer, with costs."""
         return {
             origin: [
@@ -61,7 +62,7 @@ class Ways:
 
 
 @dataclass(frozen=True)
-class Product:
+class Product(Generic[Memory]):
     """The part of graph times memory that can be reached.
 
     ``counts[p]`` gives for each product node of layer ``p`` how many partial paths lead to it, and
@@ -69,9 +70,9 @@ class Product:
     """
 
     graph: TraceGraph
-    counts: tuple[dict[ProductNode, int], ...]
-    ways: tuple[Ways, ...]
-    ends: frozenset[ProductNode]
+    counts: tuple[dict[ProductNode[Memory], int], ...]
+    ways: tuple[ProductEdges[Memory], ...]
+    ends: frozenset[ProductNode[Memory]]
 
     @property
     def accepted(self) -> int:
@@ -79,7 +80,7 @@ class Product:
         return sum(self.counts[-1][end] for end in self.ends)
 
     @cached_property
-    def steps(self) -> tuple[_Steps, ...]:
+    def steps(self) -> tuple[Steps[Memory], ...]:
         """For the product nodes of each layer their followers in the next one, with costs."""
         different = {id(ways): ways for ways in self.ways}
         known = {which: ways.steps() for which, ways in different.items()}
@@ -98,37 +99,47 @@ def count_paths(graph: TraceGraph) -> int:
     return sum(counts.get(goal, 0) for goal in set(graph.goals))
 
 
-def kept(effects: Sequence[Effect], joint: Joint) -> Joint | None:
+def kept(transformers: Sequence[Effect], joint: Joint) -> Joint | None:
     """Joint state after a node; None if a rule is violated there."""
-    after = tuple(map(getitem, effects, joint))
+    after = tuple(map(getitem, transformers, joint))
     return None if LOST in after else after
 
 
-def explore(effects: NodeTransformers, enter: Enter = kept, start: Memory | None = None) -> Product:
-    """Build the product forward from the graph's start.
-
-    Left to themselves, ``enter`` drops every path that loses a rule, and ``start``, the memory
-    before the first node, is that of the machines.
+def explore(transformers: NodeTransformers) -> Product[Joint]:
+    """Product of the paths that violate no rule, by the monitors' joint states.
 
     Raises:
         RulecError: R0616 if it would be too large.
     """
-    graph = effects.graph
-    room = room_for(graph)
-    first = effects.nodes[0][graph.start] if effects.starts else None
-    memory = None if first is None else enter(first, effects.waiting if start is None else start)
+    return explore_with(transformers, kept, transformers.waiting)
+
+
+def explore_with(
+    transformers: NodeTransformers, enter: Enter[Memory], start: Memory
+) -> Product[Memory]:
+    """Build the product forward from the graph's start.
+
+    ``start`` is the memory before the first node, ``enter`` that behind each further one.
+
+    Raises:
+        RulecError: R0616 if it would be too large.
+    """
+    graph = transformers.graph
+    room = largest_product(graph)
+    first = transformers.nodes[0][graph.start] if transformers.starts else None
+    memory = None if first is None else enter(first, start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
     ways = []
     # Where nothing changes from one layer to the next, nor do the ways on from there.
-    known: dict[tuple[int, int], Ways] = {}
-    for rows, nodes in zip(effects.steps, effects.nodes[1:], strict=True):
+    known: dict[tuple[int, int], ProductEdges[Memory]] = {}
+    for rows, nodes in zip(transformers.steps, transformers.nodes[1:], strict=True):
         key, origins = (id(rows), id(nodes)), list(counts[-1])
         if key not in known or known[key].origins != origins:
             known[key] = _ways(origins, rows, nodes, enter, room)
         onward = known[key]
         room -= len(onward.targets)
         if room < 0:
-            raise too_many(graph)
+            raise too_large(graph)
         # One more, in which paths come together that are dropped.
         totals = [0] * (len(onward.targets) + 1)
         for count, indices in zip(counts[-1].values(), onward.into, strict=True):
@@ -140,15 +151,15 @@ def explore(effects: NodeTransformers, enter: Enter = kept, start: Memory | None
 
 
 def _ways(
-    origins: list[ProductNode],
+    origins: list[ProductNode[Memory]],
     rows: Sequence[Sequence[Step]],
     nodes: Sequence[Sequence[Effect]],
-    enter: Enter,
+    enter: Enter[Memory],
     room: int,
-) -> Ways:
+) -> ProductEdges[Memory]:
     """Edges from these product nodes, up to the limit."""
-    targets: list[ProductNode] = []
-    index_of: dict[ProductNode, int] = {}
+    targets: list[ProductNode[Memory]] = []
+    index_of: dict[ProductNode[Memory], int] = {}
     # By memory and node.
     entered: dict[Memory, dict[int, int]] = {}
     every = []
@@ -173,4 +184,4 @@ def _ways(
                 known[target] = at
             into.append(at)
         every.append(into)
-    return Ways(origins, rows, targets, every)
+    return ProductEdges(origins, rows, targets, every)

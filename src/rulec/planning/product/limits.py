@@ -13,16 +13,16 @@ MOST_PER_NODE = 32
 """So many for each of its nodes, if that is more. Rules of the law come to less than one."""
 
 
-def room_for(graph: TraceGraph) -> int:
+def largest_product(graph: TraceGraph) -> int:
     """Largest number of product nodes for a graph."""
     return max(MOST, MOST_PER_NODE * sum(map(len, graph.states)))
 
 
-def too_many(graph: TraceGraph) -> RulecError:
+def too_large(graph: TraceGraph) -> RulecError:
     """There is no room for so many."""
     message = (
-        f"these rules keep more than {room_for(graph):,} kinds of partial maneuvers apart, by "
-        "where they are, what the automata remember, and what is violated"
+        f"these rules keep more than {largest_product(graph):,} kinds of partial maneuvers "
+        "apart, by where they are, what the automata remember, and what is violated"
     )
     help_text = "take fewer rules at a time, a larger step, or the same weight for several rules"
     return TOO_MANY_MANEUVERS.error(None, message, help=help_text)

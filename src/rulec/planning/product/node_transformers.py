@@ -12,8 +12,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.planning.product.graph_instances import Instance
-from rulec.planning.product.reachability import Step, on_the_way_in, steps_in
+from rulec.planning.product.graph_instances import GraphInstance
+from rulec.planning.product.reachability import Step, trimmed, trimmed_steps
 from rulec.trace import TraceGraph
 
 SAFE = -1
@@ -37,7 +37,7 @@ class NodeTransformers:
     """
 
     graph: TraceGraph
-    instances: tuple[Instance, ...]
+    instances: tuple[GraphInstance, ...]
     on_the_way: tuple[tuple[bool, ...], ...]
     steps: tuple[tuple[tuple[Step, ...], ...], ...]
     nodes: tuple[tuple[tuple[Effect, ...], ...], ...]
@@ -69,10 +69,10 @@ class NodeTransformers:
         )
 
 
-def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeTransformers:
+def node_transformers(graph: TraceGraph, instances: Sequence[GraphInstance]) -> NodeTransformers:
     """Transformer of every instance by every node between start and goals."""
-    on_the_way = on_the_way_in(graph)
-    steps = steps_in(graph, on_the_way)
+    on_the_way = trimmed(graph)
+    steps = trimmed_steps(graph, on_the_way)
     result = [
         (instance, layers)
         for instance in instances
@@ -92,7 +92,7 @@ def node_transformers(graph: TraceGraph, instances: Sequence[Instance]) -> NodeT
     return NodeTransformers(graph, bound, tuple(on_the_way), steps, tuple(nodes))
 
 
-def _can_be_lost(instance: Instance) -> bool:
+def _can_be_lost(instance: GraphInstance) -> bool:
     """Test whether the monitor rejects some word of the letters that occur."""
     machine = instance.rule.machine
     symbols = set().union(*instance.letters)
@@ -108,7 +108,7 @@ def _can_be_lost(instance: Instance) -> bool:
 
 
 def _merged(
-    instance: Instance,
+    instance: GraphInstance,
     steps: Sequence[tuple[tuple[Step, ...], ...]],
     on_the_way: Sequence[tuple[bool, ...]],
 ) -> list[tuple[Effect, ...]] | None:
@@ -146,7 +146,7 @@ def _merged(
 class _Merging:
     """Merge states of an instance's monitor by their futures."""
 
-    def __init__(self, instance: Instance) -> None:
+    def __init__(self, instance: GraphInstance) -> None:
         machine = instance.rule.machine
         self._instance = instance
         n_states = len(machine.successors)
@@ -176,17 +176,17 @@ class _Merging:
         alive: Sequence[bool],
     ) -> tuple[Effect, ...]:
         """Transformers of a layer's nodes, given those of the next."""
-        effects: list[Effect] = []
+        transformers: list[Effect] = []
         for node, symbol in enumerate(symbols):
             if not alive[node]:
-                effects.append(())
+                transformers.append(())
                 continue
             futures = frozenset([later[target] for target, _ in rows[node]]) if rows else None
             key = (id(raw), symbol, futures)
             if key not in self._known:
                 self._known[key] = _in_view_of(futures, raw[symbol])
-            effects.append(self._known[key])
-        return tuple(effects)
+            transformers.append(self._known[key])
+        return tuple(transformers)
 
 
 def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:

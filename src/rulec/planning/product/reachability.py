@@ -10,7 +10,7 @@ Step = tuple[int, int]
 """A follower in the next layer, and the cost of going there."""
 
 
-def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
+def trimmed(graph: TraceGraph) -> list[tuple[bool, ...]]:
     """Trim a graph: mark nodes between start and some goal."""
     from_start = [{graph.start}]
     for successors in graph.successors:
@@ -27,7 +27,7 @@ def on_the_way_in(graph: TraceGraph) -> list[tuple[bool, ...]]:
     return [same[layer] for layer in reversed(result)]
 
 
-def steps_in(
+def trimmed_steps(
     graph: TraceGraph, on_the_way: Sequence[Sequence[bool]]
 ) -> tuple[tuple[tuple[Step, ...], ...], ...]:
     """Successors within the trimmed graph, with their costs."""

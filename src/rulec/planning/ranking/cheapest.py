@@ -8,7 +8,7 @@ from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
 
-from rulec.planning.product.graph_product import Product, ProductNode
+from rulec.planning.product.graph_product import Memory, Product, ProductNode
 from rulec.trace import TraceGraph
 
 
@@ -26,7 +26,7 @@ class Maneuver:
     margin_s: float | None
 
 
-def cheapest(product: Product) -> Iterator[Maneuver]:
+def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:
     """Accepted paths by ascending cost, ties by ascending nodes.
 
     Best-first search. The cost still to come is known exactly for every product node, so a path is
@@ -34,7 +34,7 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
     """
     graph = product.graph
     to_come = _costs_to_come(product)
-    queue: list[tuple[int, tuple[int, ...], int, ProductNode]] = [
+    queue: list[tuple[int, tuple[int, ...], int, ProductNode[Memory]]] = [
         (to_come[0][start], (start[0],), 0, start)
         for start in product.counts[0]
         if start in to_come[0]
@@ -53,12 +53,12 @@ def cheapest(product: Product) -> Iterator[Maneuver]:
                 heappush(queue, (total + rest, (*path, step[0]), total, step))
 
 
-def _costs_to_come(product: Product) -> list[dict[ProductNode, int]]:
+def _costs_to_come(product: Product[Memory]) -> list[dict[ProductNode[Memory], int]]:
     """Least cost from each product node to a goal, by layer."""
     costs = [dict.fromkeys(product.ends, 0)]
     for steps in reversed(product.steps):
         later = costs[-1]
-        here: dict[ProductNode, int] = {}
+        here: dict[ProductNode[Memory], int] = {}
         for node, onward in steps.items():
             rest = [cost + later[step] for step, cost in onward if step in later]
             if rest:

@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 from heapq import heapify, heappop, heappush
 from operator import attrgetter
 
-from rulec.planning.product.cell_tracks import Places
-from rulec.planning.product.graph_product import Joint, Product, explore, kept
-from rulec.planning.product.node_transformers import Effect, NodeTransformers
+from rulec.planning.product.cell_tracks import CellTracks
+from rulec.planning.product.graph_product import Joint, Memory, Product, explore_with, kept
+from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
-from rulec.planning.ranking.place_product import PlaceProduct, place_product
+from rulec.planning.ranking.track_product import TrackProduct, track_product
 
-REJECTED = "rejected"
+REJECTED: Joint = (LOST,)
 """In place of a joint state: a rule has been lost."""
 
 
@@ -66,85 +66,85 @@ class Variant:
     cheapest: Maneuver
 
 
-def count_classes(effects: NodeTransformers, places: Places) -> HomotopyClasses:
+def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> HomotopyClasses:
     """The classes of all paths from start to a goal, exactly."""
-    dwell, accepted = _both_verdicts(effects, places)
-    ways: list[dict[frozenset[int], int]] = [{} for _ in effects.nodes]
-    if dwell.starts:
-        ways[0][dwell.stayed(dwell.starts)] = 1
+    tracked, accepted = _both_verdicts(transformers, tracks)
+    ways: list[dict[frozenset[int], int]] = [{} for _ in transformers.nodes]
+    if tracked.starts:
+        ways[0][tracked.stayed(tracked.starts)] = 1
     counts = {(True, False): 0, (False, True): 0, (True, True): 0, (False, False): 0}
     for layer in range(len(ways)):
         # Whoever changes place is in a later layer, so no way to these sets is still to come.
         for here, words in ways[layer].items():
-            ends = here & dwell.ends
+            ends = here & tracked.ends
             counts[not ends.isdisjoint(accepted), not ends <= accepted] += words
-            for entered in dwell.left(here).values():
-                first = min(dwell.layers[entry] for entry in entered)
-                there = dwell.stayed(entered)
+            for entered in tracked.left(here).values():
+                first = min(tracked.layers[entry] for entry in entered)
+                there = tracked.stayed(entered)
                 ways[first][there] = ways[first].get(there, 0) + words
         ways[layer] = {}
     return HomotopyClasses(counts[True, False], counts[False, True], counts[True, True])
 
 
-def variants(product: Product, places: Places) -> Iterator[Variant]:
+def variants(product: Product[Memory], tracks: CellTracks) -> Iterator[Variant]:
     """Classes with an accepted path, cheapest first, ties by tracks.
 
     Best-first search over words. The least cost of a word's members still to come is known exactly,
     so a word is only ever made longer if a class needs it.
     """
-    dwell = place_product(product, places)
-    to_come = _costs_to_come(dwell)
+    tracked = track_product(product, tracks)
+    to_come = _costs_to_come(tracked)
     queue: list[tuple[int, tuple[int, ...], bool, _Ways]] = []
 
     def offer(word: tuple[int, ...], entered: _Ways) -> None:
-        ways = _stayed(dwell, to_come, entered)
+        ways = _stayed(tracked, to_come, entered)
         bound = min(way.cost + to_come[node] for node, way in ways.items())
         heappush(queue, (bound, word, False, ways))
 
-    for start in dwell.starts:
+    for start in tracked.starts:
         if start in to_come:
-            offer((dwell.place[start],), {start: _Way(start, None, 0, 1)})
+            offer((tracked.place[start],), {start: _Way(start, None, 0, 1)})
     while queue:
         _, word, complete, ways = heappop(queue)
         if complete:
-            yield _variant(product, dwell, word, ways)
+            yield _variant(product, tracked, word, ways)
             continue
-        ends = {node: way for node, way in ways.items() if node in dwell.ends}
+        ends = {node: way for node, way in ways.items() if node in tracked.ends}
         if ends:
             heappush(queue, (min(way.cost for way in ends.values()), word, True, ends))
         entered: dict[int, _Ways] = {}
         for node, way in ways.items():
-            for target, cost in dwell.leaves[node]:
+            for target, cost in tracked.leaves[node]:
                 if target in to_come:
-                    _join(entered.setdefault(dwell.place[target], {}), target, cost, way)
+                    _join(entered.setdefault(tracked.place[target], {}), target, cost, way)
         for place, those in entered.items():
             offer((*word, place), those)
 
 
 def _both_verdicts(
-    effects: NodeTransformers, places: Places
-) -> tuple[PlaceProduct, frozenset[int]]:
+    transformers: NodeTransformers, tracks: CellTracks
+) -> tuple[TrackProduct, frozenset[int]]:
     """All paths, violating ones included, and which ends are accepted."""
 
-    def enter(row: Sequence[Effect], memory: Joint | str) -> Joint | str:
-        after = None if isinstance(memory, str) else kept(row, memory)
+    def enter(row: Sequence[Effect], memory: Joint) -> Joint:
+        after = None if memory == REJECTED else kept(row, memory)
         return REJECTED if after is None else after
 
-    product = explore(effects, enter)
-    dwell = place_product(product, places)
+    product = explore_with(transformers, enter, transformers.waiting)
+    tracked = track_product(product, tracks)
     last = list(product.counts[-1])
-    first = len(dwell.nodes) - len(last)
+    first = len(tracked.nodes) - len(last)
     accepted = [first + i for i, (_, memory) in enumerate(last) if memory != REJECTED]
-    return dwell, frozenset(accepted)
+    return tracked, frozenset(accepted)
 
 
-def _costs_to_come(dwell: PlaceProduct) -> dict[int, int]:
+def _costs_to_come(tracked: TrackProduct) -> dict[int, int]:
     """The least cost from every product node that leads to an end."""
-    costs = dict.fromkeys(dwell.ends, 0)
-    for node in reversed(range(len(dwell.nodes))):
+    costs = dict.fromkeys(tracked.ends, 0)
+    for node in reversed(range(len(tracked.nodes))):
         rest = [
             cost + costs[target]
-            for target, cost in (*dwell.stays[node], *dwell.leaves[node])
+            for target, cost in (*tracked.stays[node], *tracked.leaves[node])
             if target in costs
         ]
         if rest:
@@ -162,7 +162,7 @@ def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
     ways[target] = best
 
 
-def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
+def _stayed(tracked: TrackProduct, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
     """Close a set of product nodes under staying in their track."""
     ways = dict(entered)
     waiting = list(entered)
@@ -170,7 +170,7 @@ def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> 
     while waiting:
         # Numbers ascend with layers, so all ways to this one are known.
         node = heappop(waiting)
-        for target, cost in dwell.stays[node]:
+        for target, cost in tracked.stays[node]:
             if target in to_come:
                 if target not in ways:
                     heappush(waiting, target)
@@ -178,12 +178,14 @@ def _stayed(dwell: PlaceProduct, to_come: Mapping[int, int], entered: _Ways) -> 
     return ways
 
 
-def _variant(product: Product, dwell: PlaceProduct, word: tuple[int, ...], ends: _Ways) -> Variant:
+def _variant(
+    product: Product[Memory], tracked: TrackProduct, word: tuple[int, ...], ends: _Ways
+) -> Variant:
     best = min(ends.values(), key=attrgetter("cost"))
     nodes = []
     way: _Way | None = best
     while way is not None:
-        nodes.append(dwell.nodes[way.node])
+        nodes.append(tracked.nodes[way.node])
         way = way.before
     members = sum(way.members for way in ends.values())
     return Variant(word, members, maneuver(product.graph, tuple(reversed(nodes)), best.cost))

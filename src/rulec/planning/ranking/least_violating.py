@@ -13,8 +13,8 @@ from heapq import heappop, heappush
 from itertools import count
 from operator import add, getitem, gt
 
-from rulec.planning.product.graph_product import Joint, Product, explore
-from rulec.planning.product.limits import room_for, too_many
+from rulec.planning.product.graph_product import Joint, Product, explore_with
+from rulec.planning.product.limits import largest_product, too_large
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder
 
@@ -26,7 +26,7 @@ Place = tuple[int, int, Joint]
 """A layer, a node in it, and the machines' states behind it."""
 
 
-def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
+def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
     """Pareto front of the paths' penalties, in order, lazily."""
     penalties: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
@@ -39,12 +39,12 @@ def front(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
         others.append(penalty)
         return True
 
-    for penalty in _ascending(effects, ranks, worth):
+    for penalty in _ascending(transformers, ranks, worth):
         penalties.append(penalty)
         yield penalty
 
 
-def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
+def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
     """Every penalty of some path, behind all that are lower.
 
     With each comes its place: 1 for those of the front, else 1 more than the last one of the
@@ -58,7 +58,7 @@ def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int
         return new
 
     places: dict[Penalty, int] = {}
-    for penalty in _ascending(effects, ranks, worth):
+    for penalty in _ascending(transformers, ranks, worth):
         if penalty not in places:
             lower = [
                 place
@@ -69,9 +69,11 @@ def ranked(effects: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int
             yield places[penalty], penalty
 
 
-def with_penalty(effects: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty) -> Product:
+def with_penalty(
+    transformers: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
+) -> Product[Paying]:
     """The product in which just the paths of one penalty are accepted."""
-    fee = _fees(effects, ranks)
+    fee = _fees(transformers, ranks)
 
     def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
         joint, paid = memory
@@ -79,13 +81,13 @@ def with_penalty(effects: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
         total = tuple(map(add, paid, due)) if due else paid
         return None if any(map(gt, total, wanted)) else (after, total)
 
-    product = explore(effects, enter, (effects.waiting, (0,) * len(ranks.ranks)))
+    product = explore_with(transformers, enter, (transformers.waiting, (0,) * len(ranks.ranks)))
     ends = frozenset([end for end in product.ends if end[1][1] == wanted])
     return replace(product, ends=ends)
 
 
 def _ascending(
-    effects: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
+    transformers: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
 ) -> Iterator[Penalty]:
     """Penalties of paths in order; only those ``worth`` it are extended.
 
@@ -94,14 +96,14 @@ def _ascending(
     Raises:
         RulecError: R0616 if there are too many partial paths worth it.
     """
-    room = room_for(effects.graph)
-    fee = _fees(effects, ranks)
+    room = largest_product(transformers.graph)
+    fee = _fees(transformers, ranks)
     known: dict[tuple[int, int, Joint], tuple[Joint, Penalty]] = {}
     queue: list[tuple[Penalty, int, int, int, Joint]] = []
     numbers = count()
 
     def reach(layer: int, node: int, joint: Joint, paid: Penalty) -> None:
-        rows = effects.nodes[layer]
+        rows = transformers.nodes[layer]
         key = (id(rows), node, joint)
         if key not in known:
             known[key] = fee(rows[node], joint)
@@ -109,29 +111,29 @@ def _ascending(
         total = tuple(map(add, paid, due)) if due else paid
         heappush(queue, (total, -layer, next(numbers), node, after))
 
-    if effects.starts:
-        reach(0, effects.graph.start, effects.waiting, (0,) * len(ranks.ranks))
+    if transformers.starts:
+        reach(0, transformers.graph.start, transformers.waiting, (0,) * len(ranks.ranks))
     while queue:
         penalty, earlier, _, node, joint = heappop(queue)
         if not worth((-earlier, node, joint), penalty):
             continue
         room -= 1
         if room < 0:
-            raise too_many(effects.graph)
-        if -earlier == len(effects.steps):
+            raise too_large(transformers.graph)
+        if -earlier == len(transformers.steps):
             yield penalty
             continue
-        for target, _ in effects.steps[-earlier][node]:
+        for target, _ in transformers.steps[-earlier][node]:
             reach(1 - earlier, target, joint, penalty)
 
 
 def _fees(
-    effects: NodeTransformers, ranks: PenaltyOrder
+    transformers: NodeTransformers, ranks: PenaltyOrder
 ) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
     """Next states of the monitors at a node, and their penalties."""
     prices = [
         (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
-        for instance in effects.instances
+        for instance in transformers.instances
     ]
 
     def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:

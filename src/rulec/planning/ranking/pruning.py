@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from operator import getitem
 
-from rulec.planning.product.graph_product import Joint, Product, explore
+from rulec.planning.product.graph_product import Joint, Product, explore_with
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 
 NOBODY = -1
@@ -16,31 +16,31 @@ Blaming = tuple[Joint, int]
 """The machines' states, and the one rule that has been violated so far, or NOBODY."""
 
 
-def violating(effects: NodeTransformers) -> dict[str, Product]:
+def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
     """Product of the paths that violate it, for each rule."""
-    rules = _rules(effects)
+    rules = _rules(transformers)
     result = {}
     for number, rule in enumerate(dict.fromkeys(rules)):
         indices = [i for i, name in enumerate(rules) if name == rule]
-        product = _blaming(effects.of(indices), [number] * len(indices))
+        product = _blaming(transformers.of(indices), [number] * len(indices))
         result[rule] = _blamed(product, number)
     return {rule: product for rule, product in result.items() if product.ends}
 
 
-def violating_alone(effects: NodeTransformers) -> dict[str, Product]:
+def violating_alone(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
     """Product of the paths that violate it alone, for each rule."""
-    rules = _rules(effects)
+    rules = _rules(transformers)
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
-    product = _blaming(effects, [numbers[rule] for rule in rules])
+    product = _blaming(transformers, [numbers[rule] for rule in rules])
     result = {rule: _blamed(product, number) for rule, number in numbers.items()}
     return {rule: product for rule, product in result.items() if product.ends}
 
 
-def _rules(effects: NodeTransformers) -> list[str]:
-    return [instance.rule.name for instance in effects.instances]
+def _rules(transformers: NodeTransformers) -> list[str]:
+    return [instance.rule.name for instance in transformers.instances]
 
 
-def _blaming(effects: NodeTransformers, of: Sequence[int]) -> Product:
+def _blaming(transformers: NodeTransformers, of: Sequence[int]) -> Product[Blaming]:
     """Product of paths that violate at most one rule.
 
     ``of`` gives the rule of each instance.
@@ -59,8 +59,8 @@ def _blaming(effects: NodeTransformers, of: Sequence[int]) -> Product:
         states = zip(after, of, strict=True)
         return tuple([SAFE if rule == blamed else state for state, rule in states]), blamed
 
-    return explore(effects, enter, (effects.waiting, NOBODY))
+    return explore_with(transformers, enter, (transformers.waiting, NOBODY))
 
 
-def _blamed(product: Product, rule: int) -> Product:
+def _blamed(product: Product[Blaming], rule: int) -> Product[Blaming]:
     return replace(product, ends=frozenset([end for end in product.ends if end[1][1] == rule]))

@@ -11,7 +11,7 @@ import click
 
 from rulec.monitoring.verdict import Violation
 from rulec.partition import NavigationGraph
-from rulec.planning import Maneuvers, Pruning, RankedManeuver
+from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.alternative_predictions import AlternativeCounts
 from rulec.planning.probability.rule_probability import RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
@@ -45,7 +45,7 @@ class ManeuverAnswers:
     listed: Sequence[Maneuver] | None = None
     best: Sequence[RankedManeuver] | None = None
     ranked: Sequence[RankedManeuver] | None = None
-    prunings: Sequence[Pruning] | None = None
+    prunings: Sequence[RulePruning] | None = None
     classes: tuple[HomotopyClasses, Sequence[Variant]] | None = None
     chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
     worlds: Sequence[AlternativeCounts] | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rulec.planning import Maneuvers, Pruning
+from rulec.planning import Maneuvers, RulePruning
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.maneuvers.ranked_maneuvers import violation_as_data, when_lost
 from rulec.report.text.count_text import shown_count
@@ -13,7 +13,7 @@ from rulec.report.text.count_text import shown_count
 HEAD = ("rule", "violated by", "alone by", "for example")
 
 
-def as_data(found: Maneuvers, pruning: Pruning) -> dict[str, Any]:
+def as_data(found: Maneuvers, pruning: RulePruning) -> dict[str, Any]:
     """The counts, and the example with what it violates of this rule."""
     example = None
     if pruning.example is not None:
@@ -32,7 +32,7 @@ def as_data(found: Maneuvers, pruning: Pruning) -> dict[str, Any]:
     }
 
 
-def table(found: Maneuvers, prunings: Sequence[Pruning]) -> list[str]:
+def table(found: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     """A line for every rule that some maneuver violates, and the names of the others."""
     rows = [HEAD, *(_row(found, one) for one in prunings if one.violating)]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
@@ -53,12 +53,12 @@ def table(found: Maneuvers, prunings: Sequence[Pruning]) -> list[str]:
     return lines if len(rows) > 1 else lines[1:]
 
 
-def _row(found: Maneuvers, pruning: Pruning) -> tuple[str, str, str, str]:
+def _row(found: Maneuvers, pruning: RulePruning) -> tuple[str, str, str, str]:
     alone = "soft" if pruning.alone is None else shown_count(pruning.alone)
     return pruning.rule.name, shown_count(pruning.violating), alone, _example(found, pruning)
 
 
-def _example(found: Maneuvers, pruning: Pruning) -> str:
+def _example(found: Maneuvers, pruning: RulePruning) -> str:
     assert pruning.example is not None, "something violates it"
     first = pruning.violations[0]
     moves = maneuver_lines.relations_in_time(

@@ -99,17 +99,17 @@ def outlined(block: Block) -> BlockPresence:
     is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
     stretches[is_always] = NOBODY
     return BlockPresence(
-        trace,
-        step,
-        item,
-        _others(others, items, trace, (result, rank), starts_of_objects),
-        [names.values[code] for code in names.codes[starts[:-1]].tolist()],
-        length,
-        _step_s(block.columns.get(STEP_S), trace, starts),
-        starts_of_objects,
-        [items.values[code] for code in items.codes[rows[first_row[order]]].tolist()],
-        [types.values[code] for code in kind.tolist()],
-        stretches,
+        trace=trace,
+        step=step,
+        item=item,
+        other=_others(others, items, trace, (result, rank), starts_of_objects),
+        names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
+        length=length,
+        step_s=_step_s(block.columns.get(STEP_S), trace, starts),
+        starts=starts_of_objects,
+        objects=[items.values[code] for code in items.codes[rows[first_row[order]]].tolist()],
+        types=[types.values[code] for code in kind.tolist()],
+        stretches=stretches,
     )
 
 

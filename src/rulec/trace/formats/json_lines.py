@@ -162,7 +162,14 @@ def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trac
 
 def _made(record: _Outline | _Record, states: tuple[State, ...], place: SourceLocation) -> Trace:
     name = str(record.id) or f"line {place.line}"
-    return Trace(name, record.step_s, record.objects, states, record.present, place)
+    return Trace(
+        id=name,
+        step_s=record.step_s,
+        objects=record.objects,
+        states=states,
+        present=record.present,
+        place=place,
+    )
 
 
 class _StateReader(dict[bytes, State]):

@@ -155,7 +155,14 @@ class _Building:
         }
         step_s = 1.0 if self.step_s is None else self.step_s
         name = str(self.name)
-        return Trace(name, step_s, self.objects, tuple(self.states), present, self.place)
+        return Trace(
+            id=name,
+            step_s=step_s,
+            objects=self.objects,
+            states=tuple(self.states),
+            present=present,
+            place=self.place,
+        )
 
     def _add(self, number: int, cells: Sequence[Any]) -> None:
         table = self.table

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from rulec.planning.product.cell_tracks import Places
-from rulec.planning.product.graph_product import Product
+from rulec.planning.product.cell_tracks import CellTracks
+from rulec.planning.product.graph_product import Memory, Product
 
 
 @dataclass(frozen=True, slots=True)
-class PlaceProduct:
+class TrackProduct:
     """The product nodes as numbers, in the order of layers.
 
     ``nodes[i]`` is the node's index in layer ``layers[i]``, ``place[i]`` its place. ``stays[i]``
@@ -44,11 +44,11 @@ class PlaceProduct:
         return entered
 
 
-def place_product(product: Product, places: Places) -> PlaceProduct:
+def track_product(product: Product[Memory], tracks: CellTracks) -> TrackProduct:
     """A product's nodes by place."""
     every = [(layer, node) for layer, counts in enumerate(product.counts) for node in counts]
     number = {node: i for i, node in enumerate(every)}
-    place = [places[layer][node] for layer, (node, _) in every]
+    place = [tracks[layer][node] for layer, (node, _) in every]
     last = len(product.steps)
     steps = [
         [
@@ -57,19 +57,19 @@ def place_product(product: Product, places: Places) -> PlaceProduct:
         ]
         for layer, node in every
     ]
-    return PlaceProduct(
-        tuple([number[0, start] for start in product.counts[0]]),
-        frozenset([number[last, end] for end in product.ends]),
-        tuple([layer for layer, _ in every]),
-        tuple([node for _, (node, _) in every]),
-        tuple(place),
-        tuple(
+    return TrackProduct(
+        starts=tuple([number[0, start] for start in product.counts[0]]),
+        ends=frozenset([number[last, end] for end in product.ends]),
+        layers=tuple([layer for layer, _ in every]),
+        nodes=tuple([node for _, (node, _) in every]),
+        place=tuple(place),
+        stays=tuple(
             [
                 tuple([step for step in row if place[step[0]] == here])
                 for row, here in zip(steps, place, strict=True)
             ]
         ),
-        tuple(
+        leaves=tuple(
             [
                 tuple([step for step in row if place[step[0]] != here])
                 for row, here in zip(steps, place, strict=True)
