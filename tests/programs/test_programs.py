@@ -17,7 +17,8 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.rulebook.loader import read_rulebook
-from rulec.syntax import decode, parse, print_file
+from rulec.syntax import decode, parse
+from support.builders.printed_files import print_file
 
 HERE = Path(__file__).parent
 GOOD = sorted((HERE / "good").rglob("*.rules"))

@@ -6,8 +6,9 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.resources import grammar_file
-from rulec.syntax import parse, parse_formula, print_file, print_formula
+from rulec.syntax import parse, parse_formula, print_formula
 from rulec.syntax.keywords import CONTEXTUAL, RESERVED
+from support.builders.printed_files import print_file
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 BOOK = """\

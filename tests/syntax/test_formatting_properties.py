@@ -12,9 +12,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError, Source
-from rulec.syntax import parse, print_file
+from rulec.syntax import parse
 from rulec.syntax.formatting import format_source, safe_format
 from support.builders.counted_steps import grows_in_proportion
+from support.builders.printed_files import print_file
 from support.generators.untidy_files import tree_of, untidy_files
 
 PROGRAMS = Path(__file__).parent.parent / "programs"

@@ -9,7 +9,7 @@ from lark import Lark
 from lark.exceptions import UnexpectedInput
 
 from rulec.resources import grammar_file
-from rulec.syntax import print_file
+from support.builders.printed_files import print_file
 from support.generators.syntax_trees import files
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")

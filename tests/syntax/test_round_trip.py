@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError, Source
-from rulec.syntax import parse, parse_formula, print_file, print_formula
-from rulec.syntax.printer import print_whole
+from rulec.syntax import parse, parse_formula, print_formula
 from rulec.syntax.tree import Aggregate, AtomUse, Number, Truth
+from rulec.syntax.tree_printer import print_whole
+from support.builders.printed_files import print_file
 from support.generators.syntax_trees import files, formulas
 
 styles = st.sampled_from(["words", "symbols", "written"])

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rulec.resources import grammar_file
 from rulec.syntax import grammar as at_work
 from rulec.syntax import parse_formula, parser_tables
-from rulec.syntax.printer import print_whole
+from rulec.syntax.tree_printer import print_whole
 from support.generators.syntax_trees import formulas
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")

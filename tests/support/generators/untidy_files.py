@@ -6,8 +6,9 @@ from random import Random
 from hypothesis import strategies as st
 
 from rulec.diagnostics import Source
-from rulec.syntax import parse, print_file, tree
+from rulec.syntax import parse, tree
 from rulec.syntax.keywords import PRECEDENCE, SYMBOLS, UNARY_OPERATORS
+from support.builders.printed_files import print_file
 from support.generators.syntax_trees import names, texts
 
 LONG = st.text("abcdefghij_", min_size=1, max_size=12).filter(lambda text: text != "_")

@@ -17,7 +17,7 @@ from rulec.analysis.vocabulary_use import used_declarations
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.syntax import tree
-from rulec.syntax.printer import print_in_force
+from rulec.syntax.tree_printer import print_in_force
 
 
 @dataclass(frozen=True, slots=True)

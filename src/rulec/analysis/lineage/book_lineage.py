@@ -24,7 +24,7 @@ from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.rulebook.overlay.rulebook_overlay import merged
 from rulec.syntax import tree
-from rulec.syntax.printer import print_formula
+from rulec.syntax.tree_printer import print_formula
 
 
 def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:

@@ -136,7 +136,7 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
     """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
     from rulec.analysis.lineage.book_lineage import read_with_lineage
     from rulec.settings import search_path
-    from rulec.syntax.printer import print_in_force
+    from rulec.syntax.tree_printer import print_in_force
 
     if Path(reference).suffix == ".json":
         return ""

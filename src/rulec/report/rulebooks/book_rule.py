@@ -19,7 +19,7 @@ from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, li
 from rulec.report.verdicts.state_table import state_table
 from rulec.rulebook.model import Example, Rule
 from rulec.syntax import tree
-from rulec.syntax.printer import clauses_of, print_in_force
+from rulec.syntax.tree_printer import clauses_of, print_in_force
 from rulec.vocabulary import Vocabulary
 
 WIDTH = 84

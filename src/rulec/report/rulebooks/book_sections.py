@@ -16,7 +16,7 @@ from rulec.rulebook.model import Rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.syntax import tree
-from rulec.syntax.printer import print_in_force
+from rulec.syntax.tree_printer import print_in_force
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 

@@ -25,7 +25,7 @@ from rulec.analysis.lineage.rule_lineage import (
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.syntax import tree
-from rulec.syntax.printer import print_in_force
+from rulec.syntax.tree_printer import print_in_force
 
 _DEEDS = {
     "declared": "declared by",

@@ -7,7 +7,7 @@ from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
 from rulec.rulebook.elaborate.linear_arithmetic import Number
 from rulec.syntax import tree
-from rulec.syntax.printer import print_formula
+from rulec.syntax.tree_printer import print_formula
 
 SENSELESS_BOUND = Code(
     "R0317",

@@ -14,7 +14,7 @@ from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NU
 from rulec.rulebook.names.scope import SIDES, Scope
 from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
-from rulec.syntax.printer import print_formula
+from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.units import DIMENSIONS, Dimension
 

@@ -11,7 +11,7 @@ from rulec.rulebook.model import Rule
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.syntax import tree
-from rulec.syntax.printer import print_formula
+from rulec.syntax.tree_printer import print_formula
 
 _TEXT = """\
 # {name}: a rulebook to start from. `rulec check` says what is wrong in it, `rulec test` runs its

@@ -9,7 +9,7 @@ from rulec.diagnostics.code import Code
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE, twice
 from rulec.syntax import tree
-from rulec.syntax.printer import print_parameters
+from rulec.syntax.tree_printer import print_parameters
 
 __all__ = [
     "changed_twice",

@@ -1,23 +1,61 @@
-"""Header lines, declarations and provisions as text."""
-
-from __future__ import annotations
+"""Whole files of the syntax tree as text: one form for everything, comments are not part of it."""
 
 import re
 
 from rulec.syntax import tree
-from rulec.syntax.printer.formulas import (
-    Style,
+from rulec.syntax.tree_printer import (
+    clauses_of,
     comma,
+    print_atom,
     print_formula,
+    print_in_force,
     print_parameters,
     print_text,
     print_whole,
+    quoted,
 )
+
+
+def print_file(file, style="words"):
+    """A whole file, without its comments; a rule's clauses come in one order.
+
+    Raises:
+        ValueError: the tree has an item that could not be read.
+    """
+    if file.name is None:
+        raise ValueError("the tree lacks the file's name")
+    items = [print_item(item, style) for item in file.items]
+    if file.kind == "vocabulary":
+        body = "".join(f"  {item}\n" for item in items)
+        return f"vocabulary {file.name.text} {{\n{body}}}\n"
+    lines = [f"rulebook {file.name.text}", *(print_header_line(line) for line in header_of(file))]
+    for item, text in zip(file.items, items, strict=True):
+        lines.append(f"\n{text}" if isinstance(item, tree.RuleItem) else text)
+    return "\n".join(lines) + "\n"
+
+
+def header_of(file):
+    """A rulebook's header lines in one order."""
+    single = (file.title, file.law, file.extends, file.traffic)
+    behind = (file.semantics, file.step, *file.priorities)
+    return [line for line in (*single, *file.uses, *behind) if line is not None]
+
+
+def print_item(item, style="words"):
+    """A declaration, a provision or a rule. ValueError for an item that could not be read."""
+    if isinstance(item, tree.BrokenItem):
+        raise ValueError("an item that could not be read cannot be printed")
+    if isinstance(item, tree.RuleItem):
+        return print_rule(item, style)
+    if isinstance(item, tree.Provision):
+        return print_provision(item, style)
+    return print_declaration(item, style)
+
 
 SWITCH = re.compile(r"(on|off)\b")
 
 
-def print_header_line(line: tree.HeaderLine) -> str:
+def print_header_line(line):
     """A header line."""
     match line:
         case tree.TitleLine(text):
@@ -40,7 +78,7 @@ def print_header_line(line: tree.HeaderLine) -> str:
             return f"priority {first}" + "".join(f" {sign} {level}" for sign, level in pairs)
 
 
-def print_declaration(item: tree.Declaration, style: Style) -> str:
+def print_declaration(item, style):
     """A declaration."""
     match item:
         case tree.TypeItem(name, parent):
@@ -60,7 +98,7 @@ def print_declaration(item: tree.Declaration, style: Style) -> str:
             return f"fact {print_whole(formula, style)}"
 
 
-def print_provision(item: tree.Provision, style: Style) -> str:
+def print_provision(item, style):
     """An option, a parameter, a definition, or what is done to an inherited one."""
     match item:
         case tree.OptionItem(name, value):
@@ -90,17 +128,53 @@ def print_provision(item: tree.Provision, style: Style) -> str:
             return f"silent on {name.text} because {print_text(because)}"
 
 
-def _dates(in_force: tree.InForce | None) -> str:
+def _dates(in_force):
     return f" {print_in_force(in_force)}" if in_force else ""
 
 
-def print_in_force(dates: tree.InForce) -> str:
-    """``in force from DATE until DATE``."""
-    since = f" from {dates.since}" if dates.since else ""
-    until = f" until {dates.until}" if dates.until else ""
-    return f"in force{since}{until}"
-
-
-def print_place(level: tree.Name | None, weight: tree.Number | None) -> str:
+def print_place(level, weight):
     """`` in level weight number``, as much of it as there is."""
     return (f" in {level.text}" if level else "") + (f" weight {weight.text}" if weight else "")
+
+
+def print_rule_head(rule):
+    """A rule's head, without the brace."""
+    words = [*(["override"] if rule.override else []), *([rule.strength] if rule.strength else [])]
+    variables = f" {print_parameters(rule.variables)}" if rule.variables else ""
+    place = print_place(rule.level, rule.weight)
+    return f"{' '.join([*words, 'rule'])} {rule.name.text}{variables}{place}"
+
+
+def print_rule(rule, style):
+    """A whole rule. ValueError if it lacks its formula."""
+    if rule.require is None and not rule.override:
+        raise ValueError(f"rule {rule.name.text} has no formula")
+    lines = [f"{print_rule_head(rule)} {{"]
+    lines += [f"  {word} {text}" for word, text in clauses_of(rule, style)]
+    lines += [f"  {_example(example, style)}" for example in rule.examples]
+    return "\n".join([*lines, "}"])
+
+
+def _example(example, style):
+    states = "; ".join(print_state(state, style) for state in example.states)
+    return f"{print_example_head(example)} {{ {states} }}"
+
+
+def print_example_head(example):
+    """``accept "label" (objects)``."""
+    word = "accept" if example.accepts else "reject"
+    label = f" {quoted(example.label)}" if example.label else ""
+    objects = f" {print_parameters(example.objects)}" if example.objects else ""
+    return f"{word}{label}{objects}"
+
+
+def print_state(state, style="words"):
+    """A state of an example."""
+    join, deny = (" & ", "!") if style == "symbols" else (" and ", "not ")
+    facts = join.join(
+        (deny if one.negated else "")
+        + print_atom(one.atom)
+        + (f" = {print_formula(one.value)}" if one.value else "")
+        for one in state.literals
+    )
+    return facts or "true"

@@ -1,4 +1,7 @@
-"""Formulas as text, with the fewest parentheses or those of the file; names and texts."""
+"""The syntax tree's formulas and clauses as text, with the fewest parentheses or those written.
+
+Reading what is printed gives the same tree back.
+"""
 
 from __future__ import annotations
 
@@ -62,8 +65,8 @@ def print_whole(node: tree.Formula, style: Style = "words") -> str:
     return f"({text})" if isinstance(node, tree.Conditional) else text
 
 
-def precedence(node: tree.Formula) -> int:
-    """How tightly the node's own operator binds; a larger number binds tighter."""
+def _precedence(node: tree.Formula) -> int:
+    """The binding strength of the node's own operator; a larger number binds tighter."""
     match node:
         case tree.Conditional():
             return 0
@@ -81,15 +84,15 @@ def precedence(node: tree.Formula) -> int:
             return _INFINITE
 
 
-def needs_parentheses(node: tree.Formula, least: int, style: Style) -> bool:
-    """Does it bind less tightly than ``least``, or does the file have parentheses there?"""
+def _needs_parentheses(node: tree.Formula, least: int, style: Style) -> bool:
+    """Whether it binds less tightly than ``least``, or the file has parentheses there."""
     written = style == "written" and getattr(node, "grouped", False)
-    return written or precedence(node) < least
+    return written or _precedence(node) < least
 
 
 def _operand(node: tree.Formula, least: int, style: Style) -> str:
     text = print_formula(node, style)
-    return f"({text})" if needs_parentheses(node, least, style) else text
+    return f"({text})" if _needs_parentheses(node, least, style) else text
 
 
 def _sign(operator: str, sign: str, style: Style) -> str:
@@ -129,9 +132,9 @@ def print_parameters(parameters: tuple[tree.Parameter, ...]) -> str:
     return f"({', '.join(map(print_parameter, parameters))})"
 
 
-def print_parameter(one: tree.Parameter) -> str:
+def print_parameter(parameter: tree.Parameter) -> str:
     """``name`` or ``name: type``."""
-    return one.name.text + (f": {one.type.text}" if one.type is not None else "")
+    return parameter.name.text + (f": {parameter.type.text}" if parameter.type is not None else "")
 
 
 def print_text(text: tree.Text) -> str:
@@ -143,3 +146,29 @@ def quoted(value: str) -> str:
     """A text's value in quotes, escaped."""
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+def print_in_force(dates: tree.InForce) -> str:
+    """``in force from DATE until DATE``."""
+    since = f" from {dates.since}" if dates.since else ""
+    until = f" until {dates.until}" if dates.until else ""
+    return f"in force{since}{until}"
+
+
+def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, str]]:
+    """A rule's clauses but for its examples, in one order, as their words and what they say."""
+    unless = (
+        (print_whole(clause.formula, style), f" {clause.scope}" if clause.scope else "")
+        for clause in rule.unless
+    )
+    clauses = [
+        ("cite", rule.cite and print_text(rule.cite)),
+        ("source", rule.source and print_text(rule.source)),
+        ("certainty", rule.certainty),
+        ("says", rule.says and print_text(rule.says)),
+        ("in", rule.in_force and print_in_force(rule.in_force).removeprefix("in ")),
+        ("when", rule.when and print_whole(rule.when, style)),
+        ("require", rule.require and print_whole(rule.require, style)),
+        *(("unless", formula + scope) for formula, scope in unless),
+    ]
+    return [(word, text) for word, text in clauses if text]
