@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.alphabet import letters_with
 from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
+from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_trace, own_names
-from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
+from rulec.logic.formula import Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import columns_of
 from rulec.rulebook.model import Rule
-from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
     coverage_witness,
     possible_letters,
-    truths,
+    truth_values,
 )
 
 
@@ -112,10 +110,11 @@ def _coverage(
         for source, symbol in edges
         if (source, symbol) not in taken
     )
+    propositions = list(dict.fromkeys(atoms_of(rule.formula)))
     values = [
-        (one, value)
-        for one in dict.fromkeys(atoms_of(rule.formula))
-        for value in _possible(one, machine, vocabulary)
+        (proposition, value)
+        for proposition, possible in truth_values(propositions, machine).items()
+        for value in possible
     ]
     seen = {
         (one, holds(one, own_names(rule), moment))
@@ -162,24 +161,3 @@ def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[in
                 paths[target] = (*paths[state], symbol)
                 waiting.append(target)
     return paths
-
-
-def _possible(
-    proposition: Proposition, machine: MealyMonitor, vocabulary: Vocabulary
-) -> tuple[bool, ...]:
-    """The values that a proposition can have, true first."""
-    if isinstance(proposition, Comparison):
-        values = tuple(sorted(truths(proposition, machine), reverse=True))
-    else:
-        declaration = vocabulary.declarations[proposition.name]
-        only = isinstance(declaration, Enumeration) and len(declaration.values) == 1
-        values = (True,) if only else (True, False)
-    if IMPOSSIBLE not in machine.letters:
-        return values
-    true = letters_with(machine.reads, [proposition])[proposition]
-    met = {
-        bool(true >> letter & 1)
-        for letter, symbol in enumerate(machine.letters)
-        if symbol != IMPOSSIBLE
-    }
-    return tuple(value for value in values if value in met)

@@ -11,7 +11,7 @@ from math import ceil
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula, Quantity
 from rulec.logic.free_names import variables_of
-from rulec.witnesses.letter_functions import body_of, speaks_of_extra, truths_of
+from rulec.witnesses.letter_functions import body_of, counts_read, speaks_of_extra, truths_of
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, solve_numbers, value_of
 from rulec.witnesses.undecided import UndecidedError
@@ -34,18 +34,18 @@ class CountedObject:
 CountedObjects = tuple[CountedObject, ...]
 
 
-def fewest_counted_objects(situation: JointState, scene: ObjectUniverse) -> CountedObjects | None:
+def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> CountedObjects | None:
     """As few further objects as make the counts come out; None if none do."""
-    counts = _wanted(situation)
+    counts = _counts_of(state)
     if not counts:
         return ()
-    kinds = object_kinds(situation, scene)
-    enough = [_enough(count, situation) for count in counts]
-    start = tuple(dict(situation.counted)[count] for count in counts)
+    kinds = object_kinds(state, universe)
+    enough = [_enough(count, state) for count in counts]
+    start = tuple(dict(state.counted)[count] for count in counts)
     waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(start, ())]
     seen = {start}
     for sums, company in waiting:
-        if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
+        if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
             return company
         if len(company) == MOST_COUNTED_OBJECTS:
             raise UndecidedError(f"it takes more than {MOST_COUNTED_OBJECTS} objects to be counted")
@@ -62,12 +62,12 @@ def fewest_counted_objects(situation: JointState, scene: ObjectUniverse) -> Coun
 
 
 def counted_objects_of_types(
-    situation: JointState, scene: ObjectUniverse, types: Sequence[str]
+    state: JointState, universe: ObjectUniverse, types: Sequence[str]
 ) -> CountedObjects | None:
     """One companion of each of these types, so that the counts come out; None if they cannot."""
-    counts = _wanted(situation)
-    kinds = object_kinds(situation, scene, types) if types else []
-    start = tuple(dict(situation.counted)[count] for count in counts)
+    counts = _counts_of(state)
+    kinds = object_kinds(state, universe, types) if types else []
+    start = tuple(dict(state.counted)[count] for count in counts)
     reached: dict[tuple[int, ...], CountedObjects] = {start: ()}
     for wanted in types:
         following: dict[tuple[int, ...], CountedObjects] = {}
@@ -78,15 +78,15 @@ def counted_objects_of_types(
                     following.setdefault(after, (*company, kind))
         reached = following
     for sums, company in reached.items():
-        if _comes_out(situation, scene, dict(zip(counts, sums, strict=True))):
+        if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
             return company
     return None
 
 
-def _enough(count: Count, situation: JointState) -> int:
+def _enough(count: Count, state: JointState) -> int:
     """From where on it makes no difference how many more are counted, if there is such a number."""
     most = 0
-    for read, _ in situation.sides:
+    for read, _ in state.number_digits:
         if any(term == count for _, term in read.terms):
             if len(read.terms) > 1:
                 return MOST_COUNTED_OBJECTS + 1
@@ -94,37 +94,33 @@ def _enough(count: Count, situation: JointState) -> int:
     return most
 
 
-def _wanted(situation: JointState) -> list[Count]:
-    return list(
-        dict.fromkeys(
-            term for read, _ in situation.sides for _, term in read.terms if isinstance(term, Count)
-        )
-    )
+def _counts_of(state: JointState) -> list[Count]:
+    return counts_read(read for read, _ in state.number_digits)
 
 
-def _comes_out(situation: JointState, scene: ObjectUniverse, counted: Mapping[Count, int]) -> bool:
-    for read, digit in situation.sides:
+def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Count, int]) -> bool:
+    for read, digit in state.number_digits:
         total = Fraction(0)
         for factor, term in read.terms:
             if isinstance(term, Count):
                 total += factor * counted[term]
             else:
-                total += factor * situation.number(term, scene.vocabulary)
+                total += factor * state.number(term, universe.vocabulary)
         if read.digit(total) != digit:
             return False
     return True
 
 
 def object_kinds(
-    situation: JointState, scene: ObjectUniverse, types: Sequence[str] = ()
+    state: JointState, universe: ObjectUniverse, types: Sequence[str] = ()
 ) -> list[CountedObject]:
     """What a further object could be, as far as the counts tell; the most general types first.
 
     That is of any type that is counted, or one of ``types``, which may be there to be counted in
     another state.
     """
-    vocabulary = scene.vocabulary
-    counts = _wanted(situation)
+    vocabulary = universe.vocabulary
+    counts = _counts_of(state)
     found: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
     fitting = [
         kind
@@ -132,21 +128,21 @@ def object_kinds(
         if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
     ]
     for kind in sorted(fitting, key=lambda one: len(list(vocabulary.ancestors(one)))):
-        for one in _of_type(kind, counts, situation, scene):
+        for one in _of_type(kind, counts, state, universe):
             found.setdefault((kind, one.adds), one)
     return list(found.values())
 
 
 def _of_type(
-    kind: str, counts: Sequence[Count], situation: JointState, scene: ObjectUniverse
+    kind: str, counts: Sequence[Count], state: JointState, universe: ObjectUniverse
 ) -> Iterator[CountedObject]:
-    vocabulary = scene.vocabulary
+    vocabulary = universe.vocabulary
     asked = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
     bodies = [body_of(count, EXTRA) for count in asked]
-    known = [*_facts_about(kind, scene)]
+    known = [*_facts_about(kind, universe)]
     reads, truths = truths_of([*bodies, *known], vocabulary)
     choices: list[Sequence[int]] = [
-        range(read.size) if speaks_of_extra(read) else (_digit(read, situation, scene),)
+        range(read.size) if speaks_of_extra(read) else (_digit(read, state, universe),)
         for read in reads
     ]
     for digits in product(*choices):
@@ -157,31 +153,31 @@ def _of_type(
         values = [bool(one >> letter & 1) for one in truths]
         if not all(values[len(bodies) :]):
             continue
-        said = _said(list(zip(reads, digits, strict=True)), situation, scene)
+        said = _said(list(zip(reads, digits, strict=True)), state, universe)
         if said is not None:
             holds = dict(zip(asked, values, strict=False))
             yield CountedObject(kind, tuple(int(holds.get(one, False)) for one in counts), said)
 
 
-def _facts_about(kind: str, scene: ObjectUniverse) -> Iterator[Formula]:
-    with_it = replace(scene, objects={**scene.objects, EXTRA: kind})
+def _facts_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
+    with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
     for one in with_it.fact_formulas():
         if not any(True for _ in counts_in(one)) and EXTRA in variables_of(one):
             yield one
 
 
-def _digit(read: Read | NumberRead, situation: JointState, scene: ObjectUniverse) -> int:
+def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:
     if isinstance(read, Read):
-        return read.digit(situation.value((read.name, read.variables), scene.vocabulary))
+        return read.digit(state.value((read.name, read.variables), universe.vocabulary))
     total = Fraction(0)
     for factor, term in read.terms:
         assert isinstance(term, Quantity), "no count stands inside another one"
-        total += factor * situation.number(term, scene.vocabulary)
+        total += factor * state.number(term, universe.vocabulary)
     return read.digit(total)
 
 
 def _said(
-    digits: Sequence[tuple[Read | NumberRead, int]], situation: JointState, scene: ObjectUniverse
+    digits: Sequence[tuple[Read | NumberRead, int]], state: JointState, universe: ObjectUniverse
 ) -> dict[Subject, Value] | None:
     """What a state says of the object so that the reads come out so; None if it cannot."""
     values: dict[Subject, Value] = {}
@@ -190,11 +186,11 @@ def _said(
         if not speaks_of_extra(read):
             continue
         if isinstance(read, Read):
-            values[read.name, read.variables] = value_of(read, digit, scene.vocabulary)
+            values[read.name, read.variables] = value_of(read, digit, universe.vocabulary)
         else:
-            sides.append((_given(read, situation, scene), digit))
+            sides.append((_given(read, state, universe), digit))
     if sides:
-        numbers = solve_numbers(sides, scene.vocabulary, {})
+        numbers = solve_numbers(sides, universe.vocabulary, {})
         if numbers is None:
             return None
         for term, number in numbers.items():
@@ -203,7 +199,7 @@ def _said(
     return values
 
 
-def _given(read: NumberRead, situation: JointState, scene: ObjectUniverse) -> NumberRead:
+def _given(read: NumberRead, state: JointState, universe: ObjectUniverse) -> NumberRead:
     """The sum over what is not known yet, the rest moved into the thresholds."""
     known = Fraction(0)
     left = []
@@ -212,6 +208,6 @@ def _given(read: NumberRead, situation: JointState, scene: ObjectUniverse) -> Nu
             left.append((factor, term))
         else:
             assert isinstance(term, Quantity)
-            known += factor * situation.number(term, scene.vocabulary)
+            known += factor * state.number(term, universe.vocabulary)
     thresholds = tuple(replace(one, limit=one.limit - known) for one in read.thresholds)
     return NumberRead(tuple(left), thresholds)

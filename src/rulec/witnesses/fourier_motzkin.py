@@ -1,11 +1,13 @@
-"""Numbers that satisfy linear inequalities, exactly: Fourier-Motzkin elimination.
+"""Exact solutions of linear inequalities by Fourier-Motzkin elimination.
 
-The systems are those of one state of a rule: a handful of numbers and of inequalities.
+Unknowns are eliminated one after the other, and then given numbers in the opposite order, each
+between the bounds that those before it leave. The systems are those of one state of a rule: a
+handful of unknowns and of inequalities.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
@@ -28,88 +30,102 @@ def solve(
     system: Sequence[LinearBound],
     unknowns: Sequence[Term],
     preferred: Mapping[Term, Fraction],
-    whole: frozenset[Term] = frozenset(),
+    whole: Set[Term] = frozenset(),
+    near_bounds: Set[Term] = frozenset(),
 ) -> dict[Term, Fraction] | None:
-    """Numbers with short decimals that satisfy all, or None.
+    """Solve a system by numbers with short decimals.
 
     Args:
         system: the inequalities.
-        unknowns: what is sought.
-        preferred: the numbers to take where they fit; else short ones near the lower bound.
+        unknowns: what is sought; the last one is given its number first.
+        preferred: the numbers to take where they fit; else zero, or one near a bound.
         whole: the unknowns that are whole numbers; the rest of the system is not searched again if
             the first whole numbers tried leave no room for it.
+        near_bounds: the unknowns for which a number near a bound is better than zero.
 
     Returns:
         A number for each unknown; None if there are none, or none that short decimals write.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)
-    for name in unknowns:
-        stages.append((name, [one for one in rest if one.coefficients.get(name)]))
-        rest = _without(name, rest)
-    if any(one.limit < 0 or (one.strict and one.limit == 0) for one in rest):
+    for unknown in unknowns:
+        stages.append((unknown, [bound for bound in rest if bound.coefficients.get(unknown)]))
+        rest = _eliminate(unknown, rest)
+    if any(bound.limit < 0 or (bound.strict and bound.limit == 0) for bound in rest):
         return None
-    found: dict[Term, Fraction] = {}
-    for name, about in reversed(stages):
-        value = _choose(name, about, found, preferred.get(name), whole=name in whole)
-        if value is None:
+    solution: dict[Term, Fraction] = {}
+    for unknown, bounds in reversed(stages):
+        lows, highs = _interval(unknown, bounds, solution)
+        candidates = _candidates(
+            preferred.get(unknown),
+            [limit for limit, _ in (*lows, *highs)],
+            whole=unknown in whole,
+            zero_first=unknown not in near_bounds,
+        )
+        number = next((number for number in candidates if _lies_in(number, lows, highs)), None)
+        if number is None:
             return None
-        found[name] = value
-    return found
+        solution[unknown] = number
+    return solution
 
 
-def _without(name: Term, system: Sequence[LinearBound]) -> list[LinearBound]:
-    """What the inequalities say about the other unknowns."""
-    rest = [one for one in system if not one.coefficients.get(name)]
-    above = [one for one in system if one.coefficients.get(name, 0) > 0]
-    below = [one for one in system if one.coefficients.get(name, 0) < 0]
+def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound]:
+    """The inequalities that the system implies for the other unknowns."""
+    rest = [bound for bound in system if not bound.coefficients.get(unknown)]
+    above = [bound for bound in system if bound.coefficients.get(unknown, 0) > 0]
+    below = [bound for bound in system if bound.coefficients.get(unknown, 0) < 0]
     for upper in above:
         for lower in below:
-            up, low = upper.coefficients[name], -lower.coefficients[name]
-            names = {*upper.coefficients, *lower.coefficients} - {name}
+            up, low = upper.coefficients[unknown], -lower.coefficients[unknown]
+            names = {*upper.coefficients, *lower.coefficients} - {unknown}
             sums = {
-                other: upper.coefficients.get(other, Fraction(0)) / up
-                + lower.coefficients.get(other, Fraction(0)) / low
-                for other in names
+                name: upper.coefficients.get(name, Fraction(0)) / up
+                + lower.coefficients.get(name, Fraction(0)) / low
+                for name in names
             }
-            sums = {other: size for other, size in sums.items() if size}
+            sums = {name: factor for name, factor in sums.items() if factor}
             limit = upper.limit / up + lower.limit / low
             rest.append(LinearBound(sums, limit, upper.strict or lower.strict))
     return rest
 
 
-def _choose(
-    name: Term,
-    about: Sequence[LinearBound],
-    found: Mapping[Term, Fraction],
-    preferred: Fraction | None,
-    *,
-    whole: bool,
-) -> Fraction | None:
-    """A number for one unknown, those that were eliminated after it being known."""
-    lows: list[tuple[Fraction, bool]] = []
-    highs: list[tuple[Fraction, bool]] = []
-    for one in about:
-        known = [c * found[other] for other, c in one.coefficients.items() if other != name]
-        factor = one.coefficients[name]
-        limit = (one.limit - sum(known, Fraction(0))) / factor
-        (highs if factor > 0 else lows).append((limit, one.strict))
-    ends = [limit for limit, _ in (*lows, *highs)]
-    for value in _candidates(preferred, ends, whole=whole):
-        above = all(value > limit or (value == limit and not strict) for limit, strict in lows)
-        below = all(value < limit or (value == limit and not strict) for limit, strict in highs)
-        if above and below:
-            return value
-    return None
+_Ends = list[tuple[Fraction, bool]]
+"""Limits of an interval on one side, and whether each is left out."""
+
+
+def _interval(
+    unknown: Term, bounds: Sequence[LinearBound], solution: Mapping[Term, Fraction]
+) -> tuple[_Ends, _Ends]:
+    """The lower and the upper limits of one unknown, those eliminated after it being known."""
+    lows: _Ends = []
+    highs: _Ends = []
+    for bound in bounds:
+        known = [
+            factor * solution[name]
+            for name, factor in bound.coefficients.items()
+            if name != unknown
+        ]
+        own = bound.coefficients[unknown]
+        limit = (bound.limit - sum(known, Fraction(0))) / own
+        (highs if own > 0 else lows).append((limit, bound.strict))
+    return lows, highs
+
+
+def _lies_in(number: Fraction, lows: _Ends, highs: _Ends) -> bool:
+    above = all(number > limit or (number == limit and not strict) for limit, strict in lows)
+    return above and all(
+        number < limit or (number == limit and not strict) for limit, strict in highs
+    )
 
 
 def _candidates(
-    preferred: Fraction | None, ends: Sequence[Fraction], *, whole: bool
+    preferred: Fraction | None, ends: Sequence[Fraction], *, whole: bool, zero_first: bool
 ) -> Iterator[Fraction]:
     """Numbers at and beside the ends of the interval, those with the shortest decimals first."""
     if preferred is not None and (preferred.denominator == 1 or not whole):
         yield preferred
-    yield Fraction(0)
+    if zero_first or not ends:
+        yield Fraction(0)
     for places in range(1 if whole else _MOST_PLACES):
         scale = 10**places
         for end in ends:

@@ -6,11 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 
 from rulec.automata.mealy_monitor import NumberRead
-from rulec.logic.formula import Count
 from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
-from rulec.witnesses.letter_functions import LetterFunction, axiom_function, count_function
+from rulec.witnesses.letter_functions import (
+    LetterFunction,
+    axiom_function,
+    count_function,
+    counts_read,
+)
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import (
     JointState,
@@ -40,7 +44,12 @@ class JointAlphabet:
     def __init__(self, scene: ObjectUniverse, machines: Sequence[LetterFunction]) -> None:
         self._scene = scene
         axioms = [axiom_function(one, scene.vocabulary) for one in scene.fact_formulas()]
-        self._counts = [count_function(one, scene) for one in _counts((*machines, *axioms))]
+        self._counts = [
+            count_function(one, scene)
+            for one in counts_read(
+                read for function in (*machines, *axioms) for read in function.reads
+            )
+        ]
         columns = [*machines, *(one.column for one in self._counts), *axioms]
         self._joint = joint_reads(columns, scene.vocabulary)
         self._n_machines = len(machines)
@@ -162,16 +171,3 @@ class JointAlphabet:
             if found is not None and fewest_counted_objects(found, self._scene) is not None:
                 return found
         return None
-
-
-def _counts(columns: Sequence[LetterFunction]) -> list[Count]:
-    return list(
-        dict.fromkeys(
-            term
-            for column in columns
-            for read in column.reads
-            if isinstance(read, NumberRead)
-            for _, term in read.terms
-            if isinstance(term, Count)
-        )
-    )

@@ -30,6 +30,10 @@ class JointReads:
     reads: tuple[Read | NumberRead, ...]
     views: tuple[tuple[JointDigits, ...], ...]
 
+    def own_digits(self, index: int, joint_digits: Sequence[int]) -> tuple[int, ...]:
+        """The digits of one function's reads, given those of the joint ones."""
+        return tuple(view.digits[joint_digits[view.joint]] for view in self.views[index])
+
 
 def joint_reads(columns: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
     """Merge what the columns read.

@@ -5,7 +5,7 @@ A column is a function from letters to classes, the letters in mixed radix as th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -39,6 +39,14 @@ class LetterFunction:
 
     reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]
+
+    def value(self, digits: Sequence[int]) -> int:
+        """The class of the letter with these digits."""
+        letter, stride = 0, 1
+        for read, digit in zip(self.reads, digits, strict=True):
+            letter += stride * digit
+            stride *= read.size
+        return self.letters[letter]
 
 
 def monitor_function(
@@ -84,6 +92,10 @@ class CountFunction:
     column: LetterFunction
     counted: tuple[int, ...]
 
+    def counted_in(self, digits: Sequence[int]) -> int:
+        """How many objects count in the letter with these digits."""
+        return self.counted[self.column.value(digits)]
+
 
 def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
     """The column of a count. Raises UndecidedError for a count in which others stand."""
@@ -113,6 +125,13 @@ def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
     return CountFunction(
         count, LetterFunction(reads, tuple(letters)), tuple(key[0] for key in classes)
     )
+
+
+def counts_read(reads: Iterable[Read | NumberRead]) -> list[Count]:
+    """The counts in the sums that are read, each once."""
+    sums = [read for read in reads if isinstance(read, NumberRead)]
+    terms = dict.fromkeys(term for read in sums for _, term in read.terms)
+    return [term for term in terms if isinstance(term, Count)]
 
 
 def body_of(count: Count, name: str) -> Formula:

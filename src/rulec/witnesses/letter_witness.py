@@ -1,208 +1,196 @@
-"""A letter of a rule's machine as a state of the world: what an example would have to say."""
+"""Letters of one rule's monitor as states of the world.
+
+A letter fixes what the rule reads. Where the rule counts objects, what the counts read of the
+rule's own objects is chosen too, so that with further objects the counts come out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import prod
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
-from rulec.logic.fold import Algebra, fold
-from rulec.logic.formula import (
-    Comparison,
-    Count,
-    Formula,
-    Proposition,
-    Quantity,
-    Same,
-    Term,
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
+from rulec.logic.formula import Count
+from rulec.rulebook.model import ExampleState, Variable
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.counted_objects import fewest_counted_objects
+from rulec.witnesses.joint_reads import joint_reads
+from rulec.witnesses.letter_functions import LetterFunction, count_function, counts_read
+from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.state_synthesis import (
+    JointState,
+    default_digit,
+    required_counts,
+    synthesize_state,
 )
-from rulec.rulebook.model import ExampleState
-from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.fourier_motzkin import LinearBound, solve
+from rulec.witnesses.trace_synthesis import place_objects
+from rulec.witnesses.undecided import UndecidedError
 
-Facts = dict[tuple[str, tuple[str, ...]], bool | str | float]
-"""What a state says, while it is being made up."""
+MOST_CHOICES = 4096
+"""Of what counts read of a rule's own objects no more combinations are tried."""
+
+
+def digits_of(letter: int, monitor: MealyMonitor) -> tuple[int, ...]:
+    """The digit of each of the monitor's reads."""
+    digits = []
+    for read in monitor.reads:
+        letter, digit = divmod(letter, read.size)
+        digits.append(digit)
+    return tuple(digits)
 
 
 @dataclass(frozen=True, slots=True)
-class Witness:
-    """What one state says, and how many objects of the moment it needs for the rule's counts."""
+class WitnessTrace:
+    """A trace as an example says it: further objects, and the states.
 
-    facts: ExampleState
-    counts: tuple[tuple[Count, int], ...] = ()
+    Where the objects that counts need cannot be told, ``required`` has for each state how many they
+    are for each count, the rule's own included.
+    """
+
+    objects: tuple[Variable, ...]
+    states: tuple[ExampleState, ...]
+    required: tuple[Mapping[Count, int], ...] = ()
 
 
-class Witnesses:
-    """The letters of a rule's machine as states, those that no world can be in left out."""
+class LetterWitnesses:
+    """The letters of a rule's monitor as states, those that no state has left out."""
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
-        self._machine = rule.machine
-        self._types = {variable.name: variable.type for variable in rule.variables}
-        self._vocabulary = vocabulary
-        self._states: dict[int, Witness | None] = {}
-        self._digits = [self._split(letter) for letter in range(len(rule.machine.letters))]
+        self._monitor = rule.machine
+        self._counts = counts_read(rule.machine.reads)
+        objects = {variable.name: variable.type for variable in rule.variables}
+        self._universe = ObjectUniverse(objects, vocabulary)
+        self._states: dict[int, JointState | None] = {}
+        self._undecided: set[int] = set()
+        n_letters = len(rule.machine.letters)
+        self._digits = [digits_of(letter, rule.machine) for letter in range(n_letters)]
         self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
-        for letter, symbol in enumerate(rule.machine.letters):
-            if symbol != IMPOSSIBLE:
-                self._members[symbol].append(letter)
-        self._plain = tuple(self._usual(read) for read in rule.machine.reads)
+        for letter, letter_class in enumerate(rule.machine.letters):
+            if letter_class != IMPOSSIBLE:
+                self._members[letter_class].append(letter)
+        self._plain = [
+            0 if isinstance(read, NumberRead) else default_digit(read, vocabulary) or 0
+            for read in rule.machine.reads
+        ]
+        self._choices: _ObjectChoices | None = None
 
-    def plainest(self, symbol: int) -> int | None:
-        """The possible letter of a class that has most to do with defaults; None if none is."""
-        return self._closest(symbol, self._plain)
+    def plainest(self, letter_class: int) -> int | None:
+        """The possible letter of a class that has most defaults; None if none is possible."""
+        return self._nearest_of(letter_class, self._plain)
 
     def nearest(self, letter: int) -> list[tuple[int, int]]:
-        """From every other class the possible letter most like this one.
+        """From every other class the possible letter nearest to this one, behind its distance.
 
-        Each stands behind the number of reads in which it differs.
+        The distance is the number of reads in which two letters differ (Hamming).
         """
-        digits = self._digits[letter]
-        own = self._machine.letters[letter]
-        found = [
-            near
-            for symbol in range(len(self._machine.successors[0]))
-            if symbol != own and (near := self._closest(symbol, digits)) is not None
+        own, digits = self._monitor.letters[letter], self._digits[letter]
+        nearest = [
+            self._nearest_of(letter_class, digits)
+            for letter_class in range(len(self._members))
+            if letter_class != own
         ]
-        return [(_distance(self._digits[near], digits), near) for near in found]
+        return [
+            (_distance(self._digits[near], digits), near) for near in nearest if near is not None
+        ]
 
-    def state(self, letter: int) -> Witness | None:
-        """What a state says that has this letter; None if no state has it."""
+    def state(self, letter: int) -> JointState | None:
+        """A state that has this letter; None if none has it."""
         if letter not in self._states:
             self._states[letter] = self._state(letter)
         return self._states[letter]
 
-    def _split(self, letter: int) -> tuple[int, ...]:
-        digits = []
-        for read in self._machine.reads:
-            letter, digit = divmod(letter, read.size)
-            digits.append(digit)
-        return tuple(digits)
+    def trace(self, word: Sequence[int]) -> WitnessTrace:
+        """A trace with these letters, all of them possible."""
+        states = [state for letter in word if (state := self.state(letter)) is not None]
+        assert len(states) == len(word), "only possible letters are read"
+        if self._undecided.isdisjoint(word):
+            try:
+                objects, values = place_objects(states, self._universe, self._stem)
+            except UndecidedError:
+                pass
+            else:
+                further = tuple(Variable(name, kind) for name, kind in objects.items())
+                return WitnessTrace(further, tuple(values))
+        vocabulary = self._universe.vocabulary
+        required = tuple(required_counts(state, vocabulary) for state in states)
+        return WitnessTrace((), tuple(state.values for state in states), required)
 
-    def _usual(self, read: Read | NumberRead) -> int:
-        if isinstance(read, NumberRead):
-            return 0
-        default = self._vocabulary.declarations[read.name].default
-        return 0 if default is None else read.digit(default)
+    def _state(self, letter: int) -> JointState | None:
+        digits = self._digits[letter]
+        if self._counts:
+            try:
+                if self._choices is None:
+                    self._choices = _ObjectChoices(self._monitor, self._universe, self._counts)
+                return self._choices.state(digits)
+            except UndecidedError:
+                self._undecided.add(letter)
+        at_least = tuple((count, 0) for count in self._counts)
+        reads = list(zip(self._monitor.reads, digits, strict=True))
+        return synthesize_state(self._universe, reads, at_least)
 
-    def _closest(self, symbol: int, digits: tuple[int, ...]) -> int | None:
-        alike = sorted(
-            self._members[symbol], key=lambda one: (_distance(self._digits[one], digits), one)
+    def _stem(self, kind: str) -> str:
+        """The variable by which the rule counts objects of a type."""
+        is_subtype = self._universe.vocabulary.is_subtype
+        return next(count.variable for count in self._counts if is_subtype(kind, count.type))
+
+    def _nearest_of(self, letter_class: int, digits: Sequence[int]) -> int | None:
+        letters = sorted(
+            self._members[letter_class],
+            key=lambda letter: (_distance(self._digits[letter], digits), letter),
         )
-        return next((one for one in alike if self.state(one) is not None), None)
+        return next((letter for letter in letters if self.state(letter) is not None), None)
 
-    def _state(self, letter: int) -> Witness | None:
-        facts: Facts = {}
-        numbers: list[tuple[NumberRead, int]] = []
-        for read, digit in zip(self._machine.reads, self._digits[letter], strict=True):
-            if isinstance(read, NumberRead):
-                numbers.append((read, digit))
-            else:
-                facts[read.name, read.variables] = self._value(read, digit)
-        if not numbers:
-            return Witness(facts)
-        found = self._numbers(numbers, facts)
-        if found is None:
-            return None
-        counts = []
-        for term, value in found.items():
-            if isinstance(term, Count):
-                counts.append((term, int(value)))
-            else:
-                facts[term.name, term.arguments] = float(value)
-        return Witness(facts, tuple(counts))
 
-    def _value(self, read: Read, digit: int) -> bool | str:
-        declaration = self._vocabulary.declarations[read.name]
-        if not isinstance(declaration, Enumeration):
-            return bool(digit)
-        if digit < len(read.values):
-            return read.values[digit]
-        if declaration.default is not None and declaration.default not in read.values:
-            return declaration.default
-        return next(value for value in declaration.values if value not in read.values)
+class _ObjectChoices:
+    """What a monitor reads, together with what its counts read of the rule's own objects."""
 
-    def _numbers(
-        self, numbers: list[tuple[NumberRead, int]], facts: ExampleState
-    ) -> dict[Term, Fraction] | None:
-        terms = list(dict.fromkeys(term for read, _ in numbers for _, term in read.terms))
-        counts = [term for term in terms if isinstance(term, Count)]
-        quantities = [term for term in terms if isinstance(term, Quantity)]
-        system = [one for read, digit in numbers for one in bounds_of(read, digit)]
-        system += [
-            LinearBound({count: Fraction(-1)}, Fraction(-self._at_least(count, facts)))
-            for count in counts
+    def __init__(
+        self, monitor: MealyMonitor, universe: ObjectUniverse, counts: Sequence[Count]
+    ) -> None:
+        self._universe = universe
+        self._functions = [count_function(count, universe) for count in counts]
+        own = LetterFunction(monitor.reads, monitor.letters)
+        functions = [own, *(function.column for function in self._functions)]
+        self._joint = joint_reads(functions, universe.vocabulary)
+
+    def state(self, digits: Sequence[int]) -> JointState | None:
+        """A state with these digits of the monitor's reads, in which its counts come out.
+
+        What the monitor leaves open has its default where it can.
+        """
+        choices = [list(self._ordered(level, digits)) for level in range(len(self._joint.reads))]
+        if prod(map(len, choices)) > MOST_CHOICES:
+            raise UndecidedError("too many states of the counted objects have to be told apart")
+        for joint_digits in product(*choices):
+            counted = tuple(
+                (function.count, function.counted_in(self._joint.own_digits(index, joint_digits)))
+                for index, function in enumerate(self._functions, 1)
+            )
+            reads = list(zip(self._joint.reads, joint_digits, strict=True))
+            state = synthesize_state(self._universe, reads, counted)
+            if state is not None and fewest_counted_objects(state, self._universe) is not None:
+                return state
+        return None
+
+    def _ordered(self, level: int, digits: Sequence[int]) -> Iterator[int]:
+        """The digits of a joint read that the monitor's digits allow, the default one first."""
+        read = self._joint.reads[level]
+        default = default_digit(read, self._universe.vocabulary)
+        views = [
+            (view.digits, digit)
+            for view, digit in zip(self._joint.views[0], digits, strict=True)
+            if view.joint == level
         ]
-        preferred: dict[Term, Fraction] = {
-            term: Fraction(repr(default))
-            for term in quantities
-            if (default := self._vocabulary.declarations[term.name].default) is not None
-            and not isinstance(default, str)
-        }
-        # Most quantities are nothing below zero, though nobody has said so.
-        natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
-        order: list[Term] = [*quantities, *counts]
-        whole: frozenset[Term] = frozenset(counts)
-        return solve([*system, *natural], order, preferred, whole) or solve(
-            system, order, preferred, whole
-        )
-
-    def _at_least(self, count: Count, facts: ExampleState) -> int:
-        """How many of the objects that the rule names are counted for sure."""
-        return sum(
-            value_in_state(count.body, {count.variable: name}, facts) is True
-            for name, of_type in self._types.items()
-            if self._vocabulary.is_subtype(of_type, count.type)
-        )
+        allowed = [
+            joint_digit
+            for joint_digit in range(read.size)
+            if all(seen[joint_digit] == digit for seen, digit in views)
+        ]
+        yield from sorted(allowed, key=lambda joint_digit: joint_digit != default)
 
 
-def _distance(one: tuple[int, ...], other: tuple[int, ...]) -> int:
-    return sum(a != b for a, b in zip(one, other, strict=True))
-
-
-def bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
-    """What a digit says of the sum that is read."""
-    terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
-    if digit > 0:
-        passed = read.thresholds[digit - 1]
-        below = {term: -coefficient for term, coefficient in terms.items()}
-        yield LinearBound(below, -passed.limit, strict=not passed.inclusive)
-    if digit < len(read.thresholds):
-        ahead = read.thresholds[digit]
-        yield LinearBound(terms, ahead.limit, strict=ahead.inclusive)
-
-
-def value_in_state(formula: Formula, names: Mapping[str, str], facts: ExampleState) -> bool | None:
-    """The value of a count's body, ``names`` for its variable; None if the state leaves it open."""
-
-    def proposition(proposition: Proposition) -> bool | None:
-        if isinstance(proposition, Comparison):
-            return None
-        objects = tuple(names.get(name, name) for name in proposition.arguments)
-        value = facts.get((proposition.name, objects))
-        expected = True if proposition.value is None else proposition.value
-        return None if value is None else value == expected
-
-    def identity(same: Same) -> bool:
-        return names.get(same.left, same.left) == names.get(same.right, same.right)
-
-    return fold(formula, replace(_KLEENE, proposition=proposition, identity=identity))
-
-
-def _settled(by: bool, left: bool | None, right: bool | None) -> bool | None:
-    """The conjunction, which an operand that is false settles, or the disjunction by a true one."""
-    if left is by or right is by:
-        return by
-    return None if left is None or right is None else not by
-
-
-_KLEENE: Algebra[bool | None] = Algebra(
-    proposition=lambda _: None,
-    constant=bool,
-    negation=lambda operand: None if operand is None else not operand,
-    conjunction=partial(_settled, False),
-    disjunction=partial(_settled, True),
-    equivalence=lambda left, right: None if left is None or right is None else left == right,
-)
+def _distance(digits: Sequence[int], others: Sequence[int]) -> int:
+    return sum(digit != other for digit, other in zip(digits, others, strict=True))

@@ -2,103 +2,103 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_witness import Witness, Witnesses
+from rulec.witnesses.joint_alphabet import JointLetter
+from rulec.witnesses.letter_witness import LetterWitnesses, WitnessTrace
+from rulec.witnesses.shortest_word import shortest_word
 
 
 @dataclass(frozen=True, slots=True)
 class ShortestTraces:
-    """States of a trace that is accepted, and of one that is rejected; None if there is none.
+    """A trace that is accepted, and one that is rejected; None if there is none.
 
     No shorter trace is rejected. The accepted one differs from it in one state where that is
     possible, and else shows more of the rule than a trace that never leaves the first state of its
     automaton, if any does.
     """
 
-    accepted: tuple[Witness, ...] | None
-    rejected: tuple[Witness, ...] | None
+    accepted: WitnessTrace | None
+    rejected: WitnessTrace | None
 
 
 def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTraces:
-    """The traces, their states in the rule's variables.
+    """Find the traces, their states in the rule's variables.
 
     States that no world can be in, such as one with `speed < 30` and `speed > 50`, do not occur.
     """
-    machine = rule.machine
-    witnesses = Witnesses(rule, vocabulary)
-    plainest = {
-        symbol: letter
-        for symbol in range(len(machine.successors[0]))
-        if (letter := witnesses.plainest(symbol)) is not None
+    monitor = rule.machine
+    witnesses = LetterWitnesses(rule, vocabulary)
+    plainest: dict[JointLetter, int] = {
+        (letter_class,): letter
+        for letter_class in range(len(monitor.successors[0]))
+        if (letter := witnesses.plainest(letter_class)) is not None
     }
-    rejected = _shortest(machine, plainest, accepted=False)
-    accepted = rejected and _near_miss(machine, rejected, witnesses)
+
+    def shortest(searched: MealyMonitor, *, accepted: bool) -> list[int] | None:
+        word = shortest_word([searched], [accepted], list(plainest))
+        return None if word is None else [plainest[symbol] for symbol in word]
+
+    rejected = shortest(monitor, accepted=False)
     accepted = (
-        accepted
-        or _shortest(machine, plainest, accepted=True, moved=True)
-        or _shortest(machine, plainest, accepted=True)
+        (rejected and _near_miss(monitor, rejected, witnesses))
+        or shortest(_after_first_state(monitor), accepted=True)
+        or shortest(monitor, accepted=True)
     )
-    return ShortestTraces(_states(accepted, witnesses), _states(rejected, witnesses))
+    return ShortestTraces(
+        witnesses.trace(accepted) if accepted else None,
+        witnesses.trace(rejected) if rejected else None,
+    )
 
 
-def _states(word: Sequence[int] | None, witnesses: Witnesses) -> tuple[Witness, ...] | None:
-    if word is None:
-        return None
-    states = [witnesses.state(letter) for letter in word]
-    assert all(state is not None for state in states), "only possible letters are read"
-    return tuple(state for state in states if state is not None)
+def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
+    """The monitor with only those words accepted whose runs leave the first state.
 
-
-def _shortest(
-    machine: MealyMonitor, letters: Mapping[int, int], *, accepted: bool, moved: bool = False
-) -> tuple[int, ...] | None:
-    """A shortest word of the letters that stand for their classes, in breadth-first order.
-
-    It gets the verdict ``accepted``, and if need be its run has left the first state: ``moved``.
+    State ``n + 1`` is state ``n`` of a run that has left; state 0 the first one until then.
     """
-    waiting: list[tuple[int, bool, tuple[int, ...]]] = [(0, False, ())]
-    seen = {(0, False)}
-    for state, has_moved, word in waiting:
-        for symbol, letter in letters.items():
-            target = machine.successors[state][symbol]
-            node = (target, has_moved or target != 0)
-            if machine.outputs[state][symbol] is accepted and (node[1] or not moved):
-                return (*word, letter)
-            if node not in seen:
-                seen.add(node)
-                waiting.append((*node, (*word, letter)))
-    return None
+    moved = [tuple([target + 1 for target in row]) for row in monitor.successors]
+    first = tuple([target + 1 if target else 0 for target in monitor.successors[0]])
+    outputs = zip(monitor.outputs[0], first, strict=True)
+    return replace(
+        monitor,
+        successors=(first, *moved),
+        outputs=(
+            tuple([accepted and target > 0 for accepted, target in outputs]),
+            *monitor.outputs,
+        ),
+        rejecting_sink=None,
+        accepting_sink=None,
+    )
 
 
 def _near_miss(
-    machine: MealyMonitor, rejected: Sequence[int], witnesses: Witnesses
-) -> tuple[int, ...] | None:
+    monitor: MealyMonitor, rejected: Sequence[int], witnesses: LetterWitnesses
+) -> list[int] | None:
     """The rejected word with one letter changed so that it is accepted, the last one if possible.
 
     It is changed as little as possible, and then so that it sees most states of the automaton.
     """
     for place in reversed(range(len(rejected))):
-        found = []
+        candidates = []
         for distance, letter in witnesses.nearest(rejected[place]):
-            word = (*rejected[:place], letter, *rejected[place + 1 :])
-            accepted, n_states = _judge(machine, word)
+            word = [*rejected[:place], letter, *rejected[place + 1 :]]
+            accepted, n_states = _run(monitor, word)
             if accepted:
-                found.append((distance, -n_states, letter, word))
-        if found:
-            return min(found)[-1]
+                candidates.append((distance, -n_states, letter, word))
+        if candidates:
+            return min(candidates)[-1]
     return None
 
 
-def _judge(machine: MealyMonitor, word: Sequence[int]) -> tuple[bool, int]:
-    """Is the word accepted, and how many states does it see?"""
+def _run(monitor: MealyMonitor, word: Sequence[int]) -> tuple[bool, int]:
+    """The verdict on a word of letters, and how many states its run sees."""
     states, accepted = [0], False
     for letter in word:
-        symbol = machine.letters[letter]
-        accepted = machine.outputs[states[-1]][symbol]
-        states.append(machine.successors[states[-1]][symbol])
+        letter_class = monitor.letters[letter]
+        accepted = monitor.outputs[states[-1]][letter_class]
+        states.append(monitor.successors[states[-1]][letter_class])
     return accepted, len(set(states))

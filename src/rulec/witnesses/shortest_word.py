@@ -1,8 +1,11 @@
-"""Shortest words on which several machines give the verdicts that are asked for."""
+"""Shortest words on which several monitors give the verdicts that are asked for.
+
+The product of the monitors is searched breadth first, and built as far as the search gets.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.witnesses.joint_alphabet import JointLetter
@@ -10,59 +13,58 @@ from rulec.witnesses.undecided import UndecidedError
 
 MOST_STATES = 50_000
 MOST_STEPS = 3_000_000
-"""What a search may look at: joint states, and steps from one to another."""
+"""States of a product that a search looks at, and steps from one to another."""
 
 ProductState = tuple[int, ...]
 
 
 def shortest_word(
-    machines: Sequence[MealyMonitor], wanted: Sequence[bool], symbols: Sequence[JointLetter]
+    monitors: Sequence[MealyMonitor], verdicts: Sequence[bool], letters: Sequence[JointLetter]
 ) -> tuple[JointLetter, ...] | None:
-    """A shortest word, not empty, with these verdicts, in breadth-first order; None if none has.
+    """Find a shortest word, not empty, with these verdicts; None if there is none.
 
-    Raises UndecidedError where there is too much to search.
+    Of several the first in the order of ``letters``. A single monitor is searched to its end;
+    raises UndecidedError where a product is too large for that.
     """
-    start: ProductState = (0,) * len(machines)
-    came: dict[ProductState, tuple[ProductState, JointLetter] | None] = {start: None}
+    start: ProductState = (0,) * len(monitors)
+    reached_by: dict[ProductState, tuple[ProductState, JointLetter] | None] = {start: None}
     waiting = [start]
-    lost = [
-        one.accepting_sink if verdict is False else one.rejecting_sink
-        for one, verdict in _pairs(machines, wanted)
+    hopeless = [
+        monitor.rejecting_sink if verdict else monitor.accepting_sink
+        for monitor, verdict in zip(monitors, verdicts, strict=True)
     ]
     steps = 0
-    for node in waiting:
-        rows = [one.outputs[state] for one, state in zip(machines, node, strict=True)]
-        successors = [one.successors[state] for one, state in zip(machines, node, strict=True)]
-        for symbol in symbols:
+    for state in waiting:
+        pairs = list(zip(monitors, state, strict=True))
+        outputs = [monitor.outputs[own] for monitor, own in pairs]
+        successors = [monitor.successors[own] for monitor, own in pairs]
+        for letter in letters:
             if all(
-                row[which] is verdict
-                for row, which, verdict in zip(rows, symbol, wanted, strict=True)
+                row[own] is verdict
+                for row, own, verdict in zip(outputs, letter, verdicts, strict=True)
             ):
-                return (*_way(node, came), symbol)
-            target = tuple([row[which] for row, which in zip(successors, symbol, strict=True)])
-            if target in came or any(a == b for a, b in zip(target, lost, strict=True)):
+                return (*_word_to(state, reached_by), letter)
+            target = tuple([row[own] for row, own in zip(successors, letter, strict=True)])
+            if target in reached_by or any(
+                own == sink for own, sink in zip(target, hopeless, strict=True)
+            ):
                 continue
-            came[target] = node, symbol
+            reached_by[target] = state, letter
             waiting.append(target)
-        steps += len(symbols)
-        if len(waiting) > MOST_STATES or steps > MOST_STEPS:
+        steps += len(letters)
+        if len(monitors) > 1 and (len(waiting) > MOST_STATES or steps > MOST_STEPS):
             raise UndecidedError("their automata together are too large")
     return None
 
 
-def _pairs(
-    machines: Sequence[MealyMonitor], wanted: Sequence[bool]
-) -> Iterable[tuple[MealyMonitor, bool]]:
-    return zip(machines, wanted, strict=True)
-
-
-def _way(
-    node: ProductState, came: dict[ProductState, tuple[ProductState, JointLetter] | None]
+def _word_to(
+    state: ProductState,
+    reached_by: dict[ProductState, tuple[ProductState, JointLetter] | None],
 ) -> tuple[JointLetter, ...]:
     word: list[JointLetter] = []
-    step = came[node]
+    step = reached_by[state]
     while step is not None:
-        node, symbol = step
-        word.append(symbol)
-        step = came[node]
+        state, letter = step
+        word.append(letter)
+        step = reached_by[state]
     return tuple(reversed(word))

@@ -1,4 +1,8 @@
-"""States of the world in which the columns see what they are to see."""
+"""Synthesise a state in which each read has a given digit.
+
+Signals and enumerations are independent of each other; numbers are related by sums, which
+Fourier-Motzkin elimination solves.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,6 @@ from rulec.logic.formula import Count, Quantity, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
-from rulec.witnesses.letter_witness import bounds_of
 from rulec.witnesses.object_universe import ObjectUniverse
 
 Subject = tuple[str, tuple[str, ...]]
@@ -22,24 +25,25 @@ Subject = tuple[str, tuple[str, ...]]
 Value = bool | str | float
 
 NumberDigits = tuple[tuple[NumberRead, int], ...]
-"""Sums, and how many of its thresholds each passes."""
+"""Sums, and how many of its thresholds each of them passes."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointState:
     """A state: the values that decide, all others may be anything.
 
-    ``sides`` are the sums that decide, ``counted`` is how many of the scene's own objects count.
+    ``number_digits`` are the sums that decide, ``counted`` is how many of the universe's own
+    objects count.
     """
 
     values: Mapping[Subject, Value]
-    sides: NumberDigits
-    counted: tuple[tuple[Count, int], ...]
+    number_digits: NumberDigits = ()
+    counted: tuple[tuple[Count, int], ...] = ()
 
-    def value(self, key: Subject, vocabulary: Vocabulary) -> Value:
-        """What decides, or the usual value."""
-        found = self.values.get(key)
-        return default_value(vocabulary.declarations[key[0]]) if found is None else found
+    def value(self, subject: Subject, vocabulary: Vocabulary) -> Value:
+        """The value that decides, or the default one."""
+        value = self.values.get(subject)
+        return default_value(vocabulary.declarations[subject[0]]) if value is None else value
 
     def number(self, term: Quantity, vocabulary: Vocabulary) -> Fraction:
         """The value of a quantity."""
@@ -49,39 +53,35 @@ class JointState:
 
 
 def synthesize_state(
-    scene: ObjectUniverse,
+    universe: ObjectUniverse,
     digits: Sequence[tuple[Read | NumberRead, int]],
-    counted: tuple[tuple[Count, int], ...],
+    counted: tuple[tuple[Count, int], ...] = (),
 ) -> JointState | None:
-    """A state in which the reads come out as these digits; None if there is none."""
-    sides = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
-    numbers = solve_numbers(sides, scene.vocabulary, dict(counted)) if sides else {}
+    """Synthesise a state in which each read has a given digit; None if there is none."""
+    vocabulary = universe.vocabulary
+    number_digits = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
+    numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
     if numbers is None:
         return None
     values: dict[Subject, Value] = {
-        (read.name, read.variables): value_of(read, digit, scene.vocabulary)
+        (read.name, read.variables): value_of(read, digit, vocabulary)
         for read, digit in digits
         if isinstance(read, Read)
     }
     for term, number in numbers.items():
         if isinstance(term, Quantity):
             values[term.name, term.arguments] = float(number)
-    return JointState(values, sides, counted)
+    return JointState(values, number_digits, counted)
 
 
 def solve_numbers(
-    sides: Sequence[tuple[NumberRead, int]],
+    number_digits: Sequence[tuple[NumberRead, int]],
     vocabulary: Vocabulary,
     least: Mapping[Count, int],
 ) -> dict[Term, Fraction] | None:
-    """Numbers on the wanted sides, ``least`` being how much a count comes to at least."""
-    terms = list(dict.fromkeys(term for read, _ in sides for _, term in read.terms))
-    counts = [term for term in terms if isinstance(term, Count)]
-    quantities = [term for term in terms if isinstance(term, Quantity)]
-    system = [one for read, digit in sides for one in bounds_of(read, digit)]
-    system += [
-        LinearBound({count: Fraction(-1)}, Fraction(-least.get(count, 0))) for count in counts
-    ]
+    """Numbers with these digits, defaults where they fit, counts being ``least`` or more."""
+    counts, quantities = _terms_of(number_digits)
+    system = _linear_system(number_digits, counts, least)
     preferred: dict[Term, Fraction] = {}
     for term in quantities:
         default = vocabulary.declarations[term.name].default
@@ -90,9 +90,94 @@ def solve_numbers(
     # Most quantities are nothing below zero, though nobody has said so.
     natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
     order: list[Term] = [*quantities, *counts]
-    whole: frozenset[Term] = frozenset(counts)
-    found = solve([*system, *natural], order, preferred, whole)
-    return solve(system, order, preferred, whole) if found is None else found
+    solution = solve([*system, *natural], order, preferred, frozenset(counts))
+    if solution is None:
+        return solve(system, order, preferred, frozenset(counts))
+    return solution
+
+
+def numbers_near_thresholds(
+    number_digits: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
+) -> dict[Quantity, float] | None:
+    """Numbers with these digits, close to the thresholds, as a test of them needs.
+
+    Of a sum of several quantities one is close, the others have their defaults, or are zero, unless
+    they are compared by themselves. None if there are none, or if floats cannot write them.
+    """
+    _, quantities = _terms_of(number_digits)
+    preferred: dict[Term, Fraction] = {}
+    listed: list[Quantity] = []
+    order: list[Term] = []
+    # A quantity that is compared by itself has less of a choice than one in a sum only.
+    for read, _ in sorted(number_digits, key=lambda pair: len(pair[0].terms)):
+        new = [term for term in quantities if term not in listed and term in _addends(read)]
+        for term in new[1:]:
+            default = vocabulary.declarations[term.name].default
+            preferred[term] = exact(default) if isinstance(default, int | float) else Fraction(0)
+        listed += new
+        order += [*new[1:], *new[:1]]
+    system = _linear_system(number_digits, (), {})
+    near = frozenset(quantities) - preferred.keys()
+    solution = solve(system, order[::-1], preferred, near_bounds=near)
+    if solution is None or not all(map(_is_float, solution.values())):
+        return None
+    return {term: float(solution[term]) for term in listed}
+
+
+def _addends(read: NumberRead) -> list[Term]:
+    return [term for _, term in read.terms]
+
+
+def _is_float(number: Fraction) -> bool:
+    try:
+        return exact(float(number)) == number
+    except OverflowError:
+        return False
+
+
+def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, int]:
+    """How many objects the numbers of a synthesised state ask each count to come to."""
+    numbers = solve_numbers(state.number_digits, vocabulary, dict(state.counted)) or {}
+    return {term: int(number) for term, number in numbers.items() if isinstance(term, Count)}
+
+
+def are_consistent(number_digits: Sequence[tuple[NumberRead, int]]) -> bool:
+    """Whether some numbers have these digits, counts being whole and not below zero."""
+    counts, quantities = _terms_of(number_digits)
+    system = _linear_system(number_digits, counts, {})
+    return solve(system, [*quantities, *counts], {}, frozenset(counts)) is not None
+
+
+def _terms_of(
+    number_digits: Sequence[tuple[NumberRead, int]],
+) -> tuple[list[Count], list[Quantity]]:
+    terms = list(dict.fromkeys(term for read, _ in number_digits for _, term in read.terms))
+    counts = [term for term in terms if isinstance(term, Count)]
+    return counts, [term for term in terms if isinstance(term, Quantity)]
+
+
+def _linear_system(
+    number_digits: Sequence[tuple[NumberRead, int]],
+    counts: Sequence[Count],
+    least: Mapping[Count, int],
+) -> list[LinearBound]:
+    system = [bound for read, digit in number_digits for bound in _bounds_of(read, digit)]
+    system += [
+        LinearBound({count: Fraction(-1)}, Fraction(-least.get(count, 0))) for count in counts
+    ]
+    return system
+
+
+def _bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
+    """The inequalities by which a sum has a digit: above one threshold, below the next."""
+    terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
+    if digit > 0:
+        passed = read.thresholds[digit - 1]
+        below = {term: -coefficient for term, coefficient in terms.items()}
+        yield LinearBound(below, -passed.limit, strict=not passed.inclusive)
+    if digit < len(read.thresholds):
+        ahead = read.thresholds[digit]
+        yield LinearBound(terms, ahead.limit, strict=ahead.inclusive)
 
 
 def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
@@ -136,9 +221,9 @@ def keys_of(
 ) -> Iterator[tuple[Subject, Declaration]]:
     """All that a state could say of these objects, an object and itself included."""
     for name, declaration in vocabulary.declarations.items():
-        fitting = [
-            [item for item, kind in objects.items() if vocabulary.is_subtype(kind, wanted)]
-            for wanted in declaration.parameters
+        candidates = [
+            [item for item, kind in objects.items() if vocabulary.is_subtype(kind, parameter)]
+            for parameter in declaration.parameters
         ]
-        for items in product(*fitting):
+        for items in product(*candidates):
             yield (name, items), declaration

@@ -17,6 +17,38 @@ from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_
 from rulec.witnesses.undecided import UndecidedError
 
 
+def place_objects(
+    states: Sequence[JointState], universe: ObjectUniverse, stem: Callable[[str], str]
+) -> tuple[dict[str, str], list[dict[Subject, Value]]]:
+    """Name the further objects that the counts of all states need, and say what is true of them.
+
+    Args:
+        states: synthesised states.
+        universe: the objects that are there already.
+        stem: of a type, what the names of such objects begin with.
+
+    Returns:
+        The types of the further objects by name, and the values of each state.
+
+    Raises:
+        UndecidedError: if the objects counted in one state are in the way in another.
+    """
+    types = _types([fewest_counted_objects(state, universe) or () for state in states])
+    names = _names([stem(kind) for kind in types], universe.objects)
+    placed: list[dict[Subject, Value]] = []
+    for state in states:
+        further = counted_objects_of_types(state, universe, types)
+        if further is None:
+            raise UndecidedError("objects to be counted in one state are in the way in another")
+        values = dict(state.values)
+        for name, companion in zip(names, further, strict=True):
+            for (declaration, items), value in companion.values.items():
+                own = tuple(name if item == EXTRA else item for item in items)
+                values[declaration, own] = value
+        placed.append(values)
+    return dict(zip(names, types, strict=True)), placed
+
+
 def synthesize_trace(
     situations: Sequence[JointState],
     scene: ObjectUniverse,
@@ -27,19 +59,9 @@ def synthesize_trace(
 
     Raises UndecidedError if the objects that are there to be counted are in the way.
     """
-    types = _types([fewest_counted_objects(one, scene) or () for one in situations])
-    names = _names(types, scene.objects)
-    everyone = {**scene.objects, **dict(zip(names, types, strict=True))}
-    states: list[dict[Subject, Value]] = []
-    for one in situations:
-        company = counted_objects_of_types(one, scene, types)
-        if company is None:
-            raise UndecidedError("objects to be counted in one state are in the way in another")
-        values = dict(one.values)
-        for name, companion in zip(names, company, strict=True):
-            for (what, items), value in companion.values.items():
-                values[what, tuple(name if item == EXTRA else item for item in items)] = value
-        states.append(values)
+    objects, states = place_objects(situations, scene, str)
+    everyone = {**scene.objects, **objects}
+    types = list(objects.values())
     for fill in _fills(scene, types):
         written = tuple(_written(values, scene, everyone, fill) for values in states)
         trace = Trace("witness", float(step_s), everyone, written)
@@ -68,11 +90,11 @@ def _types(companies: Iterable[Sequence[Any]]) -> list[str]:
     return sorted(most.elements())
 
 
-def _names(types: Sequence[str], taken: Mapping[str, str]) -> list[str]:
+def _names(stems: Sequence[str], taken: Mapping[str, str]) -> list[str]:
     names: list[str] = []
-    for kind in types:
+    for stem in stems:
         number = 1
-        while (name := f"{kind}{number}") in taken or name in names:
+        while (name := f"{stem}{number}") in taken or name in names:
             number += 1
         names.append(name)
     return names

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import islice
 from math import prod
 
@@ -17,9 +16,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
-from rulec.logic.formula import Count
-from rulec.witnesses.fourier_motzkin import LinearBound, solve
-from rulec.witnesses.letter_witness import bounds_of
+from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]
 """The digit of each thing that a machine reads of a state, in its order."""
@@ -168,12 +165,7 @@ class _Alphabet:
         digits = tuple(self._digits[self._is_number, number].tolist())
         if digits not in self._can_be:
             reads = [one for one in self._reads if isinstance(one, NumberRead)]
-            terms = list(dict.fromkeys(term for one in reads for _, term in one.terms))
-            counts = [term for term in terms if isinstance(term, Count)]
-            system = [LinearBound({count: Fraction(-1)}, Fraction(0)) for count in counts]
-            for one, digit in zip(reads, digits, strict=True):
-                system += bounds_of(one, digit)
-            self._can_be[digits] = solve(system, terms, {}, frozenset(counts)) is not None
+            self._can_be[digits] = are_consistent(list(zip(reads, digits, strict=True)))
         return self._can_be[digits]
 
     def ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:

@@ -25,9 +25,8 @@ from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.formula_lines import formula_lines
 from rulec.rulebook.model import Rule, Variable
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_witness import Witness
+from rulec.witnesses.letter_witness import WitnessTrace
 from rulec.witnesses.shortest_traces import shortest_traces
-from rulec.witnesses.witness_objects import staged
 
 INDENT = "  "
 
@@ -65,28 +64,23 @@ def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RuleP
     return RulePage(
         rule,
         automaton_of(compiled, vocabulary),
-        _shown(traces.accepted, rule, vocabulary, wording),
-        _shown(traces.rejected, rule, vocabulary, wording),
+        _shown(traces.accepted, wording),
+        _shown(traces.rejected, wording),
         compiled.step_s,
     )
 
 
-def _shown(
-    states: Sequence[Witness] | None, rule: Rule, vocabulary: Vocabulary, wording: GuardWording
-) -> ShownTrace | None:
-    if states is None:
+def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShownTrace | None:
+    if trace is None:
         return None
-    scene = staged(states, rule.variables, vocabulary)
-    if scene is not None:
-        return ShownTrace(scene.objects, tuple(map(wording.state, scene.states)))
-    facts = tuple(wording.state(state.facts) for state in states)
-    return ShownTrace((), facts, tuple(_remarks(states)))
+    states = tuple(map(wording.state, trace.states))
+    return ShownTrace(trace.objects, states, tuple(_remarks(trace)))
 
 
-def _remarks(states: Sequence[Witness]) -> Iterator[str]:
+def _remarks(trace: WitnessTrace) -> Iterator[str]:
     """How many objects of the moment a state needs, those that the rule names included."""
-    for number, state in enumerate(states):
-        for count, size in state.counts:
+    for number, required in enumerate(trace.required):
+        for count, size in required.items():
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
             yield (
                 f"in state {number} there {'is' if size == 1 else 'are'} {size:,} {noun} "
