@@ -198,7 +198,7 @@ def test_suggested_examples_and_shortest_traces_keep_to_the_facts():
     """Without facts, the shortest rejected trace of `calm` would be loud at 101 km/h or more."""
     calm = COMPILED.rules[1]
     rejected = shortest_traces(calm, COMPILED.vocabulary).rejected
-    assert [state.facts["speed", ("v",)] <= 120 for state in rejected] == [True]
+    assert [state["speed", ("v",)] <= 120 for state in rejected.states] == [True]
     never = COMPILED.rules[2]
     assert shortest_traces(never, COMPILED.vocabulary).rejected is None
     book = parse_rulebook(

@@ -65,8 +65,8 @@ class LetterWitnesses:
         self._universe = ObjectUniverse(objects, vocabulary)
         self._states: dict[int, JointState | None] = {}
         self._undecided: set[int] = set()
-        n_letters = len(rule.machine.letters)
-        self._digits = [digits_of(letter, rule.machine) for letter in range(n_letters)]
+        sizes = [range(read.size) for read in reversed(rule.machine.reads)]
+        self._digits = [digits[::-1] for digits in product(*sizes)]
         self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
         for letter, letter_class in enumerate(rule.machine.letters):
             if letter_class != IMPOSSIBLE:

@@ -91,14 +91,23 @@ def test_counts_are_wanted_in_words():
     ]
 
 
-def test_a_sum_without_a_free_part_is_wanted_in_words():
+def test_a_sum_without_a_free_part_is_chosen_together_with_its_parts():
     slow = number("speed < 10 km/h", "<", 10, (1, SPEED))
     tight = number("gap(v) < 5 m", "<", 5, (1, gap("v")))
     mixed = number("gap(v) < speed", "<", 0, (1, gap("v")), (-1, SPEED))
-    examples = proposed(always(implies(both(slow, tight), mixed)))
-    assert any(
-        one == "reject { speed = 9 km/h and gap(v) = 4 m }  # where in state 0 not gap(v) < speed"
-        for one in examples
+    assert proposed(always(implies(both(slow, tight), mixed))) == [
+        "accept { speed = 9 km/h and gap(v) = 4 m }",
+        "reject { speed = 4 km/h and gap(v) = 4 m }",
+    ]
+
+
+def test_a_sum_that_cannot_be_chosen_with_its_parts_is_wanted_in_words():
+    slow = number("speed < 2 km/h", "<", 2, (1, SPEED))
+    wide = number("gap(v) > 5 m", ">", 5, (1, gap("v")))
+    mixed = number("gap(v) < speed", "<", 0, (1, gap("v")), (-1, SPEED))
+    examples = proposed(always(no(both(both(slow, wide), mixed))))
+    assert examples[-1] == (
+        "reject { speed = 1 km/h and gap(v) = 6 m }  # where in state 0 gap(v) < speed"
     )
 
 

@@ -20,15 +20,15 @@ from support.builders.rulebooks import P, Q, always, book, compile_here, eventua
 from support.generators.random_formulas import VOCABULARY, formulas
 
 
-def letters(witnesses):
+def letters(trace):
     """The atoms that hold in each state."""
     return [
         frozenset(
             Atom(name, variables, value if isinstance(value, str) else None)
-            for (name, variables), value in one.facts.items()
+            for (name, variables), value in state.items()
             if value is not False
         )
-        for one in witnesses
+        for state in trace.states
     ]
 
 
@@ -39,17 +39,17 @@ def test_their_verdicts_and_their_length(formula):
     compiled = compile_here(rulebook)
     machine = compiled.rules[0].machine
     traces = shortest_traces(compiled.rules[0], VOCABULARY)
-    for states, accepts in ((traces.accepted, True), (traces.rejected, False)):
-        if states is None:
+    for trace, accepts in ((traces.accepted, True), (traces.rejected, False)):
+        if trace is None:
             assert machine.accepting_sink == 0 if not accepts else machine.rejecting_sink == 0
             continue
-        assert holds(formula, letters(states)) is accepts
-        example = Example(accepts, tuple(state.facts for state in states))
+        assert holds(formula, letters(trace)) is accepts
+        example = Example(accepts, trace.states)
         shown = book(rule_with(one, example))
         assert run_rulebook_examples(shown, compiled).outcomes[0].passed
     if traces.rejected is not None:
         symbols = range(len(machine.successors[0]))
-        for length in range(1, min(len(traces.rejected), 5)):
+        for length in range(1, min(len(traces.rejected.states), 5)):
             for word in product(symbols, repeat=length):
                 assert run(machine, word)[0]
 
@@ -64,11 +64,12 @@ def test_the_accepted_one_differs_in_one_state_where_that_is_possible(formula):
     traces = shortest_traces(compiled, VOCABULARY)
     if traces.accepted is None or traces.rejected is None:
         return
-    pairs = list(zip(traces.accepted, traces.rejected, strict=False))
-    near = len(traces.accepted) == len(traces.rejected) and sum(a != b for a, b in pairs) == 1
+    accepted, rejected = traces.accepted.states, traces.rejected.states
+    pairs = list(zip(accepted, rejected, strict=False))
+    near = len(accepted) == len(rejected) and sum(a != b for a, b in pairs) == 1
     if not near:
         machine = compiled.machine
-        word = [machine.letters[_letter(machine, state.facts)] for state in traces.rejected]
+        word = [machine.letters[_letter(machine, state)] for state in rejected]
         for place in range(len(word)):
             for symbol in range(len(machine.successors[0])):
                 assert not run(machine, [*word[:place], symbol, *word[place + 1 :]])[0]
@@ -135,17 +136,17 @@ def test_numbers_on_the_right_side_of_their_thresholds():
     )
     # Letter 2 is 100 km/h or more and more than the limit.
     traces = shortest_traces(of_numbers((speeds, over), {2}), NUMBERS)
-    (rejected,), (accepted,) = traces.rejected, traces.accepted
-    assert rejected.facts["speed", ()] >= 100
-    assert rejected.facts["speed", ()] > rejected.facts["limit", ()] >= 0
-    assert accepted.facts["speed", ()] < 100 or accepted.facts["limit", ()] >= 100
+    (rejected,), (accepted,) = traces.rejected.states, traces.accepted.states
+    assert rejected["speed", ()] >= 100
+    assert rejected["speed", ()] > rejected["limit", ()] >= 0
+    assert accepted["speed", ()] < 100 or accepted["limit", ()] >= 100
 
 
 def test_a_default_is_kept_where_it_can_be():
     speeds = NumberRead(((Fraction(1), SPEED),), (at_least(50),))
     traces = shortest_traces(of_numbers((speeds,), {1}), NUMBERS)
-    assert traces.accepted[0].facts == {("speed", ()): 30.0}
-    assert traces.rejected[0].facts == {("speed", ()): 50.0}
+    assert traces.accepted.states[0] == {("speed", ()): 30.0}
+    assert traces.rejected.states[0] == {("speed", ()): 50.0}
 
 
 def test_what_no_world_can_be_in_violates_nothing():
@@ -158,7 +159,7 @@ def test_what_no_world_can_be_in_violates_nothing():
 
 
 @given(st.sets(st.integers(0, 3), min_size=1, max_size=3))
-def test_counts_say_how_many_objects_a_state_needs(bad):
+def test_counted_objects_are_there(bad):
     body = Atom("station", ("x",), "behind")
     count = Count("x", "road_user", body)
     reads = (
@@ -167,12 +168,14 @@ def test_counts_say_how_many_objects_a_state_needs(bad):
     )
     compiled = of_numbers(reads, bad, (Variable("b", "bus"),))
     traces = shortest_traces(compiled, NUMBERS)
-    for states in (traces.accepted, traces.rejected):
-        for state in states or ():
-            ((counted, size),) = state.counts
-            assert counted == count
+    for trace, is_bad in ((traces.accepted, False), (traces.rejected, True)):
+        for state in trace.states if trace else ():
+            assert not trace.required
+            everyone = ["b", *(further.name for further in trace.objects)]
+            behind = [name for name in everyone if state["station", (name,)] == "behind"]
             # The bus itself is one of the objects of the moment.
-            assert size >= (state.facts["station", ("b",)] == "behind")
+            letter = (state["station", ("b",)] != "behind") + 2 * (len(behind) >= 1)
+            assert (letter in bad) is is_bad
     # A bus behind, and nobody behind: there is no such state, whatever it would violate.
-    if bad == {0}:
-        assert traces.rejected is None
+    assert (traces.rejected is None) is (bad == {0})
+    assert (traces.accepted is None) is (bad >= {1, 2, 3})
