@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.breakpoints import breakpoints_of
-from rulec.monitoring.online.rule_group import Learned
+from rulec.monitoring.online.rule_group import CacheSize
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.online.state_shape import StateShape
 from rulec.rulebook.loader import parse_rulebook
@@ -130,7 +130,7 @@ def test_with_and_without_outlines_and_memory_a_monitor_says_the_same(drive, siz
         with pytest.MonkeyPatch.context() as patched:
             # As `verify` reads a state.
             patched.setattr(
-                "rulec.monitoring.online.bound_rules.BoundRules._reading_of", lambda *_: None
+                "rulec.monitoring.online.bound_rules.BoundRules._reader_of", lambda *_: None
             )
             assert remembering == answer(other, state)
 
@@ -329,12 +329,12 @@ def are_refused_now_and_then(state):
 def test_what_has_been_learnt_does_not_grow_for_ever(they, most, monkeypatch):
     made = []
 
-    def learned():
-        made.append(Learned())
+    def cache_size():
+        made.append(CacheSize())
         return made[-1]
 
-    monkeypatch.setattr("rulec.monitoring.online.rule_group.Learned", learned)
-    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", most)
+    monkeypatch.setattr("rulec.monitoring.online.rule_group.CacheSize", cache_size)
+    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_CACHED", most)
     monitor = Monitor(AFTER_FOG)
     for state in FOGS:
         for told, objects in they(state):
@@ -345,7 +345,7 @@ def test_what_has_been_learnt_does_not_grow_for_ever(they, most, monkeypatch):
 
 
 def test_objects_stay_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", 0)
+    monkeypatch.setattr("rulec.monitoring.online.running_monitor.MOST_CACHED", 0)
     monitor = Monitor(AFTER_FOG)
     for names in ("ab", "ba"):
         monitor.step({}, dict.fromkeys(names, "car"))

@@ -11,7 +11,7 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Constant
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.replay import replayed
+from rulec.monitoring.online.replay import replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import Violation
 from rulec.rulebook.loader import parse_rulebook
@@ -242,7 +242,7 @@ def test_a_recorded_trace_is_taken_state_by_state():
     """What it says of objects that are not there is no matter, as for `verify`."""
     places = [{"place": {"a": "far", "b": "near"}}, {"place": {"a": "near", "b": "far"}}]
     trace = Trace("t", 1.0, CARS, tuple(places), {"b": (0, 0)})
-    judge = replayed(trace, compile_rulebook(book(NEVER_FAR)))
+    judge = replay_trace(trace, compile_rulebook(book(NEVER_FAR)))
     assert judge.objects == {"a": "car"}
     assert judge.violations == (Violation("never_far", "hard", {"x": "a"}, 0),)
 

@@ -212,7 +212,7 @@ def test_what_it_has_learnt_can_be_forgotten_at_any_time(rulebook, journey):
     one, other = Monitor(rules), Monitor(rules)
     for state, objects in journey:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr("rulec.monitoring.online.running_monitor.MOST_LEARNED", 0)
+            patched.setattr("rulec.monitoring.online.running_monitor.MOST_CACHED", 0)
             patched.setattr("rulec.monitoring.online.group_letters.MOST", 1)
             forgetful = answer(one, state, objects)
         assert forgetful == answer(other, state, objects)

@@ -1,11 +1,15 @@
-"""Do objects and states fit a vocabulary? Without a full answer there is no verdict."""
+"""Validation of objects and states against a vocabulary.
+
+Without a full answer there is no verdict. ``StateValidator`` first takes a quick look; what does
+not pass it goes to ``check_state``, which knows the rare types and says what is wrong.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
@@ -13,11 +17,67 @@ from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
+NUMBERS = frozenset({int, float})
+TRUTHS = frozenset({bool})
+"""The plain types of quantities and signals; others, such as a library's, take longer."""
+
+_Look: TypeAlias = Callable[[Any], bool]
+
+
+class StateValidator:
+    """Checks of states in which these objects, of types that the vocabulary knows, are present."""
+
+    def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
+        self._vocabulary = vocabulary
+        self._objects = objects
+        self._looks = _Looks(vocabulary, objects)
+
+    def check(
+        self,
+        states: Iterable[State],
+        where: Callable[[int], str],
+        place: SourceLocation | None = None,
+    ) -> None:
+        """Check each state as ``check_state`` does; ``where`` names it by its number."""
+        for number, state in enumerate(states):
+            if not self.passes(state):
+                check_state(state, self._objects, self._vocabulary, where(number), place)
+
+    def passes(self, state: Any) -> bool:
+        """Whether a state plainly fits; one that does not may fit all the same."""
+        looks = self._looks
+        try:
+            if type(state) is not dict:
+                return False
+            return all([looks[name](value) for name, value in state.items()])  # noqa: C419 - faster
+        except (LookupError, TypeError, OverflowError):
+            return False
+
+
+class _Looks(dict[str, _Look]):
+    """A quick look at the values of each name, compiled when the name is first met."""
+
+    def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
+        self._vocabulary = vocabulary
+        self._objects = objects
+
+    def __missing__(self, name: str) -> _Look:
+        vocabulary = self._vocabulary
+        declaration = vocabulary.declarations[name]
+        fitting = [
+            frozenset(
+                item for item, own in self._objects.items() if vocabulary.is_subtype(own, kind)
+            )
+            for kind in declaration.parameters
+        ]
+        self[name] = _look(declaration, fitting)
+        return self[name]
+
 
 def check_objects(
     objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Every object is of a type that the vocabulary knows. Raises RulecError R0505."""
+    """Check that the vocabulary knows the type of every object. Raises RulecError R0505."""
     for name, kind in objects.items():
         if kind not in vocabulary.types:
             raise UNKNOWN_OBJECT.error(
@@ -35,9 +95,9 @@ def check_state(
     where: str,
     place: SourceLocation | None = None,
 ) -> None:
-    """Every name and value of a state fits its declaration. Raises RulecError R0502, R0503, R0505.
+    """Check that every name and value of a state fits its declaration.
 
-    ``where`` names the state in messages.
+    ``where`` names the state in messages. Raises RulecError R0502, R0503 or R0505.
     """
     for name, value in state.items():
         declaration = vocabulary.declarations.get(name)
@@ -81,6 +141,43 @@ def _check_value(
             )
             raise UNKNOWN_OBJECT.error(place, message)
         _check_value(inner, declaration, parameters[1:], objects, vocabulary, where, place)
+
+
+def _look(declaration: Declaration, fitting: list[frozenset[str]]) -> _Look:
+    if not fitting:
+        return _one_value(declaration)
+    values = _many_values(declaration)
+    if len(fitting) == 1:
+        (objects,) = fitting
+        return lambda given: (
+            type(given) is dict and objects.issuperset(given) and values(given.values())
+        )
+    objects, inner = fitting[0], _look(declaration, fitting[1:])
+    return lambda given: (
+        type(given) is dict and objects.issuperset(given) and all(map(inner, given.values()))
+    )
+
+
+def _one_value(declaration: Declaration) -> _Look:
+    match declaration:
+        case Enumeration():
+            return frozenset(declaration.values).__contains__
+        case Signal():
+            return lambda value: type(value) is bool
+        case Quantity():
+            return lambda value: type(value) in NUMBERS and math.isfinite(value)
+
+
+def _many_values(declaration: Declaration) -> _Look:
+    match declaration:
+        case Enumeration():
+            return frozenset(declaration.values).issuperset
+        case Signal():
+            return lambda values: TRUTHS.issuperset(map(type, values))
+        case Quantity():
+            return lambda values: (
+                NUMBERS.issuperset(map(type, values)) and all(map(math.isfinite, values))
+            )
 
 
 def _fits(value: Any, declaration: Declaration) -> bool:
@@ -130,7 +227,7 @@ def _shown(value: Any) -> str:
 
 def _suggest(name: str, known: Iterable[str]) -> str:
     # A key that Python code has made may be no text: an object's number, say.
-    known = [str(one) for one in known]
+    known = [str(name) for name in known]
     return did_you_mean(str(name), known) or (f"known: {named(known)}" if known else "")
 
 

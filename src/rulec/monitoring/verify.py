@@ -12,7 +12,7 @@ from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import bindings
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_trace
@@ -32,8 +32,8 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
         if rule.step_s is not None:
             check_step(rule, exact(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
-    for number, state in enumerate(trace.states):
-        check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
+    validator = StateValidator(rulebook.vocabulary, trace.objects)
+    validator.check(trace.states, "state {}".format, trace.place)
     columns = columns_of(trace, rulebook)
     check_counting_axioms(
         rulebook, len(trace.states), columns.moment, "state {}".format, trace.place

@@ -14,7 +14,7 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.online.carried_state import CarriedState
-from rulec.monitoring.online.replay import replayed
+from rulec.monitoring.online.replay import replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.online.snapshot_file import read_saved
 from rulec.monitoring.state_validation import check_objects
@@ -105,7 +105,7 @@ def _monitor(
                 f"the scenario's future of {number_in_words(step_s)} s",
                 before.place,
             )
-        return replayed(before, replace(rulebook, rules=rules)), before.place
+        return replay_trace(before, replace(rulebook, rules=rules)), before.place
     if not isinstance(before, Monitor):
         return Monitor.restore(rulebook, before), None
     known = {rule.name: rule.machine for rule in before.rulebook.rules}

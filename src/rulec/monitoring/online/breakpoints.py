@@ -1,4 +1,4 @@
-"""What rules compare quantities with: on the same side of all of it numbers are alike."""
+"""Breakpoints of quantities: between two neighbours all values are alike for every rule."""
 
 from __future__ import annotations
 
@@ -12,37 +12,37 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.vocabulary import Quantity
 
-Floors: TypeAlias = Mapping[str, tuple[float, ...] | None]
-"""By quantity ``floor_of`` each threshold of any rule, in order; None if every value matters.
+Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
+"""By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
 
 The first is the least number that may be told apart by them, the last the first one beyond.
 """
 
 
-def breakpoints_of(rulebook: CompiledRulebook) -> Floors:
-    """What all rules together compare the quantities of their vocabulary with."""
+def breakpoints_of(rulebook: CompiledRulebook) -> Breakpoints:
+    """The breakpoints of a vocabulary's quantities under all rules together."""
     floors: dict[str, set[float]] = {
         name: set()
-        for name, one in rulebook.vocabulary.declarations.items()
-        if isinstance(one, Quantity)
+        for name, declaration in rulebook.vocabulary.declarations.items()
+        if isinstance(declaration, Quantity)
     }
     all_matter = set[str]()
     for rule in rulebook.rules:
         for read in rule.machine.reads:
             if isinstance(read, NumberRead):
-                about = scale(read)
-                if about.quantity is None:
-                    all_matter.update(about.names)
+                threshold_scale = scale(read)
+                if threshold_scale.quantity is None:
+                    all_matter.update(threshold_scale.names)
                 else:
-                    floors[about.quantity.name].update(about.floors)
-    if any(counts(fact.formula) for fact in rulebook.axioms):
-        all_matter.update(name for fact in rulebook.axioms for name in names_in(fact.formula))
+                    floors[threshold_scale.quantity.name].update(threshold_scale.floors)
+    if any(counts(axiom.formula) for axiom in rulebook.axioms):
+        all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
     return {
-        name: None if name in all_matter else _within_reach(those) for name, those in floors.items()
+        name: None if name in all_matter else _within_reach(own) for name, own in floors.items()
     }
 
 
 def _within_reach(floors: Iterable[float]) -> tuple[float, ...]:
     # Beyond, whole numbers and floats are no longer told apart by the same floors.
     most = float(EXACT_IN_FLOATS)
-    return (-most, *sorted([one for one in floors if -most < one < most]), most)
+    return (-most, *sorted([floor for floor in floors if -most < floor < most]), most)

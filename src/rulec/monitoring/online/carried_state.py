@@ -1,4 +1,4 @@
-"""What has been before a graph begins, as far as it bears on what can come."""
+"""The past of a graph, as far as it bears on what can come."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True)
 class CarriedState:
-    """Where machines stand whose objects stay, and what is violated for good.
+    """States of the machines whose objects stay, and what is violated for good.
 
     ``settled`` are rules for objects that stay that are among the ``violations``.
     """

@@ -1,4 +1,8 @@
-"""What can be said of a trace that is still running."""
+"""Four-valued verdicts on running traces, and Mealy monitors as linked edges.
+
+RV-LTL: A. Bauer, M. Leucker, C. Schallhart, "Comparing LTL semantics for runtime verification",
+Journal of Logic and Computation 20(3), 2010.
+"""
 
 from __future__ import annotations
 
@@ -8,69 +12,69 @@ from typing import Literal, TypeAlias
 
 from rulec.automata.mealy_monitor import MealyMonitor
 
-Prefix: TypeAlias = Literal["satisfied", "violated", "holds so far", "pending"]
-"""``satisfied`` and ``violated`` are final, however the trace goes on, and if it ends here.
+FourValued: TypeAlias = Literal["satisfied", "violated", "holds so far", "pending"]
+"""RV-LTL's true, false, presumably true and presumably false.
 
-Of the other two the end decides: if it came now, what ``holds so far`` would be kept, and what is
+``satisfied`` and ``violated`` are final, however the trace goes on, and if it ends here. Of the
+other two the end decides: if it came now, what ``holds so far`` would be kept, and what is
 ``pending`` violated.
 """
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Edge:
-    """A machine behind a letter: the state that it led to, and the verdict as of this letter.
+class MonitorEdge:
+    """A monitor behind a letter: the state reached, and the verdict as of this letter.
 
-    ``onward`` has an edge for each class of letters that may come next. Edges of one machine that
+    ``successors`` has an edge for each letter class that may come next. Edges of one monitor that
     are alike are identical.
     """
 
-    onward: list[Edge]
+    successors: list[MonitorEdge]
     state: int
-    verdict: Prefix
+    verdict: FourValued
 
 
 @dataclass(frozen=True, slots=True)
-class VerdictLinks:
-    """A machine as edges that lead to edges.
+class LinkedMonitor:
+    """A Mealy monitor as edges that lead to edges.
 
-    Before its first letter a machine is at ``start``. ``edges`` are all others, by the state that
+    Before its first letter a monitor is at ``start``. ``edges`` are all others, by the state that
     they lead to and the verdict there.
     """
 
-    start: Edge
-    edges: dict[tuple[int, Prefix], Edge]
+    start: MonitorEdge
+    edges: dict[tuple[int, FourValued], MonitorEdge]
 
 
-def linked(machine: MealyMonitor) -> VerdictLinks:
-    """The edges of a machine."""
-    rows: list[list[Edge]] = [[] for _ in machine.successors]
-    edges: dict[tuple[int, Prefix], Edge] = {}
+def linked_monitor(machine: MealyMonitor) -> LinkedMonitor:
+    """Link the edges of a Mealy monitor."""
+    rows: list[list[MonitorEdge]] = [[] for _ in machine.successors]
+    edges: dict[tuple[int, FourValued], MonitorEdge] = {}
     for state, row in enumerate(rows):
         for target, accepted in zip(machine.successors[state], machine.outputs[state], strict=True):
-            verdict = prefix(machine, target, accepted=accepted)
+            verdict = four_valued(machine, target, accepted=accepted)
             if (target, verdict) not in edges:
-                edges[target, verdict] = Edge(rows[target], target, verdict)
+                edges[target, verdict] = MonitorEdge(rows[target], target, verdict)
             row.append(edges[target, verdict])
-    return VerdictLinks(
-        Edge(rows[0], 0, "satisfied" if machine.accepting_sink == 0 else "holds so far"), edges
-    )
+    before_all: FourValued = "satisfied" if machine.accepting_sink == 0 else "holds so far"
+    return LinkedMonitor(MonitorEdge(rows[0], 0, before_all), edges)
 
 
-def prefix(machine: MealyMonitor, state: int, *, accepted: bool) -> Prefix:
-    """What is known of a word that has led to a state, and is accepted or not if it ends here."""
+def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourValued:
+    """The verdict on a word that leads to a state and is accepted or not if it ends here."""
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
     if accepted:
         return "satisfied" if state == machine.accepting_sink else "holds so far"
     return "violated" if state == machine.rejecting_sink else "pending"
 
 
-def together(verdicts: Iterable[Prefix]) -> Prefix:
-    """The verdict on all of several; nothing at all is satisfied."""
-    found = set(verdicts)
-    for worst in _WORST_FIRST:
-        if worst in found:
-            return worst
+def conjunction(verdicts: Iterable[FourValued]) -> FourValued:
+    """The verdict on several rules together; nothing at all is satisfied."""
+    distinct = set(verdicts)
+    for verdict in _WORST_FIRST:
+        if verdict in distinct:
+            return verdict
     return "satisfied"
 
 
-_WORST_FIRST: tuple[Prefix, ...] = ("violated", "pending", "holds so far")
+_WORST_FIRST: tuple[FourValued, ...] = ("violated", "pending", "holds so far")

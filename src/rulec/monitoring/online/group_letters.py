@@ -1,6 +1,6 @@
-"""The letters that teams read of states of one outline, binding by binding.
+"""Letters that rule groups read of states of one shape, binding by binding.
 
-What the world's state and some values come to is worked out once and remembered.
+The letters for one state of the world, and for some values, are computed once and kept.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.online.breakpoints import Floors
-from rulec.monitoring.online.encoded_values import MISSING, Told, default_told, values_of
-from rulec.monitoring.online.letter_inputs import Input
+from rulec.monitoring.online.breakpoints import Breakpoints
+from rulec.monitoring.online.encoded_values import MISSING, Encoded, encoded_default, values_at
+from rulec.monitoring.online.letter_inputs import MonitorInput
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.online.state_shape import Items, StateShape
 from rulec.monitoring.state_view import StateView
@@ -20,17 +20,17 @@ from rulec.trace import State
 from rulec.vocabulary import Enumeration, Vocabulary
 
 MOST = 1 << 12
-"""So much is remembered before it is forgotten again."""
+"""States of the world, and letters of each group in them, kept before all are forgotten."""
 
-_Column: TypeAlias = Callable[[State, Sequence[Told]], Sequence[Any]]
-"""Of a state and its parts what is told of an input, for each of several bindings."""
+_ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
+"""From a state and its parts the encoded values of an input, for each of several bindings."""
 
-_Read: TypeAlias = Callable[[State, Sequence[Told]], Iterable[int]]
-"""Of a state and its parts the letter of each of several bindings. Raises as ``letters``."""
+_ReadLetters: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[int]]
+"""From a state and its parts the letter of each of several bindings. Raises as ``letters``."""
 
 
 class GroupLetters:
-    """Reads states of an outline, for teams with their bindings, of which each has some.
+    """A reader of states of a shape, for groups with one or more bindings each.
 
     Raises:
         LookupError, TypeError: such states need a closer look.
@@ -38,124 +38,139 @@ class GroupLetters:
 
     def __init__(
         self,
-        outline: StateShape,
-        teams: Sequence[tuple[RuleGroup, Sequence[Items]]],
+        shape: StateShape,
+        groups: Sequence[tuple[RuleGroup, Sequence[Items]]],
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
-        floors: Floors,
+        breakpoints: Breakpoints,
     ) -> None:
-        self.outline = outline
-        self._teams = [
-            _OfTeam(team, bindings, outline, objects, vocabulary, floors)
-            for team, bindings in teams
+        self.shape = shape
+        self._readers = [
+            _GroupReader(
+                group,
+                bindings,
+                shape=shape,
+                objects=objects,
+                vocabulary=vocabulary,
+                breakpoints=breakpoints,
+            )
+            for group, bindings in groups
         ]
-        read = set[tuple[str, Items]]().union(*[one.read for one in self._teams])
+        read = set[tuple[str, Items]]().union(*[reader.read for reader in self._readers])
         # Whatever is read is looked at when a letter is made of it for the first time.
         self._unread = list[tuple[int, slice, frozenset[object]]]()
-        for (name, items), (part, place) in outline.places.items():
+        for (name, items), (part, place) in shape.places.items():
             declaration = vocabulary.declarations[name]
             if isinstance(declaration, Enumeration) and (name, items) not in read:
                 values = frozenset([*declaration.values, MISSING])
                 self._unread.append((part, slice(place, place + 1), values))
-        self._known: dict[tuple[Told, ...], list[_Read]] = {}
+        self._by_world: dict[tuple[Encoded, ...], list[_ReadLetters]] = {}
 
-    def letters(self, state: State, parts: tuple[Told, ...]) -> list[int]:
-        """For each binding of each team, one after the other, the letter that it reads.
+    def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
+        """The letter of each binding of each group, one after the other.
 
         Raises a LookupError or a TypeError if the state needs a closer look.
         """
         for part, places, values in self._unread:
             if not values.issuperset(parts[part][places]):
                 raise LookupError
-        world = parts[: self.outline.n_world]
-        known = self._known.get(world)
-        if known is None:
-            if len(self._known) >= MOST:
-                self._known.clear()
-            known = self._known[world] = [one.in_world(world) for one in self._teams]
-        found: list[int] = []
-        for read in known:
-            found += read(state, parts)
-        return found
+        world = parts[: self.shape.n_world]
+        in_world = self._by_world.get(world)
+        if in_world is None:
+            if len(self._by_world) >= MOST:
+                self._by_world.clear()
+            in_world = [reader.in_world(world) for reader in self._readers]
+            self._by_world[world] = in_world
+        letters: list[int] = []
+        for read in in_world:
+            letters += read(state, parts)
+        return letters
 
 
-class _Letters(dict[Any, int]):
-    """A team's letters by what is told of its own inputs, with the digits of all others.
+class _LetterTable(dict[Any, int]):
+    """A group's letters by the encoded values of its own inputs, with the digits of all others.
 
-    What is told of a single input stands for itself, of several it is a tuple.
+    The encoded value of a single input stands for itself, those of several are a tuple.
     """
 
     def __init__(
-        self, team: RuleGroup, own: Sequence[Input], others: Mapping[Input, Any], floors: Floors
+        self,
+        group: RuleGroup,
+        own: Sequence[MonitorInput],
+        others: Mapping[MonitorInput, Any],
+        breakpoints: Breakpoints,
     ) -> None:
-        self._team = team
+        self._group = group
         self._own = own
         self._others = others
-        self._floors = floors
+        self._breakpoints = breakpoints
 
     def __missing__(self, key: Any) -> int:
-        told = (key,) if len(self._own) == 1 else key
-        own = {
-            one: one.digit(each, self._floors) for one, each in zip(self._own, told, strict=True)
+        encoded = (key,) if len(self._own) == 1 else key
+        digits = {
+            read: read.digit(value, self._breakpoints)
+            for read, value in zip(self._own, encoded, strict=True)
         }
-        found = self._team.letter_of({**self._others, **own})
+        letter = self._group.letter_of({**self._others, **digits})
         if len(self) >= MOST:
             self.clear()
-        self[key] = found
-        return found
+        self[key] = letter
+        return letter
 
 
-class _OfTeam:
-    """What reads the letters of a team; ``read`` are the values that it looks at."""
+class _GroupReader:
+    """The reader of a group's letters; ``read`` are the values that it looks at."""
 
     def __init__(
         self,
-        team: RuleGroup,
+        group: RuleGroup,
         bindings: Sequence[Items],
-        outline: StateShape,
+        *,
+        shape: StateShape,
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
-        floors: Floors,
+        breakpoints: Breakpoints,
     ) -> None:
         self.read = set[tuple[str, Items]]()
-        self._team = team
-        self._floors = floors
+        self._group = group
+        self._breakpoints = breakpoints
         self._n_bindings = len(bindings)
-        self._not_given: dict[Input, Any] = {}
-        self._world: list[tuple[Input, int, int]] = []
-        self._own: list[Input] = []
-        self._columns: list[_Column] = []
-        # The parts that are columns as they are; None for what is to be made of a state first.
+        self._not_given: dict[MonitorInput, Any] = {}
+        self._world: list[tuple[MonitorInput, int, int]] = []
+        self._own: list[MonitorInput] = []
+        self._columns: list[_ReadColumn] = []
+        # The parts that are columns as they are; None for columns made of a state first.
         whole: list[int | None] = []
-        for one in (*team.world, *team.own):
-            about = [tuple([binding[place] for place in one.places]) for binding in bindings]
-            if one.name is None:
-                self._own.append(one)
-                self._columns.append(_summed(one, about, objects, vocabulary))
+        for read in (*group.world, *group.own):
+            about = [tuple([binding[place] for place in read.places]) for binding in bindings]
+            if read.name is None:
+                self._own.append(read)
+                self._columns.append(_sum_column(read, about, objects, vocabulary))
                 whole.append(None)
                 continue
-            if one.name not in outline.names:
-                default = default_told(vocabulary.declarations[one.name], floors)
-                self._not_given[one] = one.digit(default, floors)
+            if read.name not in shape.names:
+                default = encoded_default(vocabulary.declarations[read.name], breakpoints)
+                self._not_given[read] = read.digit(default, breakpoints)
                 continue
-            self.read.update((one.name, items) for items in about)
-            places = [outline.places[one.name, items] for items in about]
-            if one.places:
-                part = _whole_part(places, outline)
-                self._own.append(one)
-                self._columns.append(_given(places) if part is None else _all_of(part))
+            self.read.update((read.name, items) for items in about)
+            places = [shape.places[read.name, items] for items in about]
+            if read.places:
+                part = _whole_part(places, shape)
+                self._own.append(read)
+                self._columns.append(_values_column(places) if part is None else _part_column(part))
                 whole.append(part)
             else:
-                self._world.append((one, *places[0]))
+                self._world.append((read, *places[0]))
         self._whole = None if None in whole else [part for part in whole if part is not None]
 
-    def in_world(self, world: Sequence[Told]) -> _Read:
-        """What reads a letter for each binding where the parts about the world are these."""
+    def in_world(self, world: Sequence[Encoded]) -> _ReadLetters:
+        """The function that reads a letter for each binding in this state of the world."""
         digits = {
-            one: one.digit(world[part][place], self._floors) for one, part, place in self._world
+            read: read.digit(world[part][place], self._breakpoints)
+            for read, part, place in self._world
         }
         others = {**self._not_given, **digits}
-        letter = _Letters(self._team, self._own, others, self._floors).__getitem__
+        letter = _LetterTable(self._group, self._own, others, self._breakpoints).__getitem__
         if not self._columns:
             return lambda *_: (letter(()),) * self._n_bindings
         if len(self._columns) == 1:
@@ -169,34 +184,37 @@ class _OfTeam:
         )
 
 
-def _whole_part(places: Sequence[tuple[int, int]], outline: StateShape) -> int | None:
-    """The part whose values stand at just these places, in this order."""
+def _whole_part(places: Sequence[tuple[int, int]], shape: StateShape) -> int | None:
+    """The part whose values have just these places, in this order."""
     part = places[0][0]
-    return part if places == [(part, place) for place in range(outline.sizes[part])] else None
+    return part if places == [(part, place) for place in range(shape.sizes[part])] else None
 
 
-def _all_of(part: int) -> _Column:
+def _part_column(part: int) -> _ReadColumn:
     return lambda _, parts: parts[part]
 
 
-def _given(places: Sequence[tuple[int, int]]) -> _Column:
-    """What is told at these places, which are all in one part."""
-    part, pick = places[0][0], values_of([place for _, place in places])
+def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
+    """The encoded values at these places, which are all in one part."""
+    part, pick = places[0][0], values_at([place for _, place in places])
     return lambda _, parts: pick(parts[part])
 
 
-def _summed(
-    one: Input, about: Sequence[Items], objects: Mapping[str, str], vocabulary: Vocabulary
-) -> _Column:
-    number = one.number
+def _sum_column(
+    read: MonitorInput,
+    about: Sequence[Items],
+    objects: Mapping[str, str],
+    vocabulary: Vocabulary,
+) -> _ReadColumn:
+    number = read.number
     assert number is not None
-    bound = [dict(zip(one.variables, items, strict=True)) for items in about]
+    bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
 
-    def column(state: State, _: Sequence[Told]) -> Sequence[int]:
-        moment = StateView(state, objects, vocabulary)
-        found = [weighted_sum(number.terms, each, moment) for each in bound]
-        if any(isinstance(each, Unknown) for each in found):
+    def column(state: State, _: Sequence[Encoded]) -> Sequence[int]:
+        view = StateView(state, objects, vocabulary)
+        totals = [weighted_sum(number.terms, binding, view) for binding in bindings]
+        if any(isinstance(value, Unknown) for value in totals):
             raise LookupError
-        return [number.digit(each) for each in found if not isinstance(each, Unknown)]
+        return [number.digit(value) for value in totals if not isinstance(value, Unknown)]
 
     return column

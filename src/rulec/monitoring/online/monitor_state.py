@@ -1,4 +1,4 @@
-"""Where a monitor stands: frozen, so that a state that is refused changes nothing."""
+"""States of a running monitor: frozen, so that a state that is refused changes nothing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,16 @@ from typing import NamedTuple, TypeAlias
 import msgspec
 
 from rulec.monitoring.online.bound_rules import BoundRules, Letters
-from rulec.monitoring.online.four_valued import Edge, Prefix, together
-from rulec.monitoring.online.rule_group import Node, OtherVerdictError, Ready, RuleGroup
+from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, conjunction
+from rulec.monitoring.online.rule_group import (
+    GroupNode,
+    OtherVerdictError,
+    PreparedRule,
+    RuleGroup,
+)
 
 
-class Change(NamedTuple):
+class VerdictChange(NamedTuple):
     """A rule's verdict for some objects is not what it was before this state.
 
     Objects that have just come count as having held so far. ``ended`` says that their time together
@@ -23,13 +28,13 @@ class Change(NamedTuple):
 
     rule: str
     binding: Mapping[str, str]
-    before: Prefix
-    verdict: Prefix
+    before: FourValued
+    verdict: FourValued
     ended: bool = False
 
 
 class SoFar(msgspec.Struct, frozen=True, gc=False):
-    """What a state has led to.
+    """The verdicts as of a state.
 
     ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
     each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
@@ -37,150 +42,170 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
     # A struct is made several times as quickly as a dataclass or a named tuple.
     state: int
-    verdict: Prefix
-    rules: Mapping[str, Prefix]
-    changes: tuple[Change, ...] = ()
+    verdict: FourValued
+    rules: Mapping[str, FourValued]
+    changes: tuple[VerdictChange, ...] = ()
 
 
 class MonitorState(msgspec.Struct, frozen=True, eq=False):
-    """Everything that a monitor knows while nobody comes or goes, but for the number of the state.
+    """All that a monitor knows while no object comes or goes, but for the number of the state.
 
-    ``nodes`` say where the machines of each team stand for each binding, in the order of the
-    scene's teams. ``n_violations`` is how many bindings have violated their rule for good.
-    ``after`` is what is remembered of the standings behind this one, by the keys of states.
+    ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
+    ``n_violations`` is how many bindings have violated their rule for good. ``after`` is a cache of
+    the steps that follow, by the keys of states.
     """
 
-    scene: BoundRules
-    nodes: tuple[Node, ...]
-    verdict: Prefix
-    rules: Mapping[str, Prefix]
+    bound_rules: BoundRules
+    nodes: tuple[GroupNode, ...]
+    verdict: FourValued
+    rules: Mapping[str, FourValued]
     n_violations: int
-    after: dict[Hashable, Onward] = msgspec.field(default_factory=dict)
+    after: dict[Hashable, StepResult] = msgspec.field(default_factory=dict)
 
 
-Onward: TypeAlias = tuple[MonitorState, tuple[Change, ...]]
-"""Where a state leads, and what changes by it."""
+StepResult: TypeAlias = tuple[MonitorState, tuple[VerdictChange, ...]]
+"""The next state of a monitor, and what changes by the step."""
 
 
-def beginning(scene: BoundRules) -> MonitorState:
-    """Before the first state."""
+def initial_state(bound_rules: BoundRules) -> MonitorState:
+    """The monitor's state before the first state of a trace."""
     start = {
-        crowd.ready.rule.name: [crowd.ready.links.start] * len(crowd.bindings)
-        for crowd in scene.crowds
+        bound_rule.prepared.name: [bound_rule.prepared.monitor.start] * len(bound_rule.bindings)
+        for bound_rule in bound_rules.rules
     }
-    return standing_at(scene, start, frozenset(), 0)
+    return state_at(bound_rules, start, frozenset(), 0)
 
 
-def standing_at(
-    scene: BoundRules, edges: Mapping[str, Sequence[Edge]], lost: Set[str], n_violations: int
+def state_at(
+    bound_rules: BoundRules,
+    edges: Mapping[str, Sequence[MonitorEdge]],
+    violated_rules: Set[str],
+    n_violations: int,
 ) -> MonitorState:
-    """Behind a state; ``lost`` are the rules that have been violated for good by then."""
-    return _standing(scene, nodes_at(scene, edges), lost, n_violations, {})
+    """The monitor's state with these edges for each rule and binding.
+
+    ``violated_rules`` are those that have been violated for good by then.
+    """
+    nodes = nodes_at(bound_rules, edges)
+    return _with_verdicts(bound_rules, nodes, violated_rules, n_violations, {})
 
 
-def nodes_at(scene: BoundRules, edges: Mapping[str, Sequence[Edge]]) -> tuple[Node, ...]:
-    """The nodes where the machines stand at these edges, given for each rule and binding."""
-    found: list[Node] = []
-    for team in scene.teams.teams:
-        each = [edges[ready.rule.name] for ready in team.rules]
-        found += [team.node(one) for one in zip(*each, strict=True)]
-    return tuple(found)
+def nodes_at(
+    bound_rules: BoundRules, edges: Mapping[str, Sequence[MonitorEdge]]
+) -> tuple[GroupNode, ...]:
+    """The nodes with these edges, given for each rule and binding."""
+    nodes: list[GroupNode] = []
+    for group in bound_rules.groups.groups:
+        by_rule = [edges[prepared.name] for prepared in group.rules]
+        nodes += [group.node(of_binding) for of_binding in zip(*by_rule, strict=True)]
+    return tuple(nodes)
 
 
-def onward(here: MonitorState, scene: BoundRules, letters: Letters) -> Onward:
-    """Behind one more state, with a scene that may be another, and what its teams read.
+def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) -> StepResult:
+    """Take one step with these letters; the rules may be bound to other objects now.
 
     Takes no longer for a long past than for a short one.
     """
-    changes: list[Change] = []
-    if scene is here.scene:
-        before = here.nodes
+    changes: list[VerdictChange] = []
+    if bound_rules is current.bound_rules:
+        before = current.nodes
         try:
             nodes = tuple(map(getitem, before, letters))
         except OtherVerdictError:
             pass
         else:
-            return MonitorState(scene, nodes, here.verdict, here.rules, here.n_violations), ()
+            rules = current.rules
+            return MonitorState(
+                bound_rules, nodes, current.verdict, rules, current.n_violations
+            ), ()
     else:
-        edges, changes = carried_over(here.scene, here.nodes, scene)
-        before = nodes_at(scene, edges)
-    nodes = tuple([node.behind(letter) for node, letter in zip(before, letters, strict=True)])
-    changes += _changes(scene, before, nodes)
-    lost = {rule for rule, verdict in here.rules.items() if verdict == "violated"}
-    lost.update(one.rule for one in changes if one.verdict == "violated")
-    violated = here.n_violations + sum(one.verdict == "violated" for one in changes)
-    # A rule says something else only if it does so of somebody who stays, comes or leaves.
-    unchanged = here.rules.keys() - {one.rule for one in changes}
-    known = {rule: here.rules[rule] for rule in unchanged}
-    after = _standing(scene, nodes, lost, violated, known)
+        edges, changes = carry_over(current.bound_rules, current.nodes, bound_rules)
+        before = nodes_at(bound_rules, edges)
+    nodes = tuple([node.successor(letter) for node, letter in zip(before, letters, strict=True)])
+    changes += _changes(bound_rules, before, nodes)
+    violated_rules = {rule for rule, verdict in current.rules.items() if verdict == "violated"}
+    violated_rules.update(change.rule for change in changes if change.verdict == "violated")
+    n_violations = current.n_violations + sum(change.verdict == "violated" for change in changes)
+    # A rule's verdict changes only if it does so for an object that stays, comes or leaves.
+    unchanged = current.rules.keys() - {change.rule for change in changes}
+    known = {rule: current.rules[rule] for rule in unchanged}
+    after = _with_verdicts(bound_rules, nodes, violated_rules, n_violations, known)
     return after, tuple(changes)
 
 
-def carried_over(
-    scene: BoundRules, nodes: Sequence[Node], into: BoundRules
-) -> tuple[dict[str, list[Edge]], list[Change]]:
-    """Where the bindings of a scene stand at first that follows upon another, by rule.
+def carry_over(
+    bound_rules: BoundRules, nodes: Sequence[GroupNode], into: BoundRules
+) -> tuple[dict[str, list[MonitorEdge]], list[VerdictChange]]:
+    """The edges, by rule, with which bindings begin when the objects have changed.
 
     A binding goes on if its objects have stayed, that is, are there under the same names and of the
     same types; others start. There are also the changes by bindings that end.
     """
-    stayed = {name for name, kind in scene.objects.items() if into.objects.get(name) == kind}
-    entered: dict[str, list[Edge]] = {}
-    ended: list[Change] = []
-    for before, after in zip(scene.crowds, into.crowds, strict=True):
-        ready = after.ready
+    stayed = {name for name, kind in bound_rules.objects.items() if into.objects.get(name) == kind}
+    entered: dict[str, list[MonitorEdge]] = {}
+    ended: list[VerdictChange] = []
+    for before, after in zip(bound_rules.rules, into.rules, strict=True):
+        prepared = after.prepared
         known = {}
         for items, edge in zip(before.bindings, before.edges(nodes), strict=True):
             if stayed.issuperset(items):
                 known[items] = edge
             elif edge.verdict == "pending":
-                bound = MappingProxyType(ready.bound(items))
-                ended.append(Change(ready.rule.name, bound, "pending", "violated", True))
-        entered[ready.rule.name] = [known.get(items, ready.links.start) for items in after.bindings]
+                binding = MappingProxyType(prepared.bound(items))
+                ended.append(VerdictChange(prepared.name, binding, "pending", "violated", True))
+        entered[prepared.name] = [
+            known.get(items, prepared.monitor.start) for items in after.bindings
+        ]
     return entered, ended
 
 
-def _changes(scene: BoundRules, before: Sequence[Node], after: Sequence[Node]) -> Iterator[Change]:
+def _changes(
+    bound_rules: BoundRules, before: Sequence[GroupNode], after: Sequence[GroupNode]
+) -> Iterator[VerdictChange]:
     """The bindings with another verdict than before."""
-    places: dict[RuleGroup, list[int]] = {}
-    for place, (here, there) in enumerate(zip(before, after, strict=True)):
-        if here.verdicts != there.verdicts:
-            places.setdefault(there.team, []).append(place)
-    for crowd in scene.crowds:
-        for place in places.get(crowd.team, ()):
-            old, new = before[place].edges[crowd.number], after[place].edges[crowd.number]
-            if old.verdict != new.verdict:
-                bound = MappingProxyType(
-                    crowd.ready.bound(crowd.bindings[place - crowd.place.start])
-                )
-                yield Change(crowd.ready.rule.name, bound, old.verdict, new.verdict)
+    changed: dict[RuleGroup, list[int]] = {}
+    for place, (node_before, node) in enumerate(zip(before, after, strict=True)):
+        if node_before.verdicts != node.verdicts:
+            changed.setdefault(node.group, []).append(place)
+    for bound_rule in bound_rules.rules:
+        prepared, number = bound_rule.prepared, bound_rule.number
+        for place in changed.get(bound_rule.group, ()):
+            old, new = before[place].edges[number].verdict, after[place].edges[number].verdict
+            if old != new:
+                items = bound_rule.bindings[place - bound_rule.places.start]
+                binding = MappingProxyType(prepared.bound(items))
+                yield VerdictChange(prepared.name, binding, old, new)
 
 
-def _standing(
-    scene: BoundRules,
-    nodes: tuple[Node, ...],
-    lost: Set[str],
+def _with_verdicts(
+    bound_rules: BoundRules,
+    nodes: tuple[GroupNode, ...],
+    violated_rules: Set[str],
     n_violations: int,
-    known: Mapping[str, Prefix],
+    known: Mapping[str, FourValued],
 ) -> MonitorState:
-    """``lost`` are the rules that have been violated for good, by objects now there or not.
+    """The monitor's state with these nodes.
 
-    Of some rules the verdict is ``known``.
+    ``violated_rules`` are violated for good, by objects now present or not. Of some rules the
+    verdict is ``known``.
     """
     rules = {
-        crowd.ready.rule.name: known.get(crowd.ready.rule.name)
-        or _verdict_on(crowd.ready, crowd.edges(nodes), lost)
-        for crowd in scene.crowds
+        bound_rule.prepared.name: known.get(bound_rule.prepared.name)
+        or _verdict_on(bound_rule.prepared, bound_rule.edges(nodes), violated_rules)
+        for bound_rule in bound_rules.rules
     }
-    verdict = together(rules[rule] for rule in scene.hard)
-    return MonitorState(scene, nodes, verdict, MappingProxyType(rules), n_violations)
+    verdict = conjunction(rules[rule] for rule in bound_rules.hard)
+    return MonitorState(bound_rules, nodes, verdict, MappingProxyType(rules), n_violations)
 
 
-def _verdict_on(ready: Ready, edges: Sequence[Edge], lost: Set[str]) -> Prefix:
-    if ready.rule.name in lost:
+def _verdict_on(
+    prepared: PreparedRule, edges: Sequence[MonitorEdge], violated_rules: Set[str]
+) -> FourValued:
+    if prepared.name in violated_rules:
         return "violated"
-    found = together({edge.verdict for edge in edges})
-    # What all who are there have satisfied for good another may still come and violate.
-    if found == "satisfied" and ready.rule.variables and ready.rule.machine.accepting_sink != 0:
+    verdict = conjunction({edge.verdict for edge in edges})
+    # What all that are present have satisfied for good another may still come and violate.
+    rule = prepared.rule
+    if verdict == "satisfied" and rule.variables and rule.machine.accepting_sink != 0:
         return "holds so far"
-    return found
+    return verdict

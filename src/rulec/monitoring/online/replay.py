@@ -1,4 +1,4 @@
-"""A trace that has been recorded whole, given to a monitor state by state."""
+"""Replay of recorded traces: a monitor takes their states one by one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.trace import State, Trace
 from rulec.trace.trace_validation import check_trace
 
 
-def replayed(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
+def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     """A monitor behind the last state of a trace.
 
     Raises:
@@ -24,13 +24,13 @@ def replayed(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
-        there = present_in(number, trace.objects, trace.present)
-        monitor.step(said_of(there, state), there, trace.place)
+        present = present_in(number, trace.objects, trace.present)
+        monitor.step(_restricted_to(present, state), present, trace.place)
     return monitor
 
 
-def said_of(objects: Container[str], state: State) -> State:
-    """What a state says of the world and of these objects."""
+def _restricted_to(objects: Container[str], state: State) -> State:
+    """The values of the world and of these objects."""
     return {name: _of(objects, value) for name, value in state.items()}
 
 

@@ -1,7 +1,8 @@
-"""Rules about the same kinds of objects, whose machines take one step together.
+"""Groups of rules about the same types of objects, whose machines take one step together.
 
-For objects that such rules are bound to, where all their machines stand is one node, and what all
-of them read in a state is one letter. Nodes and letters are made when they are first met.
+For objects that such rules are bound to, the states of all their machines are one node, and what
+all of them read in a state is one letter. The product is built lazily: nodes and letters are made
+when they are first met.
 """
 
 from __future__ import annotations
@@ -12,63 +13,76 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.monitoring.online.breakpoints import Floors, breakpoints_of
-from rulec.monitoring.online.four_valued import Edge, Prefix, VerdictLinks, linked
-from rulec.monitoring.online.letter_inputs import Input, Weigh, inputs_of
+from rulec.monitoring.online.breakpoints import Breakpoints, breakpoints_of
+from rulec.monitoring.online.four_valued import (
+    FourValued,
+    LinkedMonitor,
+    MonitorEdge,
+    linked_monitor,
+)
+from rulec.monitoring.online.letter_inputs import DigitWeight, MonitorInput, monitor_inputs
 
-MOST_LEARNED = 1 << 18
-"""So many nodes, letters and ways between nodes are remembered before they are forgotten again."""
+MOST_CACHED = 1 << 18
+"""Nodes, letters and transitions that are kept before all are forgotten."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ready:
-    """A rule made ready for any objects."""
+class PreparedRule:
+    """A rule prepared for any objects."""
 
     rule: CompiledRule
-    links: VerdictLinks
-    inputs: tuple[tuple[Input, Weigh], ...]
+    monitor: LinkedMonitor
+    inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
+
+    @property
+    def name(self) -> str:
+        """The rule's name."""
+        return self.rule.name
 
     def bound(self, items: Sequence[str]) -> dict[str, str]:
         """Objects by the names of the variables that they stand for."""
-        return dict(zip([one.name for one in self.rule.variables], items, strict=True))
+        return dict(zip([variable.name for variable in self.rule.variables], items, strict=True))
 
 
 class OtherVerdictError(Exception):
     """Behind this letter a rule's verdict is another one."""
 
 
-class Node(dict[int, "Node"]):
-    """Where the machines of a team stand, and behind each letter where they will stand then.
+class GroupNode(dict[int, "GroupNode"]):
+    """States of a group's machines, and behind each letter their next ones.
 
-    Of letters that change a verdict an OtherVerdictError is raised; ``behind`` takes any.
+    Of letters that change a verdict an OtherVerdictError is raised; ``successor`` takes any.
     """
 
-    __slots__ = ("edges", "team", "verdicts")
+    __slots__ = ("edges", "group", "verdicts")
     __eq__ = object.__eq__
     __hash__ = object.__hash__  # type: ignore[assignment]
 
-    def __init__(self, team: RuleGroup, edges: tuple[Edge, ...]) -> None:
-        self.team = team
+    def __init__(self, group: RuleGroup, edges: tuple[MonitorEdge, ...]) -> None:
+        self.group = group
         self.edges = edges
-        self.verdicts: tuple[Prefix, ...] = tuple([edge.verdict for edge in edges])
+        self.verdicts: tuple[FourValued, ...] = tuple([edge.verdict for edge in edges])
 
-    def __missing__(self, letter: int) -> Node:
-        node = self.behind(letter)
+    def __missing__(self, letter: int) -> GroupNode:
+        node = self.successor(letter)
         if node.verdicts != self.verdicts:
             raise OtherVerdictError
         self[letter] = node
-        self.team.learned.n += 1
+        self.group.cache_size.n += 1
         return node
 
-    def behind(self, letter: int) -> Node:
-        """Where the machines stand behind a letter."""
-        classes = self.team.classes[letter]
-        edges = [edge.onward[one] for edge, one in zip(self.edges, classes, strict=True)]
-        return self.team.node(tuple(edges))
+    def successor(self, letter: int) -> GroupNode:
+        """The node behind a letter."""
+        classes = self.group.classes[letter]
+        edges = [
+            edge.successors[letter_class]
+            for edge, letter_class in zip(self.edges, classes, strict=True)
+        ]
+        return self.group.node(tuple(edges))
 
 
-class Learned:
-    """How many nodes, letters and ways between nodes there are."""
+class CacheSize:
+    """How many nodes, letters and transitions there are."""
 
     n = 0
 
@@ -76,27 +90,26 @@ class Learned:
 class RuleGroup:
     """Rules whose variables are of the same types, in the same order.
 
-    ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are those that
-    each letter has for each rule, ``learned`` counts for all teams together.
+    ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
+    classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
     """
 
-    def __init__(self, rules: Sequence[Ready], learned: Learned) -> None:
-        self.learned = learned
+    def __init__(self, rules: Sequence[PreparedRule], cache_size: CacheSize) -> None:
+        self.cache_size = cache_size
         self.rules = tuple(rules)
         self.types = tuple([variable.type for variable in rules[0].rule.variables])
-        inputs = dict.fromkeys(one for ready in rules for one, _ in ready.inputs)
-        self.own = tuple([one for one in inputs if one.places or one.name is None])
-        self.world = tuple([one for one in inputs if one not in self.own])
+        inputs = dict.fromkeys(read for prepared in rules for read, _ in prepared.inputs)
+        self.own = tuple([read for read in inputs if read.places or read.name is None])
+        self.world = tuple([read for read in inputs if read not in self.own])
         self.classes: list[tuple[int, ...]] = []
         self._letters: dict[tuple[int, ...], int] = {}
-        self._nodes: dict[tuple[Edge, ...], Node] = {}
-        self.start = self.node(tuple([ready.links.start for ready in rules]))
+        self._nodes: dict[tuple[MonitorEdge, ...], GroupNode] = {}
 
-    def node(self, edges: tuple[Edge, ...]) -> Node:
+    def node(self, edges: tuple[MonitorEdge, ...]) -> GroupNode:
         """The node with these edges, one for each rule."""
         if edges not in self._nodes:
-            self._nodes[edges] = Node(self, edges)
-            self.learned.n += 1
+            self._nodes[edges] = GroupNode(self, edges)
+            self.cache_size.n += 1
         return self._nodes[edges]
 
     def letter(self, classes: tuple[int, ...]) -> int:
@@ -104,19 +117,19 @@ class RuleGroup:
         if classes not in self._letters:
             self._letters[classes] = len(self.classes)
             self.classes.append(classes)
-            self.learned.n += 1
+            self.cache_size.n += 1
         return self._letters[classes]
 
-    def letter_of(self, digits: dict[Input, Any]) -> int:
+    def letter_of(self, digits: dict[MonitorInput, Any]) -> int:
         """The letter where inputs have these digits.
 
         Raises a LookupError or a TypeError if one is missing or wrong, or if there is no such
         state.
         """
         classes = []
-        for ready in self.rules:
-            number = sum([weigh(digits[one]) for one, weigh in ready.inputs])
-            classes.append(ready.rule.machine.letters[number])
+        for prepared in self.rules:
+            number = sum([weight_of(digits[read]) for read, weight_of in prepared.inputs])
+            classes.append(prepared.rule.machine.letters[number])
         if IMPOSSIBLE in classes:
             raise LookupError
         return self.letter(tuple(classes))
@@ -126,36 +139,38 @@ class RuleGroup:
 class RuleGroups:
     """The rules of a rulebook, one by one and by the types of their variables.
 
-    They learn: which nodes and letters there are, and what leads where. ``floors`` are what they
-    compare quantities with.
+    The groups cache their nodes, letters and transitions.
     """
 
-    rules: tuple[Ready, ...]
-    teams: tuple[RuleGroup, ...]
-    floors: Floors
-    learned: Learned
+    rules: tuple[PreparedRule, ...]
+    groups: tuple[RuleGroup, ...]
+    breakpoints: Breakpoints
+    cache_size: CacheSize
 
-    def forgetful(self) -> RuleGroups:
-        """The same, but for what they have learnt."""
-        return _by_types(self.rules, self.floors)
+    def without_cache(self) -> RuleGroups:
+        """These groups as they were at first."""
+        return _by_types(self.rules, self.breakpoints)
 
 
 def rule_groups(rulebook: CompiledRulebook) -> RuleGroups:
-    """The rules of a rulebook, made ready."""
+    """Prepare the rules of a rulebook."""
     vocabulary = rulebook.vocabulary
     return _by_types(
         [
-            Ready(rule, linked(rule.machine), tuple(inputs_of(rule, vocabulary)))
+            PreparedRule(
+                rule, linked_monitor(rule.machine), tuple(monitor_inputs(rule, vocabulary))
+            )
             for rule in rulebook.rules
         ],
         breakpoints_of(rulebook),
     )
 
 
-def _by_types(rules: Sequence[Ready], floors: Floors) -> RuleGroups:
-    by_types: dict[tuple[str, ...], list[Ready]] = {}
-    for one in rules:
-        by_types.setdefault(tuple([each.type for each in one.rule.variables]), []).append(one)
-    learned = Learned()
-    teams = tuple([RuleGroup(team, learned) for team in by_types.values()])
-    return RuleGroups(tuple(rules), teams, floors, learned)
+def _by_types(rules: Sequence[PreparedRule], breakpoints: Breakpoints) -> RuleGroups:
+    by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
+    for prepared in rules:
+        types = tuple([variable.type for variable in prepared.rule.variables])
+        by_types.setdefault(types, []).append(prepared)
+    cache_size = CacheSize()
+    groups = tuple([RuleGroup(members, cache_size) for members in by_types.values()])
+    return RuleGroups(tuple(rules), groups, breakpoints, cache_size)

@@ -1,4 +1,4 @@
-"""A trace judged while it runs, state by state."""
+"""A runtime monitor: a trace verified state by state while it runs."""
 
 from __future__ import annotations
 
@@ -13,29 +13,33 @@ from rulec.monitoring.letter_reader import NOBODY
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.monitor_state import (
-    Change,
     MonitorState,
     SoFar,
-    beginning,
-    carried_over,
-    onward,
+    VerdictChange,
+    carry_over,
+    initial_state,
+    take_step,
 )
-from rulec.monitoring.online.rule_group import MOST_LEARNED, rule_groups
+from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, step_in, to_data
+from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
 
-_Now: TypeAlias = tuple[MonitorState, int, tuple[Change, ...]]
-"""Where a monitor stands, behind which state, and what has changed by that."""
+_Now: TypeAlias = tuple[MonitorState, int, tuple[VerdictChange, ...], TransitionCache]
+"""The monitor's state, the number of the trace's last state, its changes, and a cache of steps.
+
+They are one value, so that an interrupted step leaves none of them behind.
+"""
 
 
 class Monitor:
-    """Judges a trace whose states come one after the other.
+    """A monitor of a trace whose states come one after the other.
 
-    A step takes as long after a million states as after one: what has been is known by the states
-    of the rules' machines, one for each binding of a rule to objects that are there.
+    A step takes as long after a million states as after one: the past is known by the states
+    of the rules' machines, one for each binding of a rule to objects that are present.
 
     Args:
         rulebook: the rules; they are not compiled here.
@@ -55,7 +59,8 @@ class Monitor:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        self._now: _Now = beginning(BoundRules(rulebook, rule_groups(rulebook), NOBODY)), -1, ()
+        start = initial_state(BoundRules(rulebook, rule_groups(rulebook), NOBODY))
+        self._now: _Now = start, -1, (), TransitionCache()
         self._violations: list[Violation] = []
 
     @property
@@ -70,17 +75,18 @@ class Monitor:
 
     @property
     def so_far(self) -> SoFar:
-        """What the last state has led to; before the first one, the state has the number -1."""
-        return _so_far(*self._now)
+        """The verdicts as of the last state; before the first one, it has the number -1."""
+        current, number, changes, _ = self._now
+        return SoFar(number, current.verdict, current.rules, changes)
 
     @property
     def objects(self) -> Mapping[str, str]:
         """The objects that were there in the last state, with their types."""
-        return dict(self._now[0].scene.objects)
+        return dict(self._now[0].bound_rules.objects)
 
     @property
     def violations(self) -> tuple[Violation, ...]:
-        """All that is violated for good, in the order in which it came to that.
+        """All violations for good, in the order in which they came about.
 
         The ``step`` is that of ``verify``: None if the end of a stretch has decided.
         """
@@ -93,8 +99,8 @@ class Monitor:
 
         Args:
             state: as in a trace.
-            objects: those that are there in it, and their types. Who is no longer among them has
-                left; who comes back later begins anew.
+            objects: those that are present in it, and their types. An object that is no longer
+                among them has left; if it comes back later it begins anew.
             place: where the state was read, for messages.
 
         Returns:
@@ -104,19 +110,18 @@ class Monitor:
             RulecError: R0501 to R0505 or R0508 if the state does not fit the rulebook, as in
                 ``verify``. Then the monitor is as if there had been no such state.
         """
-        here, number, _ = self._now
-        scene = here.scene
-        same_objects = objects == scene.objects
+        current, number, _, cache = self._now
+        same_objects = objects == current.bound_rules.objects
         if same_objects:
             # A method that is looked up and called at once would be looked up in the class first.
-            key = scene.memory.key
+            key = cache.key
             try:
-                after, changes = here.after[key(state)]
+                after, changes = current.after[key(state)]
             except (LookupError, TypeError):
                 pass
             else:
                 number += 1
-                self._now = after, number, changes
+                self._now = after, number, changes, cache
                 return SoFar(number, after.verdict, after.rules, changes)
         return self._step_slowly(state, objects, place, same_objects)
 
@@ -127,60 +132,60 @@ class Monitor:
         place: SourceLocation | None,
         same_objects: bool,
     ) -> SoFar:
-        """As ``step``, whether such a state has been there before or not."""
-        here, number, _ = self._now
+        """Take the next state, whether such a state has been there before or not."""
+        current, number, _, cache = self._now
         number += 1
-        scene = here.scene
+        bound_rules = current.bound_rules
         if same_objects:
             # They may be given in another order.
-            objects = scene.objects
+            objects = bound_rules.objects
         else:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._rulebook.vocabulary, place)
-        is_full = scene.teams.learned.n > MOST_LEARNED
+        is_full = bound_rules.groups.cache_size.n > MOST_CACHED
         if is_full or not same_objects:
-            teams = scene.teams.forgetful() if is_full else scene.teams
-            scene = BoundRules(self._rulebook, teams, objects)
+            groups = bound_rules.groups.without_cache() if is_full else bound_rules.groups
+            bound_rules, cache = BoundRules(self._rulebook, groups, objects), TransitionCache()
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
-        letters, known = scene.read(state, number, place)
-        after, changes = onward(here, scene, letters)
-        same = scene is here.scene and after.n_violations == here.n_violations
+        letters, known = bound_rules.read(state, number, place)
+        after, changes = take_step(current, bound_rules, letters)
+        n_before = current.n_violations
+        same = bound_rules is current.bound_rules and after.n_violations == n_before
         if same and known is not None:
-            after = scene.memory.learn(known, number, here, after, changes)
-        if after.n_violations > here.n_violations:
-            self._note_violations(here.n_violations, number, changes)
+            after = cache.remember(known, number, current=current, after=after, changes=changes)
+        if after.n_violations > n_before:
+            self._note_violations(n_before, number, changes)
         # All at once: whatever interrupts this, the state has been taken or it has not.
-        self._now = after, number, changes
-        return _so_far(after, number, changes)
+        self._now = after, number, changes, cache
+        return SoFar(number, after.verdict, after.rules, changes)
 
     def past(self, objects: Mapping[str, str]) -> CarriedState:
-        """What has been, as far as it bears on a next state in which these objects are there."""
-        here, _, _ = self._now
-        scene = BoundRules(self._rulebook, here.scene.teams, objects)
-        edges, ended = carried_over(here.scene, here.nodes, scene)
+        """The past as far as it bears on a next state in which these objects are present."""
+        current = self._now[0]
+        bound_rules = BoundRules(self._rulebook, current.bound_rules.groups, objects)
+        edges, ended = carry_over(current.bound_rules, current.nodes, bound_rules)
         states, settled = {}, set()
-        for crowd in scene.crowds:
-            for items, edge in zip(crowd.bindings, edges[crowd.ready.rule.name], strict=True):
-                states[crowd.ready.rule.name, items] = edge.state
+        for bound_rule in bound_rules.rules:
+            name = bound_rule.prepared.name
+            for items, edge in zip(bound_rule.bindings, edges[name], strict=True):
+                states[name, items] = edge.state
                 if edge.verdict == "violated":
-                    settled.add((crowd.ready.rule.name, items))
-        lost = [
-            Violation(one.rule, self._strengths[one.rule], dict(one.binding), None) for one in ended
-        ]
+                    settled.add((name, items))
+        lost = [self._violation(change, None) for change in ended]
         return CarriedState(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
-        """Where the monitor stands, for ``restore``: data that JSON can take."""
-        here, number, _ = self._now
-        return to_data(here, number, self._rulebook, self._step_s, self.violations)
+        """The monitor's state, for ``restore``: data that JSON can take."""
+        current, number, *_ = self._now
+        return to_data(current, number, self._rulebook, self._step_s, self.violations)
 
     @classmethod
     def restore(
         cls, rulebook: CompiledRulebook, snapshot: Any, place: SourceLocation | None = None
     ) -> Monitor:
-        """A monitor that goes on where another one stood.
+        """A monitor that goes on where another one stopped.
 
         Args:
             rulebook: the rules of that monitor, or others whose machines are the same.
@@ -191,9 +196,9 @@ class Monitor:
             RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
         monitor = cls(rulebook, step_in(snapshot, rulebook, place))
-        teams = monitor._now[0].scene.teams
-        number, standing, violations = from_data(snapshot, rulebook, teams, place)
-        monitor._now, monitor._violations = (standing, number, ()), violations
+        groups = monitor._now[0].bound_rules.groups
+        number, current, violations = from_data(snapshot, rulebook, groups, place)
+        monitor._now, monitor._violations = (current, number, (), TransitionCache()), violations
         return monitor
 
     def __reduce__(self) -> tuple[Callable[..., Monitor], tuple[Any, ...]]:
@@ -204,38 +209,34 @@ class Monitor:
         so_far = self.so_far
         return f"Monitor({self._rulebook.name}, state={so_far.state}, verdict={so_far.verdict!r})"
 
-    def _note_violations(self, n_before: int, number: int, changes: Sequence[Change]) -> None:
+    def _note_violations(
+        self, n_before: int, number: int, changes: Sequence[VerdictChange]
+    ) -> None:
         # What an interrupted step has noted was none.
         del self._violations[n_before:]
         self._violations += [
-            Violation(
-                one.rule,
-                self._strengths[one.rule],
-                dict(one.binding),
-                None if one.ended else number,
-            )
-            for one in changes
-            if one.verdict == "violated"
+            self._violation(change, None if change.ended else number)
+            for change in changes
+            if change.verdict == "violated"
         ]
+
+    def _violation(self, change: VerdictChange, number: int | None) -> Violation:
+        strength = self._strengths[change.rule]
+        return Violation(change.rule, strength, dict(change.binding), number)
 
 
 def _unpickled(
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
     snapshot: Any,
-    changes: tuple[Change, ...],
+    changes: tuple[VerdictChange, ...],
     violations: list[Violation],
 ) -> Monitor:
-    """A monitor where another stood: what it has learned is learned anew."""
+    """A monitor in another one's state; its caches are empty."""
     monitor = Monitor(rulebook, step_s)
-    restored = Monitor.restore(rulebook, snapshot)
-    standing, number, _ = restored._now
-    monitor._now, monitor._violations = (standing, number, changes), violations
+    current, number, _, cache = Monitor.restore(rulebook, snapshot)._now
+    monitor._now, monitor._violations = (current, number, changes, cache), violations
     return monitor
-
-
-def _so_far(standing: MonitorState, number: int, changes: tuple[Change, ...]) -> SoFar:
-    return SoFar(number, standing.verdict, standing.rules, changes)
 
 
 def _no_object(what: str, of: str, place: SourceLocation | None) -> RulecError:

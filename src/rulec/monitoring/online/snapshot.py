@@ -1,4 +1,4 @@
-"""Where a monitor stands, as data that outlives the program."""
+"""Snapshots of monitors: data that outlive the program."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any, Literal
 import msgspec
 
 from rulec.automata.bundle.bundle_file import read_to_data
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
-from rulec.monitoring.online.bound_rules import BoundRules
-from rulec.monitoring.online.four_valued import Edge, Prefix
-from rulec.monitoring.online.monitor_state import MonitorState, beginning, standing_at
-from rulec.monitoring.online.rule_group import Ready, RuleGroups
+from rulec.monitoring.online.bound_rules import BoundRule, BoundRules
+from rulec.monitoring.online.four_valued import FourValued, MonitorEdge
+from rulec.monitoring.online.monitor_state import MonitorState, initial_state, state_at
+from rulec.monitoring.online.rule_group import GroupNode, RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
@@ -34,7 +34,7 @@ class _Header(msgspec.Struct):
 class _Binding(msgspec.Struct, forbid_unknown_fields=True):
     objects: tuple[str, ...]
     state: int
-    verdict: Prefix
+    verdict: FourValued
 
 
 class _Rule(msgspec.Struct, forbid_unknown_fields=True):
@@ -61,13 +61,13 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def to_data(
-    here: MonitorState,
+    current: MonitorState,
     number: int,
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
     violations: Sequence[Violation],
 ) -> dict[str, Any]:
-    """What ``from_data`` reads, behind the state with a number: JSON has a word for all of it."""
+    """The data that ``from_data`` reads, behind the state with a number: all of it is JSON's."""
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -75,25 +75,27 @@ def to_data(
         "machines": fingerprint(rulebook),
         "step_s": None if step_s is None else str(step_s),
         "states": number + 1,
-        "objects": dict(here.scene.objects),
-        "rules": [
-            {
-                "rule": crowd.ready.rule.name,
-                "bindings": [
-                    {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
-                    for items, edge in zip(crowd.bindings, crowd.edges(here.nodes), strict=True)
-                ],
-            }
-            for crowd in here.scene.crowds
-        ],
+        "objects": dict(current.bound_rules.objects),
+        "rules": [_rule_to_data(rule, current.nodes) for rule in current.bound_rules.rules],
         "violations": [
-            {"rule": one.rule, "binding": dict(one.binding), "step": one.step} for one in violations
+            {"rule": violation.rule, "binding": dict(violation.binding), "step": violation.step}
+            for violation in violations
+        ],
+    }
+
+
+def _rule_to_data(bound_rule: BoundRule, nodes: Sequence[GroupNode]) -> dict[str, Any]:
+    return {
+        "rule": bound_rule.prepared.name,
+        "bindings": [
+            {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
+            for items, edge in zip(bound_rule.bindings, bound_rule.edges(nodes), strict=True)
         ],
     }
 
 
 def fingerprint(rulebook: CompiledRulebook) -> str:
-    """The same for rulebooks whose rules judge by the same machines, and for no others."""
+    """A hash of the machines of all rules, and of all that decides what they read."""
     rules = [
         {
             "name": rule.name,
@@ -120,9 +122,9 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: SourceLocation | None)
 
 
 def from_data(
-    data: Any, rulebook: CompiledRulebook, teams: RuleGroups, place: SourceLocation | None
+    data: Any, rulebook: CompiledRulebook, groups: RuleGroups, place: SourceLocation | None
 ) -> tuple[int, MonitorState, list[Violation]]:
-    """Behind which state a monitor with these rules stood, where, and what was violated by then.
+    """The number of the last state, the monitor's state behind it, and the violations by then.
 
     Raises:
         RulecError: R0510 if this is no saved monitor, one of another rulebook or damaged.
@@ -130,16 +132,17 @@ def from_data(
     saved, _ = _checked(data, rulebook, place)
     try:
         check_objects(saved.objects, rulebook.vocabulary)
-        scene = BoundRules(rulebook, teams, saved.objects)
+        bound_rules = BoundRules(rulebook, groups, saved.objects)
         if saved.states == 0 and not saved.objects and not saved.violations:
-            return -1, beginning(scene), []
-        edges = _edges(saved, scene)
-        violations = [_violation(one, saved.states, teams.rules) for one in saved.violations]
+            return -1, initial_state(bound_rules), []
+        edges = _edges(saved, bound_rules)
+        rules = {rule.name: rule for rule in rulebook.rules}
+        violations = [_violation(violation, saved.states, rules) for violation in saved.violations]
     except (LookupError, ValueError, RulecError):
         raise _refused("this saved monitor is damaged", place) from None
-    lost = {one.rule for one in violations}
-    standing = standing_at(scene, edges, lost, len(violations))
-    return saved.states - 1, standing, violations
+    violated_rules = {violation.rule for violation in violations}
+    current = state_at(bound_rules, edges, violated_rules, len(violations))
+    return saved.states - 1, current, violations
 
 
 def _checked(
@@ -172,27 +175,26 @@ def _checked(
     return saved, step_s
 
 
-def _edges(saved: _Saved, scene: BoundRules) -> dict[str, list[Edge]]:
-    """Raises LookupError or ValueError unless each binding stands somewhere, and no other does."""
-    edges: dict[str, list[Edge]] = {}
-    for crowd, rule in zip(scene.crowds, saved.rules, strict=True):
-        known = {one.objects: one for one in rule.bindings}
-        if rule.rule != crowd.ready.rule.name or len(rule.bindings) != len(crowd.bindings):
+def _edges(saved: _Saved, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:
+    """The edge of each binding. Raises LookupError or ValueError unless just these are saved."""
+    edges: dict[str, list[MonitorEdge]] = {}
+    for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):
+        name, monitor = bound_rule.prepared.name, bound_rule.prepared.monitor
+        by_objects = {binding.objects: binding for binding in rule.bindings}
+        if rule.rule != name or len(rule.bindings) != len(bound_rule.bindings):
             raise ValueError
-        stood = [known[items] for items in crowd.bindings]
-        links = crowd.ready.links.edges
-        edges[rule.rule] = [links[one.state, one.verdict] for one in stood]
+        bindings = [by_objects[items] for items in bound_rule.bindings]
+        edges[name] = [monitor.edges[binding.state, binding.verdict] for binding in bindings]
     return edges
 
 
-def _violation(one: _Violation, n_states: int, ready: Sequence[Ready]) -> Violation:
-    rules: Mapping[str, Ready] = {each.rule.name: each for each in ready}
-    rule = rules[one.rule].rule
-    if {variable.name for variable in rule.variables} != set(one.binding):
+def _violation(saved: _Violation, n_states: int, rules: Mapping[str, CompiledRule]) -> Violation:
+    rule = rules[saved.rule]
+    if {variable.name for variable in rule.variables} != set(saved.binding):
         raise ValueError
-    if one.step is not None and not 0 <= one.step < n_states:
+    if saved.step is not None and not 0 <= saved.step < n_states:
         raise ValueError
-    return Violation(rule.name, rule.strength, one.binding, one.step)
+    return Violation(rule.name, rule.strength, saved.binding, saved.step)
 
 
 def _refused(message: str, place: SourceLocation | None) -> RulecError:

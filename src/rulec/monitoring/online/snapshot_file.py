@@ -1,4 +1,4 @@
-"""A saved monitor as a file."""
+"""Files of saved monitors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rulec.trace.formats.json_line_problems import is_beginning
 
 
 def read_saved(path: Path) -> Any:
-    """What the file holds, for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
+    """Read a file for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
         data = stream.read()
     try:

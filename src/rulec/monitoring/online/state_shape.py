@@ -1,7 +1,7 @@
-"""What states speak of that give values to the same names, and their values in one order.
+"""Shapes of states: the names with values, and the places of these values in one order.
 
-Nearly all states of a drive do. What is to be looked at, and where it lies, is worked out once, so
-that a state is taken apart far more quickly than any state could be.
+Nearly all states of a drive have the same shape. What is to be looked at, and where it lies, is
+worked out once, so that a state is encoded far more quickly than any state could be.
 """
 
 from __future__ import annotations
@@ -10,26 +10,26 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.monitoring.online.breakpoints import Floors
-from rulec.monitoring.online.encoded_values import Told, check_of, default_told, values_of
+from rulec.monitoring.online.breakpoints import Breakpoints
+from rulec.monitoring.online.encoded_values import Encoded, encoded_default, encoder_of, values_at
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 Items: TypeAlias = tuple[str, ...]
 """Objects, in the order of parameters or of a rule's variables."""
 
-Key: TypeAlias = Callable[[Any], Hashable]
-"""What states are known by. Raises as ``Outline.told``."""
+StateKey: TypeAlias = Callable[[Any], Hashable]
+"""The key of a state in caches. Raises as ``StateShape.encode``."""
 
-_Part: TypeAlias = Callable[[Any], Told]
+_EncodePart: TypeAlias = Callable[[Any], Encoded]
 
 
 class StateShape:
-    """The outline of states that give values to the same names while the same objects are there.
+    """The shape of states with values for the same names while the same objects are present.
 
-    ``places`` says by name and objects in which part of a state a value stands, and where there;
-    ``sizes`` are the parts' sizes. The first ``n_world`` ones are about the world, each other one
-    about one of the ``names``. By their ``key`` states are known; from what is ``told`` of a state
-    it is ``key_of``.
+    ``places`` has by name and objects the part of an encoded state in which a value stands, and
+    its place there; ``sizes`` are the parts' sizes. The first ``n_world`` parts are about the
+    world, each other one about one of the ``names``. ``key`` is a state's key, ``key_of`` the same
+    from the state encoded.
 
     Raises:
         LookupError: such a state needs a closer look, as if there is no declaration of a name.
@@ -40,51 +40,53 @@ class StateShape:
         names: Sequence[str],
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
-        floors: Floors,
+        breakpoints: Breakpoints,
     ) -> None:
-        about = [vocabulary.declarations[name] for name in names]
+        declarations = [vocabulary.declarations[name] for name in names]
         self.names = frozenset(names)
         self.places: dict[tuple[str, Items], tuple[int, int]] = {}
         self.sizes: list[int] = []
         self._n_names = len(names)
-        self._parts: list[_Part] = []
-        for alike in _about_the_world(about):
-            values = values_of([one.name for one in alike])
-            self._add(_checked(values, alike[0], floors), [(one.name, ()) for one in alike])
+        self._parts: list[_EncodePart] = []
+        for alike in _about_the_world(declarations):
+            values = values_at([declaration.name for declaration in alike])
+            encode = _encoded(values, alike[0], breakpoints)
+            self._add(encode, [(declaration.name, ()) for declaration in alike])
         self.n_world = len(self._parts)
-        for one in about:
-            if one.parameters:
+        for declaration in declarations:
+            if declaration.parameters:
                 fitting = [
                     tuple(
                         [name for name, own in objects.items() if vocabulary.is_subtype(own, kind)]
                     )
-                    for kind in one.parameters
+                    for kind in declaration.parameters
                 ]
-                told = _of_objects(one, fitting, floors)
-                items = [(one.name, chosen) for chosen in _distinct(fitting)]
-                self._add(_inside(one.name, told), items)
-        self.key: Key = self.told
-        self.key_of: Callable[[tuple[Told, ...]], Hashable] = lambda told: told
+                encode = _of_objects(declaration, fitting, breakpoints)
+                items = [(declaration.name, chosen) for chosen in _distinct(fitting)]
+                self._add(_inside(declaration.name, encode), items)
+        self.key: StateKey = self.encode
+        self.key_of: Callable[[tuple[Encoded, ...]], Hashable] = lambda encoded: encoded
         if len(self._parts) == 1:
             # In one go, because there may be nothing else to do.
-            self.key_of = lambda told: told[0]
+            self.key_of = lambda encoded: encoded[0]
             self.key = _key_of_one_part(self._parts[0], self._n_names)
-            if isinstance(about[0], Enumeration) and len(about[0].parameters) == 1:
-                (there,) = fitting
-                if there:
-                    self.key = _key_of_one_relation(about[0].name, there)
-                if len(there) == 1:
-                    self.key_of = lambda told: told[0][0]
+            (declaration, *_) = declarations
+            if isinstance(declaration, Enumeration) and len(declaration.parameters) == 1:
+                (present,) = fitting
+                if present:
+                    self.key = _key_of_one_relation(declaration.name, present)
+                if len(present) == 1:
+                    self.key_of = lambda encoded: encoded[0][0]
 
-    def _add(self, part: _Part, values: Sequence[tuple[str, Items]]) -> None:
-        self.places |= {one: (len(self._parts), place) for place, one in enumerate(values)}
+    def _add(self, part: _EncodePart, values: Sequence[tuple[str, Items]]) -> None:
+        self.places |= {value: (len(self._parts), place) for place, value in enumerate(values)}
         self.sizes.append(len(values))
         self._parts.append(part)
 
-    def told(self, state: Any) -> tuple[Told, ...]:
-        """The parts of a state. States in which they are alike are alike for every rule.
+    def encode(self, state: Any) -> tuple[Encoded, ...]:
+        """The parts of a state. States with equal parts are alike for every rule.
 
-        Raises a LookupError or a TypeError if the state has another outline, or needs a closer
+        Raises a LookupError or a TypeError if the state has another shape, or needs a closer
         look. Values of enumerations may be wrong.
         """
         if type(state) is not dict or len(state) != self._n_names:
@@ -92,7 +94,7 @@ class StateShape:
         return tuple([part(state) for part in self._parts])
 
 
-def _key_of_one_part(part: _Part, n_names: int) -> Key:
+def _key_of_one_part(part: _EncodePart, n_names: int) -> StateKey:
     def key(state: Any) -> Hashable:
         if type(state) is dict and len(state) == n_names:
             return part(state)
@@ -101,7 +103,7 @@ def _key_of_one_part(part: _Part, n_names: int) -> Key:
     return key
 
 
-def _key_of_one_relation(name: str, items: Items) -> Key:
+def _key_of_one_relation(name: str, items: Items) -> StateKey:
     """Of a single object the key is its value."""
     n_items = len(items)
     (item, *others) = items
@@ -116,7 +118,7 @@ def _key_of_one_relation(name: str, items: Items) -> Key:
 
     if not others:
         return key_of_one_item
-    values: Key = itemgetter(*items)
+    values: StateKey = itemgetter(*items)
 
     def key(state: Any) -> Hashable:
         if type(state) is dict and len(state) == 1:
@@ -128,16 +130,16 @@ def _key_of_one_relation(name: str, items: Items) -> Key:
     return key
 
 
-def _about_the_world(about: Sequence[Declaration]) -> Iterator[list[Declaration]]:
-    """Those that can be checked together, together."""
-    of_world = [one for one in about if not one.parameters]
+def _about_the_world(declarations: Sequence[Declaration]) -> Iterator[list[Declaration]]:
+    """The declarations without parameters; those that can be encoded together, together."""
+    of_world = [declaration for declaration in declarations if not declaration.parameters]
     for kind in (Enumeration, Signal):
-        alike: list[Declaration] = [one for one in of_world if isinstance(one, kind)]
+        alike: list[Declaration] = [own for own in of_world if isinstance(own, kind)]
         if alike:
             yield alike
-    for one in of_world:
-        if isinstance(one, Quantity):
-            yield [one]
+    for declaration in of_world:
+        if isinstance(declaration, Quantity):
+            yield [declaration]
 
 
 def _distinct(fitting: Sequence[Items], before: Items = ()) -> Iterator[Items]:
@@ -150,49 +152,58 @@ def _distinct(fitting: Sequence[Items], before: Items = ()) -> Iterator[Items]:
             yield from _distinct(fitting[1:], (*before, item))
 
 
-def _checked(values: _Part, one: Declaration, floors: Floors) -> _Part:
-    if isinstance(one, Enumeration):
+def _encoded(
+    values: _EncodePart, declaration: Declaration, breakpoints: Breakpoints
+) -> _EncodePart:
+    if isinstance(declaration, Enumeration):
         return values
-    check = check_of(one, floors)
-    return lambda given: check(values(given))
+    encode = encoder_of(declaration, breakpoints)
+    return lambda given: encode(values(given))
 
 
-def _inside(name: str, told: _Part) -> _Part:
-    return lambda given: told(given[name])
+def _inside(name: str, encode: _EncodePart) -> _EncodePart:
+    return lambda given: encode(given[name])
 
 
 def _of_objects(
-    one: Declaration, fitting: Sequence[Items], floors: Floors, before: Items = ()
-) -> _Part:
-    """What is told of every choice of distinct objects, in order, from what is given of some."""
+    declaration: Declaration,
+    fitting: Sequence[Items],
+    breakpoints: Breakpoints,
+    before: Items = (),
+) -> _EncodePart:
+    """Encodes the values of every choice of distinct objects, in order, given those of some."""
     items = tuple([item for item in fitting[0] if item not in before])
     if len(fitting) > 1:
-        inner = [(item, _of_objects(one, fitting[1:], floors, (*before, item))) for item in items]
+        inner = [
+            (item, _of_objects(declaration, fitting[1:], breakpoints, (*before, item)))
+            for item in items
+        ]
         return _of_more_objects(inner)
-    all_told, n_items = _checked(values_of(items), one, floors), len(items)
-    check, default = check_of(one, floors), default_told(one, floors)
+    encode_all, n_items = _encoded(values_at(items), declaration, breakpoints), len(items)
+    encode = encoder_of(declaration, breakpoints)
+    default = encoded_default(declaration, breakpoints)
 
-    def told(given: Any) -> Told:
+    def encode_objects(given: Any) -> Encoded:
         if type(given) is not dict:
             raise LookupError
         if len(given) == n_items:
-            return all_told(given)
-        some = dict(zip(given, check(tuple(given.values())), strict=True))
-        found = tuple([some.pop(item, default) for item in items])
-        # Of whom else is something given?
+            return encode_all(given)
+        some = dict(zip(given, encode(tuple(given.values())), strict=True))
+        values = tuple([some.pop(item, default) for item in items])
+        # What is left is about something else.
         if some:
             raise LookupError
-        return found
+        return values
 
-    return told
+    return encode_objects
 
 
-def _of_more_objects(inner: Sequence[tuple[str, _Part]]) -> _Part:
+def _of_more_objects(inner: Sequence[tuple[str, _EncodePart]]) -> _EncodePart:
     known = frozenset([item for item, _ in inner])
 
-    def told(given: Any) -> Told:
+    def encode_objects(given: Any) -> Encoded:
         if type(given) is dict and known.issuperset(given):
             return tuple([value for item, part in inner for value in part(given.get(item, {}))])
         raise LookupError
 
-    return told
+    return encode_objects

@@ -1,4 +1,4 @@
-"""A monitor that survives what cannot be judged."""
+"""Answers of a monitor to a stream in which some states cannot be read."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rulec.trace.formats.live_states import LiveState
 
 
 def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError:
-    """As ``Monitor.step``, for one of many: what cannot be judged is an answer too.
+    """Take a step; an error is an answer too.
 
     ``item`` may be, in place of a state, the error that kept it from being read.
     """

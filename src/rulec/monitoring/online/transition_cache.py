@@ -1,56 +1,56 @@
-"""Where states have led before, so that the same need not be worked out again."""
+"""A cache of a monitor's steps, by the states of a trace that have come before."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rulec.monitoring.online.encoded_values import Told
-from rulec.monitoring.online.state_shape import Key, StateShape
-
-if TYPE_CHECKING:
-    from rulec.monitoring.online.monitor_state import Change, MonitorState
-    from rulec.monitoring.online.rule_group import Node
+from rulec.monitoring.online.bound_rules import KnownState
+from rulec.monitoring.online.monitor_state import MonitorState, VerdictChange
+from rulec.monitoring.online.rule_group import GroupNode
+from rulec.monitoring.online.state_shape import StateKey, StateShape
 
 MOST = 1 << 12
-"""So many states are remembered before all are forgotten again."""
+"""Steps that are kept before all are forgotten."""
 
 TRIAL = 1 << 9
-"""After so many it is asked whether that was of any help; another outline counts as a sixteenth."""
+"""After so many it is asked whether they were of any help; another shape counts as a sixteenth."""
 
 REST = 16
-"""If it was of little help, nothing more is remembered for so many times as many states."""
+"""If they were of little help, nothing is kept for so many times as many states."""
 
 
 class TransitionCache:
-    """Remembers where states lead while the same objects are there.
+    """The steps taken while the same objects are present.
 
-    At any time there is one outline whose states are known again; ``key`` is theirs. Others may
-    come between them.
+    At any time there is one shape whose states are looked up; ``key`` is theirs. States of other
+    shapes may come between them.
     """
 
     def __init__(self) -> None:
-        self._outline: StateShape | None = None
+        self._shape: StateShape | None = None
         self._rests_until = 0
-        self._stranger = -1
-        self._standings: dict[tuple[Node, ...], MonitorState] = {}
-        self._n_learned = 0
+        self._last_stranger = -1
+        self._by_nodes: dict[tuple[GroupNode, ...], MonitorState] = {}
+        self._n_kept = 0
         self._n_tried = 0
         self._tried_since = 0
-        self.key: Key = _of_none
+        self.key: StateKey = _key_of_none
 
-    def learn(
+    def remember(
         self,
-        known: tuple[StateShape, tuple[Told, ...]],
+        known: KnownState,
         number: int,
-        here: MonitorState,
+        *,
+        current: MonitorState,
         after: MonitorState,
-        changes: tuple[Change, ...],
+        changes: tuple[VerdictChange, ...],
     ) -> MonitorState:
-        """Remember where a state has led, which has this number and is known by this.
+        """Keep the step from ``current`` by the state with this number.
 
-        It has led nowhere else than a standing with the same nodes that is known from before; to
-        know what follows there, go on from the one that is returned.
+        Returns:
+            The monitor's state with the same nodes that is kept already, or ``after``; to profit
+            from what is kept behind it, go on from this one.
         """
         if number < self._rests_until:
             return after
@@ -59,33 +59,33 @@ class TransitionCache:
             self._n_tried, self._tried_since = 0, number
             if not helpful:
                 self._rests_until = self._tried_since = number + REST * TRIAL
-                self.key = _of_none
+                self.key = _key_of_none
                 return after
-        outline, told = known
-        if outline is not self._outline:
+        shape, encoded = known
+        if shape is not self._shape:
             # One stranger changes nothing, two in a row do.
-            if self._outline is not None and self._stranger != number - 1:
-                self._stranger = number
-                return self._standings.setdefault(after.nodes, after)
-            self._forget(here)
+            if self._shape is not None and self._last_stranger != number - 1:
+                self._last_stranger = number
+                return self._by_nodes.setdefault(after.nodes, after)
+            self._forget(current)
             self._n_tried += TRIAL // 16
-            self._outline = outline
-        elif self._n_learned >= MOST:
-            self._forget(here)
-        self.key = outline.key
-        after = self._standings.setdefault(after.nodes, after)
-        here.after[outline.key_of(told)] = after, changes
-        self._n_learned += 1
+            self._shape = shape
+        elif self._n_kept >= MOST:
+            self._forget(current)
+        self.key = shape.key
+        after = self._by_nodes.setdefault(after.nodes, after)
+        current.after[shape.key_of(encoded)] = after, changes
+        self._n_kept += 1
         self._n_tried += 1
         return after
 
-    def _forget(self, here: MonitorState) -> None:
-        self.key = _of_none
-        here.after.clear()
-        self._standings = {here.nodes: here}
-        self._n_learned = 0
+    def _forget(self, current: MonitorState) -> None:
+        self.key = _key_of_none
+        current.after.clear()
+        self._by_nodes = {current.nodes: current}
+        self._n_kept = 0
 
 
-def _of_none(_: Any) -> Hashable:
+def _key_of_none(_: Any) -> Hashable:
     """The key of no state."""
     return None

@@ -10,10 +10,9 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.thresholds import exact
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.binding import Binding, bindings
-from rulec.monitoring.fast_validation import FastValidator
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
-from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import run
 from rulec.rulebook.model import Strength
@@ -69,11 +68,9 @@ def instances(
     for rule in rules:
         check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
-    gate = FastValidator(vocabulary, graph.objects)
+    validator = StateValidator(vocabulary, graph.objects)
     for layer, states in enumerate(graph.states):
-        for state in states:
-            if not gate.passes(state):
-                check_state(state, graph.objects, vocabulary, f"a cell of layer {layer}")
+        validator.check(states, f"a cell of layer {layer}".format)
     columns = [
         LetterReader(
             states,

@@ -8,15 +8,15 @@ from collections.abc import Mapping
 import click
 
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.four_valued import Prefix
-from rulec.monitoring.online.monitor_state import Change, SoFar
+from rulec.monitoring.online.four_valued import FourValued
+from rulec.monitoring.online.monitor_state import SoFar, VerdictChange
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.verdict_report import error_as_data
 
 MOST_CHANGES = 20
 """So many fit on a line; JSON has them all."""
 
-_COLORS: Mapping[Prefix, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
+_COLORS: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
 
 
 def as_json(found: SoFar) -> str:
@@ -44,7 +44,7 @@ def as_text(found: SoFar) -> str:
     return f"{found.state}: {'; '.join([verdict, *changes])}"
 
 
-def _change(one: Change) -> str:
+def _change(one: VerdictChange) -> str:
     where = ", ".join(f"{name} = {item}" for name, item in one.binding.items())
     about = f" for {where}" if where else ""
     left = ", not fulfilled when they parted" if one.ended and len(one.binding) > 1 else ""
