@@ -6,6 +6,8 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
+import yaml
+
 import rulec
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,3 +28,17 @@ def test_no_other_file_of_the_project_has_a_version_of_its_own():
     pyproject = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert 'dynamic = ["version"]' in pyproject
     assert not re.search(r"^version = ", pyproject, re.MULTILINE)
+
+
+def test_the_citation_names_this_version():
+    page = (ROOT / "docs" / "citation.md").read_text(encoding="utf-8")
+    citation = yaml.safe_load(page.split("```yaml\n")[1].split("```")[0])
+    assert citation["version"] == rulec.__version__
+    assert f"version = {{{rulec.__version__}}}" in page
+
+
+def test_the_changelog_begins_with_what_is_not_released_or_with_this_version():
+    page = (ROOT / "docs" / "changelog.md").read_text(encoding="utf-8")
+    first = re.search(r"^## \[(.+?)\]", page, re.MULTILINE)
+    assert first is not None
+    assert first[1] in ("Unreleased", rulec.__version__)

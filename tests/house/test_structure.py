@@ -1,0 +1,69 @@
+"""Sizes of the package and of its folders, calls and imports within its functions."""
+
+import ast
+
+import pytest
+
+from support.leftovers import LINES_TOO_MANY, POSITIONAL_CALLS, UNEXPLAINED_IMPORTS, WIDE_FOLDERS
+from support.source_modules import PACKAGE, rooms, source_modules
+
+MOST_LINES = 41_000
+MOST_FILES = 15
+MOST_POSITIONAL = 5
+A_FILE_FOR_EACH = {"cli/commands": "verb"}
+"""Folders that are as wide as there is something to list."""
+
+
+def is_code(line):
+    return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
+def code_lines():
+    return sum(is_code(line) for module in source_modules() for line in module.lines)
+
+
+def test_the_package_does_not_grow_unnoticed():
+    assert code_lines() <= MOST_LINES + LINES_TOO_MANY
+
+
+@pytest.mark.parametrize("folder", list(rooms()), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_folder_can_be_seen_at_a_glance(folder):
+    name = str(folder.relative_to(PACKAGE))
+    if name not in A_FILE_FOR_EACH.keys() | WIDE_FOLDERS:
+        assert len(list(folder.glob("*.py"))) <= MOST_FILES
+
+
+def positional_calls():
+    """Calls with many positional arguments: the file and what is called."""
+    for module in source_modules():
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.Call):
+                plain = [part for part in node.args if not isinstance(part, ast.Starred)]
+                if len(plain) > MOST_POSITIONAL:
+                    yield f"{module.name} {ast.unparse(node.func)}"
+
+
+def test_no_call_has_more_than_five_positional_arguments():
+    assert set(positional_calls()) - POSITIONAL_CALLS == set()
+
+
+def unexplained_imports():
+    """Files that import within a function without a comment beside or above that says why."""
+    for module in source_modules():
+        functions = [node for node in ast.walk(module.tree) if isinstance(node, ast.FunctionDef)]
+        inner = {
+            node.lineno
+            for function in functions
+            for node in ast.walk(function)
+            if isinstance(node, ast.Import | ast.ImportFrom)
+        }
+        for number in sorted(inner):
+            above = number - 1
+            while above in inner:
+                above -= 1
+            if "# " not in module.lines[number - 1] and "# " not in module.lines[above - 1]:
+                yield module.name
+
+
+def test_an_import_within_a_function_has_its_reason():
+    assert set(unexplained_imports()) - UNEXPLAINED_IMPORTS == set()
