@@ -42,7 +42,7 @@ def test_one_kind(kind, names, capsys):
     assert names <= {line.split()[0] for line in lines}
     assert all(line.split()[1:] for line in lines)
     document = json.loads(listed(capsys, kind, "--json"))
-    assert list(document) == [kind]
+    assert list(document) == ["version", kind]
     assert len(document[kind]) == len(lines)
     for one in document[kind]:
         assert set(one) == {"name", "title", "path"}

@@ -97,6 +97,7 @@ def test_json(answer):
     assert status == 2
     first, refused, last = map(json.loads, out)
     assert first == {
+        "version": 1,
         "state": 0,
         "verdict": "pending",
         "rules": {"stop": "holds so far", "look": "pending"},

@@ -35,6 +35,7 @@ def test_the_documented_line_of_json(verify):
     status, out, err = verify([line("t1", "brrf")], options=["--json"])
     assert (status, err) == (1, "")
     assert json.loads(out) == {
+        "version": 1,
         "trace": "t1",
         "satisfied": False,
         "violations": [
@@ -53,7 +54,12 @@ def test_the_documented_line_of_json(verify):
 def test_satisfied(verify):
     status, out, err = verify([line("t1", "bblf")], options=["--json"])
     assert (status, err) == (0, "")
-    assert json.loads(out) == {"trace": "t1", "satisfied": True, "violations": []}
+    assert json.loads(out) == {
+        "version": 1,
+        "trace": "t1",
+        "satisfied": True,
+        "violations": [],
+    }
 
 
 def test_text(verify):

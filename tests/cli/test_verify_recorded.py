@@ -83,6 +83,7 @@ def test_a_line_of_json_for_each_drive(verify):
     first, second = map(json.loads, out.splitlines())
     assert status == 1
     assert {name: first[name] for name in first if name != "violations"} == {
+        "version": 1,
         "trace": "4",
         "satisfied": False,
         "recording": "DEU_Road-1_1_T-1",

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import VERBS, main, rulec
-from rulec.diagnostics import Diagnostic
-from rulec.report.findings.diagnostics_json import as_data
+from rulec.report.findings.diagnostics_json import FindingData
 from rulec.report.findings.finding_formats import FORMATS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "commands.md").read_text(encoding="utf-8")
@@ -40,7 +39,7 @@ def test_every_format():
 
 
 def test_every_field_of_a_finding():
-    assert {f"`{name}`" for name in as_data(Diagnostic("R0101", "m"))} <= set(
+    assert {f"`{name}`" for name in FindingData.__struct_fields__} <= set(
         re.findall(r"`\w+`", PAGE)
     )
 

@@ -11,7 +11,9 @@ from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOpera
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.explain.explanation import MOST_STATES, explain
 from rulec.monitoring.verify import verify
+from rulec.report.text.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
+from rulec.report.verdicts.explanation_json import explanation_data
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
 from support.builders.measured_vocabulary import MEASURED, SPEED, closer, gap, number, others_near
@@ -137,7 +139,7 @@ def test_a_number_stands_out_when_it_passes_a_limit_not_whenever_it_changes():
     rows = [line.split() for line in unstyle(report.as_text(found)).splitlines()]
     assert ["gap(a)", "in", "m", "3", "2.5", "1.4*"] in rows
     assert ["speed", "in", "km/h", "43", "42.5", "41.4"] in rows
-    data = report.as_data(found)
+    data = as_builtins(explanation_data(found))
     assert data["facts"][0] == {
         "reads": "gap(a)",
         "values": (3, 2.5, 1.4),
@@ -183,7 +185,7 @@ def test_a_count_says_whom_it_counts():
     assert fact.changed
     text = unstyle(report.as_text(found))
     assert "2: b, c*" in text
-    assert report.as_data(found)["facts"][0]["objects"] == ((), ("b",), ("b", "c"))
+    assert as_builtins(explanation_data(found))["facts"][0]["objects"] == ((), ("b",), ("b", "c"))
 
 
 def test_many_names_are_cut():

@@ -14,7 +14,9 @@ from rulec.logic.semantics import holds
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.nearest_satisfying import MOST_WAYS, nearest_kept
 from rulec.monitoring.verify import verify
+from rulec.report.text.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
+from rulec.report.verdicts.explanation_json import explanation_data
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import book, compile_here, rule
@@ -124,7 +126,7 @@ def explained(name, *states):
     found = explain(violation, trace, RULES)
     text = [line.strip() for line in report.as_text(found).splitlines()]
     at = next(n for n, line in enumerate(text) if line.startswith(("kept if", "no trace")))
-    return text[at:], report.as_data(found)["repair"]
+    return text[at:], as_builtins(explanation_data(found))["repair"]
 
 
 def test_what_facts_exclude_is_no_way_out():

@@ -42,10 +42,11 @@ def test_the_cheapest_stays_behind():
     """Behind o1, whose rear is at 22.5 + 8 t - t^2 as each second begins; it costs nothing."""
     data = table("jsonl", 1)
     rows = [json.loads(line) for line in data.splitlines()]
-    assert [list(row) for row in rows] == [list(COLUMNS)] * 5
+    assert [list(row) for row in rows] == [["version", *COLUMNS]] * 5
     rears = (22.5, 29.5, 34.5, 37.5, 38.5)
     for layer, (row, rear) in enumerate(zip(rows, rears, strict=True)):
         assert row == {
+            "version": 1,
             "maneuver": 1,
             "cost": 0.0,
             "margin_s": None,
@@ -65,6 +66,7 @@ def test_the_formats_agree():
     parquet = pytest.importorskip("pyarrow.parquet")
     lines = table("jsonl", 20)
     expected = [json.loads(line) for line in lines.splitlines()]
+    assert {row.pop("version") for row in expected} == {1}
     assert {row["maneuver"] for row in expected} == set(range(1, 21))
     arrow = parquet.read_table(io.BytesIO(table("parquet", 20)))
     assert arrow.to_pylist() == expected

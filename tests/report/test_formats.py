@@ -43,6 +43,7 @@ def test_json_has_every_field():
     whole, bare, _ = json.loads(as_json(EVERY))
     place = {"file": "a b.rules", "line": 2, "column": 7, "end_line": 2, "end_column": 12}
     assert whole == {
+        "version": 1,
         "code": "R0202",
         "severity": "error",
         "message": "what, is: 100 % wrong",

@@ -8,7 +8,7 @@ import pytest
 
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.verify import verify
-from rulec.report.verdicts import verdict_report
+from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.trace import Trace
 from support.builders.rulebooks import P, book, compile_here, rule
 
@@ -58,7 +58,7 @@ def test_a_violation_names_the_rule_as_its_head_does(more, line):
 def test_level_and_weight_as_data(more, level, weight):
     rules = compiled(**more)
     _, verdict = violated(rules)
-    (violation,) = json.loads(verdict_report.as_json(verdict, rules))["violations"]
+    (violation,) = json.loads(verdict_json.as_json(verdict, rules))["violations"]
     assert (violation["level"], violation["weight"]) == (level, weight)
     assert isinstance(violation["weight"], type(weight))
 
@@ -67,6 +67,6 @@ def test_an_explanation_as_data_names_the_book():
     rules = compiled(book="vienna")
     trace, verdict = violated(rules)
     why = explain(verdict.violations[0], trace, rules)
-    (violation,) = json.loads(verdict_report.as_json(verdict, rules, [why]))["violations"]
+    (violation,) = json.loads(verdict_json.as_json(verdict, rules, [why]))["violations"]
     assert violation["explanation"]["book"] == "vienna"
     assert violation["explanation"]["cite"] == "Art. A"

@@ -88,7 +88,8 @@ def command(
     from rulec.planning.probability.alternative_predictions import alternative_counts
     from rulec.planning.probability.rule_probability import rule_probabilities
     from rulec.planning.trace_history import read_past
-    from rulec.report.maneuvers import maneuver_report as report
+    from rulec.report.maneuvers import maneuver_json, maneuver_report
+    from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers
     from rulec.report.text.console import print_diagnostics, print_result
     from rulec.scenario import load_scenario
     from rulec.settings import search_path
@@ -103,7 +104,7 @@ def command(
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
     shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
     uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)
-    answers = report.ManeuverAnswers(
+    answers = ManeuverAnswers(
         listed=listed,
         best=best,
         ranked=ranked,
@@ -115,7 +116,8 @@ def command(
         classes=None if n_classes is None else (maneuvers.classes(), maneuvers.variants(n_classes)),
     )
     seconds = time.perf_counter() - begin
-    print_result((report.as_json if json_output else report.as_text)(maneuvers, answers, seconds))
+    report = maneuver_json.as_json if json_output else maneuver_report.as_text
+    print_result(report(maneuvers, answers, seconds))
     return ExitStatus.OK if maneuvers.satisfying else ExitStatus.VIOLATED
 
 

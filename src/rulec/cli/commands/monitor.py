@@ -60,7 +60,7 @@ def command(
     from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
     from rulec.monitoring.online.stream_answers import answer
     from rulec.report.text.console import Complaints, print_diagnostics, print_result
-    from rulec.report.verdicts import monitor_lines
+    from rulec.report.verdicts import monitor_json, monitor_lines
     from rulec.settings import search_path
     from rulec.trace.formats.live_states import read_live
 
@@ -79,10 +79,10 @@ def command(
                 refused = True
                 complaints.add(result)
                 if json_output:
-                    print_result(monitor_lines.refused_as_json(result))
+                    print_result(monitor_json.refused_as_json(result))
             else:
                 print_result(
-                    monitor_lines.as_json(result) if json_output else monitor_lines.as_text(result)
+                    monitor_json.as_json(result) if json_output else monitor_lines.as_text(result)
                 )
         complaints.close()
     if refused:

@@ -55,7 +55,7 @@ def command(
     The sentence in English is made from the formula, and has one reading only. Without RULE every
     rule is shown in brief, a rulebook's only one in full.
     """
-    from rulec.report.rulebooks import rule_page
+    from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
 
     if output is not None and automaton_format is None and not json_output:
@@ -75,7 +75,7 @@ def command(
         page = rule_page.page_of(chosen, one.rules[0], one.vocabulary)
     rules = book.rules if chosen is None else (chosen,)
     if json_output:
-        text = rule_page.as_json(book.name, rules, book.vocabulary, page)
+        text = rule_json.as_json(book.name, rules, book.vocabulary, page)
     elif page is None:
         text = "\n\n\n".join(
             rule_page.summary(each, book.name, book.vocabulary, width) for each in rules

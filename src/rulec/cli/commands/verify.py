@@ -119,7 +119,7 @@ class _Run:
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import Verdict
         from rulec.report.text.console import print_result
-        from rulec.report.verdicts import verdict_report
+        from rulec.report.verdicts import verdict_json, verdict_report
         from rulec.trace import Trace
 
         satisfied = violated = not_judged = 0
@@ -138,7 +138,7 @@ class _Run:
                     assert isinstance(trace, Trace), "what has a verdict is a trace"
                     explained = [explain(violation, trace, used) for violation in chosen]
                 print_result(
-                    verdict_report.as_json(answer, used, explained)
+                    verdict_json.as_json(answer, used, explained)
                     if self.json_output
                     else verdict_report.as_text(answer, used, explained, every_part=self.every_part)
                 )
@@ -146,7 +146,7 @@ class _Run:
                 not_judged += 1
                 self.complaints.add(answer.error)
                 if self.json_output:
-                    print_result(verdict_report.not_judged_as_json(answer))
+                    print_result(verdict_json.not_judged_as_json(answer))
         if not self.json_output:
             print_result(verdict_report.summary(satisfied, violated, not_judged))
         self.violated |= violated > 0
@@ -161,6 +161,7 @@ class _Run:
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
         from rulec.report.text.console import print_result, progress
+        from rulec.report.verdicts import recording_json
         from rulec.report.verdicts import recording_table as report
 
         try:
@@ -190,7 +191,7 @@ class _Run:
                     self.complaints.add(answer.answer.error)
                     self.not_answered = True
                 if self.json_output:
-                    print_result(report.as_json(answer, judged, explained))
+                    print_result(recording_json.as_json(answer, judged, explained))
         if not self.json_output:
             print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
         self.violated |= bool(tally.violated)

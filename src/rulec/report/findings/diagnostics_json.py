@@ -2,42 +2,72 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Literal
 
 from rulec.diagnostics import Diagnostic, SourceLocation
+from rulec.report.text.json_document import Document, Part, as_indented
 
 
-def as_json(found: Iterable[Diagnostic]) -> str:
-    """A list with an object for each diagnostic."""
-    return json.dumps([as_data(one) for one in found], ensure_ascii=False, indent=2)
+class PlaceData(Part, frozen=True, kw_only=True):
+    """A place in a file, counted from 1 in Unicode code points; ``end_column`` is behind it."""
+
+    file: str
+    line: int | None
+    column: int | None
+    end_line: int | None
+    end_column: int | None
 
 
-def as_data(one: Diagnostic) -> dict[str, Any]:
-    """All that a diagnostic says, as what JSON can hold."""
-    return {
-        "code": one.code,
-        "severity": one.severity,
-        "message": one.message,
-        "place": place_as_data(one.place),
-        "expected": one.expected,
-        "help": one.help,
-        "labels": [
-            {"place": place_as_data(label.place), "message": label.message} for label in one.labels
+class LabelData(Part, frozen=True, kw_only=True):
+    """A further place worth looking at."""
+
+    place: PlaceData | None
+    message: str
+
+
+class FindingData(Document, frozen=True, kw_only=True):
+    """A mistake or a warning; what it does not have is empty."""
+
+    code: str
+    severity: Literal["error", "warning"]
+    message: str
+    place: PlaceData | None
+    expected: str
+    help: str
+    labels: Sequence[LabelData]
+    notes: Sequence[str]
+
+
+def as_json(diagnostics: Iterable[Diagnostic]) -> str:
+    """Write a list with an object for each diagnostic."""
+    return as_indented([_finding(diagnostic) for diagnostic in diagnostics])
+
+
+def _finding(diagnostic: Diagnostic) -> FindingData:
+    return FindingData(
+        code=diagnostic.code,
+        severity=diagnostic.severity,
+        message=diagnostic.message,
+        place=place_data(diagnostic.place),
+        expected=diagnostic.expected,
+        help=diagnostic.help,
+        labels=[
+            LabelData(place=place_data(label.place), message=label.message)
+            for label in diagnostic.labels
         ],
-        "notes": list(one.notes),
-    }
+        notes=diagnostic.notes,
+    )
 
 
-def place_as_data(place: SourceLocation | None) -> dict[str, Any] | None:
-    """A place in numbers, counted from 1 in Unicode code points; ``end_column`` is behind it."""
+def place_data(place: SourceLocation | None) -> PlaceData | None:
+    """A place in numbers."""
     if place is None:
         return None
-    return {
-        "file": place.file,
-        "line": place.line,
-        "column": place.column,
-        "end_line": place.end_line,
-        "end_column": place.end_column,
-    }
+    return PlaceData(
+        file=place.file,
+        line=place.line,
+        column=place.column,
+        end_line=place.end_line,
+        end_column=place.end_column,
+    )

@@ -55,7 +55,9 @@ def write_envelopes(
         write_parquet(rows, list(COLUMNS.items()), stream, file)
     else:
         for row in rows:
-            stream.write(f"{json.dumps(dict(zip(COLUMNS, row, strict=True)))}\n".encode())
+            stream.write(
+                f"{json.dumps({'version': 1} | dict(zip(COLUMNS, row, strict=True)))}\n".encode()
+            )
 
 
 def _rows(

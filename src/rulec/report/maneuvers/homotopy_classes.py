@@ -1,31 +1,14 @@
-"""Homotopy classes of maneuvers, as text and as JSON."""
+"""Homotopy classes of maneuvers, as text."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from rulec.diagnostics import named
 from rulec.planning import Maneuvers
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.text.count_text import shown_count
-
-
-def as_data(
-    found: Maneuvers, classes: HomotopyClasses, variants: Sequence[Variant]
-) -> dict[str, Any]:
-    """The counts of classes, and representatives."""
-    return {
-        "total": classes.total,
-        "satisfying": classes.satisfying,
-        "divided": classes.divided,
-        "counting_steps": [rule.name for rule in found.counting_steps()],
-        "representatives": [
-            {"members": one.members, **maneuver_lines.as_data(found.graph, one.cheapest)}
-            for one in variants
-        ],
-    }
 
 
 def count_lines(found: Maneuvers, classes: HomotopyClasses) -> list[str]:

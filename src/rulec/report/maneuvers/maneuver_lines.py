@@ -1,44 +1,16 @@
-"""One maneuver: its cells and bounds in time, as lines of text and as JSON."""
+"""One maneuver: its cells and bounds in time, as lines of text."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
-from typing import Any
 
-from rulec.partition import Cell, Envelope, NavigationGraph, envelope
+from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.findings.source_excerpt import visible
 
 MOST_NAMED = 6
 """So many objects' relations fit on a line of text; JSON has them all."""
-
-
-def as_data(graph: NavigationGraph, maneuver: Maneuver) -> dict[str, Any]:
-    """Cost, margin, cells and envelope."""
-    return {
-        "cost": maneuver.cost,
-        "margin_s": maneuver.margin_s,
-        "cells": [
-            {
-                "cell": index,
-                "start_s": layer.start_s,
-                "surface": layer.cells[index].surface,
-                "signature": layer.cells[index].signature,
-            }
-            for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
-        ],
-        "envelope": [_bounds(bounds) for bounds in envelope(graph, maneuver.nodes)],
-    }
-
-
-def _bounds(bounds: Envelope) -> dict[str, Any]:
-    return {
-        "s_min": bounds.s_min,
-        "s_max": bounds.s_max,
-        "d_left": bounds.d_left,
-        "d_right": bounds.d_right,
-    }
 
 
 def in_a_line(maneuver: Maneuver) -> str:

@@ -1,11 +1,10 @@
-"""How probable it is that maneuvers keep rules, as text and as JSON."""
+"""How probable it is that maneuvers keep rules, as text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import prod
-from typing import Any
 
 from rulec.planning.probability.alternative_predictions import AlternativeCounts
 from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
@@ -16,26 +15,6 @@ from rulec.scenario import Scenario
 
 MOST_BINDINGS = 3
 """For so many objects a rule's probability is said in text; JSON has them all."""
-
-
-def as_data(chances: RuleProbabilities) -> dict[str, Any]:
-    """The probabilities as JSON has them."""
-    return {
-        "clear": float(chances.clear),
-        "every_hard_rule": _number(chances.hard),
-        "rules": [
-            {
-                "rule": one.rule.name,
-                "strength": one.rule.strength,
-                "kept": _number(one.kept),
-                "bindings": [
-                    {"binding": dict(each.binding), "kept": float(each.kept)}
-                    for each in one.bindings
-                ],
-            }
-            for one in chances.rules
-        ],
-    }
 
 
 def lines(chances: RuleProbabilities) -> list[str]:
@@ -70,20 +49,6 @@ def world_lines(worlds: Sequence[AlternativeCounts]) -> Iterator[str]:
         )
 
 
-def worlds_as_data(worlds: Sequence[AlternativeCounts]) -> list[dict[str, Any]]:
-    """The same as JSON has it."""
-    return [
-        {
-            "obstacle": one.obstacle,
-            "prediction": one.number + 1,
-            "weight": float(one.weight),
-            "traces": one.traces,
-            "satisfying": one.satisfying,
-        }
-        for one in worlds
-    ]
-
-
 def _of_rule(one: RuleProbability) -> str:
     if one.kept is None:
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
@@ -99,7 +64,3 @@ def _of_rule(one: RuleProbability) -> str:
 
 def _shown(number: Fraction | None) -> str:
     return "not known" if number is None else f"{float(number):.4g}"
-
-
-def _number(number: Fraction | None) -> float | None:
-    return None if number is None else float(number)

@@ -1,35 +1,15 @@
-"""Which rule prunes how many maneuvers, as a table and as JSON."""
+"""Which rule prunes how many maneuvers, as a table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from rulec.planning import Maneuvers, RulePruning
 from rulec.report.maneuvers import maneuver_lines
-from rulec.report.maneuvers.ranked_maneuvers import violation_as_data, when_lost
+from rulec.report.maneuvers.ranked_maneuvers import when_lost
 from rulec.report.text.count_text import shown_count
 
 HEAD = ("rule", "violated by", "alone by", "for example")
-
-
-def as_data(found: Maneuvers, pruning: RulePruning) -> dict[str, Any]:
-    """The counts, and the example with what it violates of this rule."""
-    example = None
-    if pruning.example is not None:
-        example = {
-            "violations": [
-                violation_as_data(found, one, pruning.rule) for one in pruning.violations
-            ],
-            **maneuver_lines.as_data(found.graph, pruning.example),
-        }
-    return {
-        "rule": pruning.rule.name,
-        "strength": pruning.rule.strength,
-        "violating": pruning.violating,
-        "alone": pruning.alone,
-        "example": example,
-    }
 
 
 def table(found: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:

@@ -1,12 +1,10 @@
-"""Maneuvers ranked by what they violate, as text and as JSON."""
+"""Maneuvers ranked by what they violate, as text."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import Violation
 from rulec.planning import Maneuvers, RankedManeuver
@@ -17,38 +15,6 @@ from rulec.report.text.count_text import shown_count
 
 MOST_VIOLATIONS = 20
 """So many are shown for a maneuver; JSON has them all."""
-
-
-def as_data(found: Maneuvers, ranked: RankedManeuver) -> dict[str, Any]:
-    """The maneuver with its place, penalty and violations."""
-    rules = {rule.name: rule for rule in found.rules.rules}
-    return {
-        "place": ranked.place,
-        "penalty": [
-            {
-                "strength": rank.strength,
-                "levels": [level or None for level in rank.levels],
-                "weight": _plain(weight),
-            }
-            for rank, weight in ranked.penalty.items()
-        ],
-        "members": ranked.members,
-        "violations": [violation_as_data(found, one, rules[one.rule]) for one in ranked.violations],
-        **maneuver_lines.as_data(found.graph, ranked.maneuver),
-    }
-
-
-def violation_as_data(found: Maneuvers, one: Violation, rule: CompiledRule) -> dict[str, Any]:
-    """A violation; ``lost_s`` is when the cell begins that violates the rule for good."""
-    return {
-        "rule": one.rule,
-        "cite": rule.cite,
-        "binding": dict(one.binding),
-        "lost_s": None if one.step is None else found.graph.layers[one.step].start_s,
-        "strength": one.strength,
-        "level": rule.level or None,
-        "weight": _plain(rule.weight),
-    }
 
 
 def blocks(found: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
@@ -92,7 +58,3 @@ def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:
 
 def _levels(rank: PenaltyRank) -> str:
     return " = ".join(level or "(no level)" for level in rank.levels)
-
-
-def _plain(number: Fraction) -> int | float:
-    return int(number) if number.denominator == 1 else float(number)

@@ -10,20 +10,13 @@ from rulec.report.findings.source_excerpt import visible
 from rulec.scenario import Account
 
 
-def as_data(found: Maneuvers, account: Account) -> dict[str, Any]:
-    """For JSON: the lanelet, counts of obstacles, derived signals with their reasons."""
-    supplied = found.paths.states[0][0]
+def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[Any, str]]:
+    """The signals that the recording supplies, each with its value and the reason for it."""
+    supplied = maneuvers.paths.states[0][0]
     return {
-        "reference": account.reference,
-        "obstacles": account.recorded,
-        "left_out": account.left_out,
-        "recorded_until_s": account.until_s,
-        "remarks": list(account.remarks),
-        "derived": {
-            name: {"value": supplied[name], "because": why}
-            for name, why in account.derived.items()
-            if name in supplied
-        },
+        name: (supplied[name], because)
+        for name, because in account.derived.items()
+        if name in supplied
     }
 
 
@@ -38,8 +31,8 @@ def lines(found: Maneuvers, account: Account) -> Iterator[str]:
             f"recorded    until {max(account.until_s, 0):g} s; who is there then is taken to go on "
             "at its last speed"
         )
-    for name, item in as_data(found, account)["derived"].items():
-        value = str(item["value"]).lower() if isinstance(item["value"], bool) else item["value"]
-        yield visible(f"derived     {name} = {value}: {item['because']}")
+    for name, (value, because) in derived_signals(found, account).items():
+        shown = str(value).lower() if isinstance(value, bool) else value
+        yield visible(f"derived     {name} = {shown}: {because}")
     for remark in account.remarks:
         yield visible(f"note        {remark}")

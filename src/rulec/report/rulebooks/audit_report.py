@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import dataclass, fields
 from itertools import groupby
 from textwrap import fill, wrap
 
@@ -14,10 +13,24 @@ from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.console import PAGE_WIDTH
+from rulec.report.text.json_document import Document, as_indented
 from rulec.report.text.markdown import code, escaped, table
 
 Compared = Mapping[str, AuditChanges]
 """Rulebook -> what has changed since an older audit of it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparedAudit(Audit):
+    """An audit, and what has changed since an older one if there was any."""
+
+    changes: AuditChanges | None
+
+
+class AuditDocument(Document, frozen=True, kw_only=True):
+    """The audits of rulebooks."""
+
+    audits: Sequence[ComparedAudit]
 
 
 def render(
@@ -140,8 +153,14 @@ def _changes_as_markdown(compared: AuditChanges) -> str:
 
 
 def _as_json(audits: Sequence[Audit], compared: Compared) -> str:
-    document = []
-    for one in audits:
-        changed = compared.get(one.rulebook)
-        document.append(asdict(one) | {"changes": None if changed is None else asdict(changed)})
-    return json.dumps({"audits": document}, ensure_ascii=False, indent=2)
+    return as_indented(
+        AuditDocument(
+            audits=[
+                ComparedAudit(
+                    **{field.name: getattr(audit, field.name) for field in fields(audit)},
+                    changes=compared.get(audit.rulebook),
+                )
+                for audit in audits
+            ]
+        )
+    )

@@ -1,54 +1,138 @@
-"""How two rulebooks differ, as JSON; docs/commands.md describes it."""
+"""The difference of two rulebooks as JSON; docs/commands.md describes it."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
-from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
+from msgspec import UNSET, UnsetType
+
+from rulec.analysis.diff.rule_comparison import RuleRelation
+from rulec.analysis.diff.rulebook_comparison import (
+    OneSided,
+    RulebookDiff,
+    RulePair,
+    SettingPair,
+)
 from rulec.logic.printing import number_in_words
-from rulec.rulebook.model import Rule, Rulebook
-from rulec.trace.formats.json_lines import as_record
+from rulec.report.text.json_document import Document, Part, as_indented
+from rulec.rulebook.model import Certainty, Rule, Rulebook, Strength, Variable
+from rulec.trace import Trace
 
 
-def as_json(found: RulebookDiff) -> str:
-    """One object."""
-    document = {
-        "first": _book(found.first),
-        "second": _book(found.second),
-        "rules": [_pair(pair) for pair in found.pairs],
-        "only_first": _only(found.only_first),
-        "only_second": _only(found.only_second),
-        "settings": [asdict(one) for one in found.settings],
-    }
-    return json.dumps(document, ensure_ascii=False, indent=2)
+class BookData(Part, frozen=True, kw_only=True):
+    """A rulebook, and the day whose law it is."""
+
+    name: str
+    title: str
+    at: str
 
 
-def _book(book: Rulebook) -> dict[str, Any]:
-    return {"name": book.name, "title": book.title, "at": book.at}
+class RuleSide(Part, frozen=True, kw_only=True):
+    """A rule as one rulebook says it; its weight is an exact number."""
+
+    strength: Strength
+    variables: Sequence[Variable]
+    level: str | None
+    weight: str
+    cite: str
+    says: str
+    certainty: Certainty
+    book: str
 
 
-def _pair(pair: RulePair) -> dict[str, Any]:
-    found = pair.comparison
-    return {
-        "rule": pair.name,
-        "relation": pair.relation,
-        "undecided": found.undecided or None,
-        "first": _rule(pair.first),
-        "second": _rule(pair.second),
-        "common_types": list(found.common) or None,
-        "on_common_types": found.on_common,
-        "first_forbids": [as_record(trace) for trace in found.first_forbids],
-        "second_forbids": [as_record(trace) for trace in found.second_forbids],
-    }
+class TraceData(Part, frozen=True, kw_only=True):
+    """A trace, as docs/traces.md describes it."""
+
+    id: str
+    step_s: float
+    objects: Mapping[str, str]
+    states: Sequence[Mapping[str, Any]]
+    present: Mapping[str, tuple[int, int]] | UnsetType = UNSET
 
 
-def _rule(rule: Rule) -> dict[str, Any]:
+class RulePairData(Part, frozen=True, kw_only=True):
+    """A rule that both rulebooks have; the relation is that of the first to the second one.
+
+    Where they speak of different types of objects, it is compared on those in common.
+    """
+
+    rule: str
+    relation: RuleRelation
+    undecided: str | None
+    first: RuleSide
+    second: RuleSide
+    common_types: Sequence[str] | None
+    on_common_types: RuleRelation | None
+    first_forbids: Sequence[TraceData]
+    second_forbids: Sequence[TraceData]
+
+
+class OneSidedRule(Part, frozen=True, kw_only=True):
+    """A rule that one rulebook has, and what the other one remarks on that."""
+
+    rule: str
+    strength: Strength
+    variables: Sequence[Variable]
+    level: str | None
+    weight: str
+    cite: str
+    says: str
+    certainty: Certainty
+    book: str
+    remark: Literal["dropped", "silent", "softened"] | None
+    because: str | None
+
+
+class DiffDocument(Document, frozen=True, kw_only=True):
+    """The rules of two rulebooks side by side."""
+
+    first: BookData
+    second: BookData
+    rules: Sequence[RulePairData]
+    only_first: Sequence[OneSidedRule]
+    only_second: Sequence[OneSidedRule]
+    settings: Sequence[SettingPair]
+
+
+def as_json(diff: RulebookDiff) -> str:
+    """Write one object."""
+    return as_indented(
+        DiffDocument(
+            first=book_data(diff.first),
+            second=book_data(diff.second),
+            rules=[_pair(pair) for pair in diff.pairs],
+            only_first=[_one_sided(rule) for rule in diff.only_first],
+            only_second=[_one_sided(rule) for rule in diff.only_second],
+            settings=diff.settings,
+        )
+    )
+
+
+def book_data(book: Rulebook) -> BookData:
+    """The rulebook by its name, title and day."""
+    return BookData(name=book.name, title=book.title, at=book.at)
+
+
+def _pair(pair: RulePair) -> RulePairData:
+    comparison = pair.comparison
+    return RulePairData(
+        rule=pair.name,
+        relation=pair.relation,
+        undecided=comparison.undecided or None,
+        first=RuleSide(**_side(pair.first)),
+        second=RuleSide(**_side(pair.second)),
+        common_types=comparison.common or None,
+        on_common_types=comparison.on_common,
+        first_forbids=[_trace(trace) for trace in comparison.first_forbids],
+        second_forbids=[_trace(trace) for trace in comparison.second_forbids],
+    )
+
+
+def _side(rule: Rule) -> dict[str, Any]:
     return {
         "strength": rule.strength,
-        "variables": [{"name": one.name, "type": one.type} for one in rule.variables],
+        "variables": rule.variables,
         "level": rule.level or None,
         "weight": number_in_words(rule.weight),
         "cite": rule.cite,
@@ -58,13 +142,21 @@ def _rule(rule: Rule) -> dict[str, Any]:
     }
 
 
-def _only(rules: Sequence[OneSided]) -> list[dict[str, Any]]:
-    return [
-        {
-            "rule": one.rule.name,
-            **_rule(one.rule),
-            "remark": one.remark.kind if one.remark else None,
-            "because": one.remark.because if one.remark else None,
-        }
-        for one in rules
-    ]
+def _one_sided(rule: OneSided) -> OneSidedRule:
+    remark = rule.remark
+    return OneSidedRule(
+        rule=rule.rule.name,
+        **_side(rule.rule),
+        remark=remark.kind if remark else None,
+        because=remark.because if remark else None,
+    )
+
+
+def _trace(trace: Trace) -> TraceData:
+    return TraceData(
+        id=trace.id,
+        step_s=trace.step_s,
+        objects=trace.objects,
+        states=trace.states,
+        present=trace.present or UNSET,
+    )

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from fnmatch import fnmatchcase
 from io import StringIO
-from typing import Any
 
 from rich.console import Console
 from rich.text import Text
@@ -19,11 +16,13 @@ from rulec.analysis.lineage.rule_lineage import (
     BookLineage,
     ConstantHistory,
     ConstantValue,
+    LineageAction,
     LineageStep,
     RuleHistory,
 )
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.rulebooks.rule_provenance import provenance
+from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 
@@ -34,6 +33,38 @@ _DEEDS = {
     "dropped": "dropped by",
     "silent": "passed over in silence by",
 }
+
+
+class LineageStepData(Part, frozen=True, kw_only=True):
+    """What a rulebook of the chain does to a rule."""
+
+    book: str
+    deed: LineageAction
+    clauses: Sequence[str]
+    because: str
+
+
+class RuleLineageData(Part, frozen=True, kw_only=True):
+    """A rule from the rulebook that declares it on; it may be gone at the end."""
+
+    name: str
+    gone: bool
+    steps: Sequence[LineageStepData]
+
+
+class LineageDocument(Document, frozen=True, kw_only=True):
+    """A rulebook's chain, the most general rulebook first, its rules and provisions."""
+
+    rulebook: str
+    books: Sequence[BookHeader]
+    rules: Sequence[RuleLineageData]
+    provisions: Sequence[ConstantHistory]
+
+
+class ForestDocument(Document, frozen=True, kw_only=True):
+    """Every rulebook, each behind the one that it extends."""
+
+    books: Sequence[BookHeader]
 
 
 def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
@@ -147,37 +178,28 @@ def _when(setting: ConstantValue) -> str:
 
 
 def as_json(inherited: BookLineage) -> str:
-    """The same as data."""
-    return json.dumps(
-        {
-            "rulebook": inherited.book,
-            "books": [asdict(one) for one in inherited.books],
-            "rules": [_rule_as_data(one) for one in inherited.rules],
-            "provisions": [asdict(one) for one in inherited.provisions],
-        },
-        ensure_ascii=False,
-        indent=2,
+    """Write the chain, the rules' histories and the provisions."""
+    return as_indented(
+        LineageDocument(
+            rulebook=inherited.book,
+            books=inherited.books,
+            rules=[_rule_data(history) for history in inherited.rules],
+            provisions=inherited.provisions,
+        )
     )
 
 
-def _rule_as_data(one: RuleHistory) -> dict[str, Any]:
+def _rule_data(history: RuleHistory) -> RuleLineageData:
     steps = [
-        {
-            "book": step.book,
-            "deed": step.deed,
-            "clauses": list(step.clauses),
-            "because": step.because,
-        }
-        for step in one.steps
+        LineageStepData(book=step.book, deed=step.deed, clauses=step.clauses, because=step.because)
+        for step in history.steps
     ]
-    return {"name": one.name, "gone": one.rule is None, "steps": steps}
+    return RuleLineageData(name=history.name, gone=history.rule is None, steps=steps)
 
 
 def forest_as_json(branches: Sequence[ExtensionTree]) -> str:
-    """Every rulebook, each behind the one that it extends."""
-    return json.dumps(
-        {"books": [asdict(one) for one in _members(branches)]}, ensure_ascii=False, indent=2
-    )
+    """Write every rulebook, each behind the one that it extends."""
+    return as_indented(ForestDocument(books=list(_members(branches))))
 
 
 def _members(branches: Sequence[ExtensionTree]) -> Iterator[BookHeader]:

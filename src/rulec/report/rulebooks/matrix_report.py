@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from textwrap import fill
-from typing import Any
 
 import click
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.rulebooks.diff_csv import table as csv_table
+from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
+from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
+from rulec.rulebook.model import Strength
 
 SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
 """What stands behind a number of rules."""
@@ -33,6 +34,44 @@ PAIRS = (
 )
 
 TITLE = "Rulebooks compared"
+
+
+class RuleInBook(Part, frozen=True, kw_only=True):
+    """A rule in one rulebook: a letter for its law, all of it null where there is no such rule."""
+
+    name: str
+    law: str | None
+    strength: Strength | None
+    because: str | None
+
+
+class SharedRuleData(Part, frozen=True, kw_only=True):
+    """A rule in each of the rulebooks; those with the same letter forbid the same traces."""
+
+    rule: str
+    books: Sequence[RuleInBook]
+
+
+class BookPairData(Part, frozen=True, kw_only=True):
+    """How many rules of the first rulebook are what to those of the second."""
+
+    first: str
+    second: str
+    equal: int
+    stricter: int
+    laxer: int
+    incomparable: int
+    undecided: int
+    only: int
+    silent: int
+
+
+class MatrixDocument(Document, frozen=True, kw_only=True):
+    """Many rulebooks side by side."""
+
+    books: Sequence[BookData]
+    rules: Sequence[SharedRuleData]
+    pairs: Sequence[BookPairData]
 
 
 def render(found: ComparisonMatrix, output_format: str) -> str:
@@ -142,33 +181,31 @@ def _as_csv(found: ComparisonMatrix) -> str:
     return csv_table([("rule", "first", "second", "relation"), *rows])
 
 
-def _as_json(found: ComparisonMatrix) -> str:
-    document = {
-        "books": [{"name": book.name, "title": book.title, "at": book.at} for book in found.books],
-        "rules": [_rule(rule, [book.name for book in found.books]) for rule in found.rules],
-        "pairs": [
-            {"first": one, "second": other, **_counts(found, one, other)}
-            for one, other in pairs(found.books)
-        ],
-    }
-    return json.dumps(document, ensure_ascii=False, indent=2)
+def _as_json(matrix: ComparisonMatrix) -> str:
+    names = [book.name for book in matrix.books]
+    return as_indented(
+        MatrixDocument(
+            books=[book_data(book) for book in matrix.books],
+            rules=[_shared_rule(rule, names) for rule in matrix.rules],
+            pairs=[_book_pair(matrix, first, second) for first, second in pairs(matrix.books)],
+        )
+    )
 
 
-def _rule(rule: SharedRule, names: Sequence[str]) -> dict[str, Any]:
-    return {
-        "rule": rule.name,
-        "books": [
-            {
-                "name": name,
-                "law": rule.letter(name) or None,
-                "strength": rule.rules[name].strength if name in rule.rules else None,
-                "because": rule.remarks[name].because if name in rule.remarks else None,
-            }
-            for name in names
-        ],
-    }
+def _shared_rule(rule: SharedRule, names: Sequence[str]) -> SharedRuleData:
+    books = [
+        RuleInBook(
+            name=name,
+            law=rule.letter(name) or None,
+            strength=rule.rules[name].strength if name in rule.rules else None,
+            because=rule.remarks[name].because if name in rule.remarks else None,
+        )
+        for name in names
+    ]
+    return SharedRuleData(rule=rule.name, books=books)
 
 
-def _counts(found: ComparisonMatrix, one: str, other: str) -> dict[str, int]:
-    counted = found.counts(one, other)
-    return {kind: counted[kind] for kind in (*SIGNS, "only", "silent")}
+def _book_pair(matrix: ComparisonMatrix, first: str, second: str) -> BookPairData:
+    counts = matrix.counts(first, second)
+    by_relation = {relation: counts[relation] for relation in (*SIGNS, "only", "silent")}
+    return BookPairData(first=first, second=second, **by_relation)

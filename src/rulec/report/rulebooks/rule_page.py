@@ -1,13 +1,11 @@
-"""All about one rule: what it says, what it means, and what it does, as text and as data."""
+"""All about one rule: what it says, what it means, and what it does, as text."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import wrap
-from typing import Any
 
 import click
 
@@ -15,7 +13,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.constant_folding import fold_constants
 from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
 from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
-from rulec.logic.english.sentence_layout import in_one_line, lines
+from rulec.logic.english.sentence_layout import lines
 from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import in_words
 from rulec.report.automata import automaton_text
@@ -217,60 +215,3 @@ def _examples(page: RulePage) -> Iterator[str]:
         objects = ", ".join(f"{one.name}: {one.type}" for one in trace.objects)
         yield f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
         yield from (f"  # where {remark}" for remark in trace.remarks)
-
-
-def as_json(
-    rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
-) -> str:
-    """An object with the rules, and of the one that has a page all that is on it."""
-    shown = [_as_data(rule, vocabulary) for rule in rules]
-    if page is not None:
-        shown[0] |= {
-            "automaton": {
-                "states": [
-                    {"state": state, "fate": fate}
-                    for state, fate in enumerate(page.automaton.fates)
-                ],
-                "transitions": [
-                    {
-                        "source": one.source,
-                        "target": one.target,
-                        "condition": one.condition,
-                        "otherwise": one.otherwise,
-                        "accepted": one.accepted,
-                    }
-                    for one in page.automaton.transitions
-                ],
-            },
-            "step_s": None if page.step_s is None else float(page.step_s),
-            "accepts": _trace_as_data(page.accepted),
-            "rejects": _trace_as_data(page.rejected),
-        }
-    return json.dumps({"rulebook": rulebook, "rules": shown}, ensure_ascii=False, indent=2)
-
-
-def _trace_as_data(trace: ShownTrace | None) -> dict[str, Any] | None:
-    if trace is None:
-        return None
-    objects = [{"name": one.name, "type": one.type} for one in trace.objects]
-    return {"objects": objects, "states": trace.states, "remarks": trace.remarks}
-
-
-def _as_data(rule: Rule, vocabulary: Vocabulary) -> dict[str, Any]:
-    return {
-        "name": rule.name,
-        "strength": rule.strength,
-        "variables": [{"name": one.name, "type": one.type} for one in rule.variables],
-        "cite": rule.cite,
-        "says": rule.says,
-        "source": rule.source,
-        "certainty": rule.certainty,
-        "level": rule.level,
-        "weight": float(rule.weight),
-        "in_force_from": rule.in_force_from,
-        "in_force_until": rule.in_force_until,
-        "book": rule.book,
-        "sentence": in_one_line(phrase_of(rule, vocabulary)),
-        "restrictions": [in_one_line(phrase) for phrase in restrictions_of(rule)],
-        "formula": in_words(rule.formula),
-    }

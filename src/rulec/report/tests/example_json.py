@@ -1,81 +1,139 @@
-"""How examples came out, and what they cover, as JSON; docs/commands.md describes it."""
+"""Outcomes of examples, and what they cover, as JSON; docs/commands.md describes it."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from typing import Any
+from typing import Literal
 
 from rulec.book_tests.edge_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
-from rulec.report.findings.diagnostics_json import place_as_data
+from rulec.report.findings.diagnostics_json import PlaceData, place_data
 from rulec.report.tests.example_text import missing_example
+from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.rulebook.model import Rulebook
+
+ExampleVerdict = Literal["accept", "reject"]
+
+
+class OutcomeData(Part, frozen=True, kw_only=True):
+    """An example: the verdict that it states, and the one that its rule comes to."""
+
+    rulebook: str
+    rule: str
+    label: str
+    number: int
+    says: ExampleVerdict
+    does: ExampleVerdict
+    passed: bool
+    lost_after: int | None
+    place: PlaceData | None
+
+
+class MissingEdgeData(Part, frozen=True, kw_only=True):
+    """An edge of the automaton that no example takes, and an example that would."""
+
+    source: int
+    target: int
+    example: str
+
+
+class MissingValueData(Part, frozen=True, kw_only=True):
+    """A value of an atom that no example has."""
+
+    atom: str
+    value: bool
+
+
+class RuleCoverageData(Part, frozen=True, kw_only=True):
+    """How much of a rule's automaton, and of its atoms' values, the examples meet."""
+
+    rulebook: str
+    rule: str
+    percent: float
+    edges: int
+    missing_edges: Sequence[MissingEdgeData]
+    values: int
+    missing_values: Sequence[MissingValueData]
+
+
+class CoverageData(Part, frozen=True, kw_only=True):
+    """The coverage of all rules together, and of each."""
+
+    percent: float
+    rules: Sequence[RuleCoverageData]
+
+
+class ExamplesRun(Document, frozen=True, kw_only=True):
+    """The examples of rulebooks; ``coverage`` is null if nobody asked for it."""
+
+    examples: Sequence[OutcomeData]
+    passed: int
+    failed: int
+    coverage: CoverageData | None
 
 
 def as_json(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
-    """One object.
-
-    Args:
-        runs: a run for each rulebook.
-        covered: the coverage of each run; None if nobody asked.
-    """
-    outcomes = [one for run in runs for one in run.outcomes]
-    passed = sum(one.passed for one in outcomes)
-    document = {
-        "examples": [_outcome(run.rulebook.name, one) for run in runs for one in run.outcomes],
-        "passed": passed,
-        "failed": len(outcomes) - passed,
-        "coverage": None if covered is None else _coverage(runs, covered),
-    }
-    return json.dumps(document, ensure_ascii=False, indent=2)
+    """Write the runs of rulebooks, with the coverage of each unless it is None."""
+    outcomes = [outcome for run in runs for outcome in run.outcomes]
+    passed = sum(outcome.passed for outcome in outcomes)
+    return as_indented(
+        ExamplesRun(
+            examples=[
+                _outcome(run.rulebook.name, outcome) for run in runs for outcome in run.outcomes
+            ],
+            passed=passed,
+            failed=len(outcomes) - passed,
+            coverage=None if covered is None else _coverage(runs, covered),
+        )
+    )
 
 
-def _outcome(rulebook: str, one: ExampleOutcome) -> dict[str, Any]:
-    return {
-        "rulebook": rulebook,
-        "rule": one.rule.name,
-        "label": one.example.label,
-        "number": one.number,
-        "says": "accept" if one.example.accepts else "reject",
-        "does": "accept" if one.accepted else "reject",
-        "passed": one.passed,
-        "lost_after": one.lost_after,
-        "place": place_as_data(at(one.example.span)),
-    }
+def _outcome(rulebook: str, outcome: ExampleOutcome) -> OutcomeData:
+    return OutcomeData(
+        rulebook=rulebook,
+        rule=outcome.rule.name,
+        label=outcome.example.label,
+        number=outcome.number,
+        says="accept" if outcome.example.accepts else "reject",
+        does="accept" if outcome.accepted else "reject",
+        passed=outcome.passed,
+        lost_after=outcome.lost_after,
+        place=place_data(at(outcome.example.span)),
+    )
 
 
 def _coverage(
     runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]
-) -> dict[str, Any]:
-    return {
-        "percent": round(percent(rule for rules in covered for rule in rules), 3),
-        "rules": [
-            _rule(run.rulebook, one)
+) -> CoverageData:
+    return CoverageData(
+        percent=round(percent(rule for rules in covered for rule in rules), 3),
+        rules=[
+            _rule(run.rulebook, rule)
             for run, rules in zip(runs, covered, strict=True)
-            for one in rules
+            for rule in rules
         ],
-    }
+    )
 
 
-def _rule(rulebook: Rulebook, one: RuleCoverage) -> dict[str, Any]:
-    return {
-        "rulebook": rulebook.name,
-        "rule": one.rule,
-        "percent": round(percent([one]), 3),
-        "edges": one.n_edges,
-        "missing_edges": [
-            {
-                "source": edge.source,
-                "target": edge.target,
-                "example": missing_example(edge, rulebook.vocabulary),
-            }
-            for edge in one.missing_edges
+def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
+    return RuleCoverageData(
+        rulebook=rulebook.name,
+        rule=rule.rule,
+        percent=round(percent([rule]), 3),
+        edges=rule.n_edges,
+        missing_edges=[
+            MissingEdgeData(
+                source=edge.source,
+                target=edge.target,
+                example=missing_example(edge, rulebook.vocabulary),
+            )
+            for edge in rule.missing_edges
         ],
-        "values": one.n_values,
-        "missing_values": [
-            {"atom": in_words(atom), "value": value} for atom, value in one.missing_values
+        values=rule.n_values,
+        missing_values=[
+            MissingValueData(atom=in_words(atom), value=value)
+            for atom, value in rule.missing_values
         ],
-    }
+    )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import shorten
+from typing import Any
+
+from msgspec import UNSET, UnsetType
 
 from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.json_document import Document, as_indented
 
 LONGEST_TITLE = 90
 
@@ -19,6 +22,15 @@ class Listed:
     name: str
     title: str
     path: str | None = None
+
+
+class ListingDocument(Document, frozen=True, kw_only=True):
+    """A list for each kind that was asked for; what comes from no file has no path."""
+
+    rulebooks: Sequence[Listed] | UnsetType = UNSET
+    vocabularies: Sequence[Listed] | UnsetType = UNSET
+    scenarios: Sequence[Listed] | UnsetType = UNSET
+    codes: Sequence[Listed] | UnsetType = UNSET
 
 
 def as_text(kinds: Mapping[str, Sequence[Listed]]) -> str:
@@ -38,9 +50,6 @@ def _short(title: str) -> str:
 
 
 def as_json(kinds: Mapping[str, Sequence[Listed]]) -> str:
-    """An object with a list for each kind."""
-    document = {
-        kind: [{"name": one.name, "title": one.title, "path": one.path} for one in listed]
-        for kind, listed in kinds.items()
-    }
-    return json.dumps(document, ensure_ascii=False, indent=2)
+    """Write an object with a list for each kind."""
+    lists: Mapping[str, Any] = kinds
+    return as_indented(ListingDocument(**lists))

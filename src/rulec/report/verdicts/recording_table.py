@@ -1,8 +1,7 @@
-"""What the vehicles of a recording did, as a table of rules and vehicles, and as JSON."""
+"""What the vehicles of a recording did, as a table of rules and vehicles."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from textwrap import shorten
 
@@ -11,7 +10,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.violation_tally import ViolationTally
 from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verdict import Verdict
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts import verdict_report
 
@@ -20,34 +19,6 @@ MOST_DEFAULTS = 4
 
 MOST_VEHICLES = 6
 LONGEST_RULE = 48
-
-
-def as_json(
-    one: DriveVerdict | NoDrive, judged: RecordingVerdicts, explained: Sequence[Explanation]
-) -> str:
-    """One line of JSON for a drive: as for any trace, and what became of the recording."""
-    recording = judged.recording
-    about = {"recording": recording.name, "mirrored": judged.mirrored}
-    if recording.remarks:
-        about["remarks"] = list(recording.remarks)
-    if isinstance(one, NoDrive):
-        return json.dumps({"trace": one.ego, **about, "why_not": one.why}, ensure_ascii=False)
-    drive = one.drive
-    if isinstance(one.answer, NotJudged):
-        data = json.loads(verdict_report.not_judged_as_json(one.answer))
-    else:
-        data = json.loads(verdict_report.as_json(one.answer, judged.rules, explained))
-        for violation in data["violations"]:
-            violation["time_s"] = drive.time_s(violation["step"])
-        by_rule = judged.by_default(drive.words)
-        for violation in data["violations"]:
-            violation["by_default"] = list(by_rule[violation["rule"]])
-    about |= {
-        "start_s": drive.start_s,
-        "step_s": drive.trace.step_s,
-        "by_default": _everything(judged, drive.words),
-    }
-    return json.dumps({**data, **about}, ensure_ascii=False)
 
 
 def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
@@ -63,7 +34,7 @@ def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
             f"mirrored    recorded where traffic keeps to the {before}, "
             f"judged as if it kept to the {recording.side}"
         )
-    defaults = _everything(judged, tally.words or frozenset())
+    defaults = defaulted_names(judged, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {_some(defaults)}: the recording does not say")
     lines += [f"note        {remark}" for remark in recording.remarks]
@@ -89,7 +60,7 @@ def _vehicles(egos: Sequence[str]) -> str:
     return f"{', '.join(egos[:MOST_VEHICLES])} and {len(egos) - MOST_VEHICLES} more"
 
 
-def _everything(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
+def defaulted_names(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
     """What rules read and these words leave out, in the order of the vocabulary."""
     missing = {name for names in judged.by_default(words).values() for name in names}
     return [name for name in judged.rules.vocabulary.declarations if name in missing]

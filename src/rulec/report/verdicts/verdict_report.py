@@ -1,70 +1,20 @@
-"""Verdicts as text for people and as JSON for machines."""
+"""Verdicts on traces as text."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from typing import Any
 
 import click
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.diagnostics import RulecError
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts import violation_table
 
 MOST_VIOLATIONS = 20
 """So many are shown for a trace; JSON has them all."""
-
-_ENCODE = json.JSONEncoder(ensure_ascii=False).encode
-
-
-def as_json(
-    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
-) -> str:
-    """One line of JSON for a trace, as docs/traces.md describes it.
-
-    ``explained`` are explanations of the first violations, which get a field of their own.
-    """
-    rules = {rule.name: rule for rule in rulebook.rules}
-    violations = [_as_data(violation, rules[violation.rule]) for violation in verdict.violations]
-    for violation, why in zip(violations, explained, strict=False):
-        violation["explanation"] = violation_table.as_data(why)
-    return _ENCODE(
-        {"trace": verdict.trace, "satisfied": verdict.satisfied, "violations": violations}
-    )
-
-
-def _as_data(violation: Violation, rule: CompiledRule) -> dict[str, Any]:
-    whole = rule.weight.denominator == 1
-    return {
-        "rule": violation.rule,
-        "binding": dict(violation.binding),
-        "step": violation.step,
-        "strength": violation.strength,
-        "level": rule.level or None,
-        "weight": int(rule.weight) if whole else float(rule.weight),
-    }
-
-
-def not_judged_as_json(answer: NotJudged) -> str:
-    """One line of JSON for a trace that could not be judged; ``trace`` is null if it has no id."""
-    return _ENCODE({"trace": answer.trace, "error": error_as_data(answer.error)})
-
-
-def error_as_data(error: RulecError) -> dict[str, Any]:
-    """What is wrong with a trace or a state, and where."""
-    diagnostic = error.diagnostics[0]
-    place = diagnostic.place
-    return {
-        "code": diagnostic.code,
-        "message": diagnostic.message,
-        "file": place.file if place else None,
-        "line": place.line if place else None,
-    }
 
 
 def as_text(

@@ -1,4 +1,4 @@
-"""An explained violation as a table of states, and as data."""
+"""An explained violation as a table of states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from decimal import Decimal
 from itertools import groupby
 from operator import itemgetter
 from textwrap import wrap
-from typing import Any
 
 import click
 
@@ -44,40 +43,6 @@ MOST_OF_NAMES = 16
 INDENT = "    "
 
 
-def as_data(explanation: Explanation) -> dict[str, Any]:
-    """The explanation for JSON."""
-    return {
-        "book": explanation.rule.book,
-        "cite": explanation.rule.cite,
-        "says": explanation.rule.says,
-        "states": explanation.states,
-        "decisive": explanation.decisive,
-        "facts": [_as_data(fact) for fact in explanation.facts],
-        "parts": [
-            {
-                "formula": part.text,
-                "depth": part.depth,
-                "values": part.values,
-                "changed": part.changed,
-                "decides": part.decides,
-            }
-            for part in explanation.parts
-        ],
-        "repair": explanation.repair
-        and [{"state": number, "says": says} for number, says in _repaired(explanation)],
-    }
-
-
-def _as_data(fact: Observation) -> dict[str, Any]:
-    data = {"reads": fact.text, "values": fact.values, "changed": fact.changed}
-    data["decides"] = fact.decides
-    if fact.unit:
-        data["unit"] = fact.unit
-    if fact.objects is not None:
-        data["objects"] = fact.objects
-    return data
-
-
 def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
     """The rule's sentence and the table; ``*`` marks what changed with the decisive state.
 
@@ -109,7 +74,7 @@ def _repair(explanation: Explanation) -> Iterator[str]:
         yield f"{INDENT}no trace of as many states keeps it"
     changes = [
         (_states(list(run)), visible(says))
-        for says, run in groupby(_repaired(explanation), key=itemgetter(1))
+        for says, run in groupby(repaired_states(explanation), key=itemgetter(1))
     ]
     for number, (states, says) in enumerate(changes[:MOST_CHANGES]):
         line = f"{'and' if number else 'kept'} if {states}: {says}"
@@ -129,7 +94,7 @@ def _states(run: Sequence[tuple[int, str]]) -> str:
     return f"states {', '.join(spans)} say"
 
 
-def _repaired(explanation: Explanation) -> Iterator[tuple[int, str]]:
+def repaired_states(explanation: Explanation) -> Iterator[tuple[int, str]]:
     """States by their numbers, and what they would have had to say."""
     wording = GuardWording(explanation.rule, explanation.vocabulary)
     for change in explanation.repair or ():

@@ -1,0 +1,35 @@
+"""The answers to what is asked about the maneuvers of a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from rulec.partition import NavigationGraph
+from rulec.planning import RankedManeuver, RulePruning
+from rulec.planning.probability.alternative_predictions import AlternativeCounts
+from rulec.planning.probability.rule_probability import RuleProbabilities
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverAnswers:
+    """Answers to further questions than how many there are; None is what was not asked.
+
+    ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
+    longer list of them in ``ranked``. ``chances`` are those of maneuvers, given by their nodes.
+    """
+
+    listed: Sequence[Maneuver] | None = None
+    best: Sequence[RankedManeuver] | None = None
+    ranked: Sequence[RankedManeuver] | None = None
+    prunings: Sequence[RulePruning] | None = None
+    classes: tuple[HomotopyClasses, Sequence[Variant]] | None = None
+    chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
+    worlds: Sequence[AlternativeCounts] | None = None
+
+
+def horizon_s(graph: NavigationGraph) -> float:
+    """The time from the first layer's start to the last one's, in seconds."""
+    return float((len(graph.layers) - 1) * graph.step)

@@ -1,0 +1,411 @@
+"""Maneuvers, what they violate and how probable that is, as JSON; docs/commands.md describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from msgspec import UNSET, UnsetType
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.monitoring.verdict import Violation
+from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName, envelope
+from rulec.planning import Maneuvers, RankedManeuver, RulePruning
+from rulec.planning.probability.rule_probability import RuleProbabilities
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
+from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
+from rulec.report.maneuvers.probabilities import likeliest
+from rulec.report.maneuvers.scene_notes import derived_signals
+from rulec.report.text.json_document import Document, Number, Part, as_line, plain_number
+from rulec.rulebook.model import Strength
+from rulec.scenario import Account
+from rulec.scenario.model import Surface
+
+
+class DerivedSignal(Part, frozen=True, kw_only=True):
+    """A signal that the recording supplies, and the reason for its value."""
+
+    value: bool | int | float | str
+    because: str
+
+
+class SceneData(Part, frozen=True, kw_only=True):
+    """What became of a recorded scene: counts of obstacles, and what was derived."""
+
+    reference: str
+    obstacles: int
+    left_out: int
+    recorded_until_s: float
+    remarks: Sequence[str]
+    derived: Mapping[str, DerivedSignal]
+
+
+class LevelPenalty(Part, frozen=True, kw_only=True):
+    """The summed weight of the violated rules of some levels; null is no level."""
+
+    strength: Strength
+    levels: Sequence[str | None]
+    weight: Number
+
+
+class ManeuverViolation(Part, frozen=True, kw_only=True):
+    """A rule that a maneuver violates; ``lost_s`` is when that is final, null if at the end."""
+
+    rule: str
+    cite: str
+    binding: Mapping[str, str]
+    lost_s: float | None
+    strength: Strength
+    level: str | None
+    weight: Number
+
+
+class CellData(Part, frozen=True, kw_only=True):
+    """A cell of the maneuver, with its relation to every obstacle."""
+
+    cell: int
+    start_s: float
+    surface: Surface
+    signature: Mapping[str, str | tuple[str, str]]
+
+
+class EnvelopeData(Part, frozen=True, kw_only=True):
+    """The bounds in a layer, in metres; the profiles are pairs of s and d."""
+
+    s_min: float
+    s_max: float
+    d_left: Sequence[tuple[float, float]]
+    d_right: Sequence[tuple[float, float]]
+
+
+class BindingProbability(Part, frozen=True, kw_only=True):
+    """The probability that a rule is kept for some objects."""
+
+    binding: Mapping[str, str]
+    kept: float
+
+
+class RuleProbabilityData(Part, frozen=True, kw_only=True):
+    """The probability that a rule is kept, null if it is not known."""
+
+    rule: str
+    strength: Strength
+    kept: float | None
+    bindings: Sequence[BindingProbability]
+
+
+class ChancesData(Part, frozen=True, kw_only=True):
+    """The probabilities that nobody hits ego, and that rules are kept."""
+
+    clear: float
+    every_hard_rule: float | None
+    rules: Sequence[RuleProbabilityData]
+
+
+class ManeuverData(Part, frozen=True, kw_only=True):
+    """A maneuver: its cost (1/s), its margin, its cells and bounds in time.
+
+    One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
+    a class's has ``members``, an example of a pruning ``violations``.
+    """
+
+    place: int | UnsetType = UNSET
+    penalty: Sequence[LevelPenalty] | UnsetType = UNSET
+    members: int | UnsetType = UNSET
+    violations: Sequence[ManeuverViolation] | UnsetType = UNSET
+    cost: float
+    margin_s: float | None
+    cells: Sequence[CellData]
+    envelope: Sequence[EnvelopeData]
+    chances: ChancesData | UnsetType = UNSET
+
+
+class PastViolation(Part, frozen=True, kw_only=True):
+    """What the past has violated, which no maneuver can mend."""
+
+    rule: str
+    binding: Mapping[str, str]
+    step: int | None
+
+
+class WorldData(Part, frozen=True, kw_only=True):
+    """The counts if an obstacle does what is not likeliest; predictions count from 1."""
+
+    obstacle: str
+    prediction: int
+    weight: float
+    traces: int
+    satisfying: int
+
+
+class PruningData(Part, frozen=True, kw_only=True):
+    """How many maneuvers violate a rule, and how many of them keep every other hard one."""
+
+    rule: str
+    strength: Strength
+    violating: int
+    alone: int | None
+    example: ManeuverData | None
+
+
+class ClassesData(Part, frozen=True, kw_only=True):
+    """The counts of homotopy classes, and the cheapest satisfying members of some."""
+
+    total: int
+    satisfying: int
+    divided: int
+    counting_steps: Sequence[str]
+    representatives: Sequence[ManeuverData]
+
+
+class ManeuversDocument(Document, frozen=True, kw_only=True):
+    """The counts of maneuvers in a scenario, and what was asked for beside them."""
+
+    scenario: str
+    rulebook: str
+    partition: PartitionName
+    adjacency: AdjacencyName
+    extent: ExtentName
+    step_s: float
+    horizon_s: float
+    nodes: int
+    edges: int
+    traces: int
+    satisfying: int
+    by_default: Sequence[str]
+    seconds: float
+    scene: SceneData | UnsetType = UNSET
+    violated_before: Sequence[PastViolation] | UnsetType = UNSET
+    least_violating: Sequence[ManeuverData] | UnsetType = UNSET
+    ranked: Sequence[ManeuverData] | UnsetType = UNSET
+    maneuvers: Sequence[ManeuverData] | UnsetType = UNSET
+    likeliest: float | UnsetType = UNSET
+    worlds: Sequence[WorldData] | UnsetType = UNSET
+    rules: Sequence[PruningData] | UnsetType = UNSET
+    classes: ClassesData | UnsetType = UNSET
+
+
+def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
+    """Write the counts and what was asked for."""
+    graph = maneuvers.graph
+    scenario = graph.scenario
+    return as_line(
+        ManeuversDocument(
+            scenario=scenario.name,
+            rulebook=maneuvers.rules.name,
+            partition=graph.partition,
+            adjacency=graph.adjacency,
+            extent=graph.extent,
+            step_s=graph.step_s,
+            horizon_s=horizon_s(graph),
+            nodes=graph.nodes,
+            edges=graph.edges,
+            traces=maneuvers.traces,
+            satisfying=maneuvers.satisfying,
+            by_default=maneuvers.by_default,
+            seconds=round(seconds, 6),
+            scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
+            violated_before=_past(maneuvers.violated_before),
+            least_violating=_ranking(maneuvers, answers.best, answers),
+            ranked=_ranking(maneuvers, answers.ranked, answers),
+            maneuvers=_list(graph, answers),
+            likeliest=likeliest(scenario)
+            if any(obstacle.alternatives for obstacle in scenario.obstacles)
+            else UNSET,
+            worlds=_worlds(answers),
+            rules=UNSET
+            if answers.prunings is None
+            else [_pruning(maneuvers, pruning) for pruning in answers.prunings],
+            classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
+        )
+    )
+
+
+def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
+    return SceneData(
+        reference=account.reference,
+        obstacles=account.recorded,
+        left_out=account.left_out,
+        recorded_until_s=account.until_s,
+        remarks=account.remarks,
+        derived={
+            name: DerivedSignal(value=value, because=because)
+            for name, (value, because) in derived_signals(maneuvers, account).items()
+        },
+    )
+
+
+def _past(violations: Sequence[Violation] | None) -> Sequence[PastViolation] | UnsetType:
+    if violations is None:
+        return UNSET
+    return [
+        PastViolation(rule=violation.rule, binding=violation.binding, step=violation.step)
+        for violation in violations
+    ]
+
+
+def _ranking(
+    maneuvers: Maneuvers, ranking: Sequence[RankedManeuver] | None, answers: ManeuverAnswers
+) -> Sequence[ManeuverData] | UnsetType:
+    if ranking is None:
+        return UNSET
+    rules = {rule.name: rule for rule in maneuvers.rules.rules}
+    return [
+        _maneuver(
+            maneuvers.graph,
+            ranked.maneuver,
+            place=ranked.place,
+            penalty=[
+                LevelPenalty(
+                    strength=rank.strength,
+                    levels=[level or None for level in rank.levels],
+                    weight=plain_number(weight),
+                )
+                for rank, weight in ranked.penalty.items()
+            ],
+            members=ranked.members,
+            violations=[
+                _violation(maneuvers, violation, rules[violation.rule])
+                for violation in ranked.violations
+            ],
+            chances=_chances(answers, ranked.maneuver),
+        )
+        for ranked in ranking
+    ]
+
+
+def _list(graph: NavigationGraph, answers: ManeuverAnswers) -> Sequence[ManeuverData] | UnsetType:
+    if answers.listed is None:
+        return UNSET
+    return [
+        _maneuver(graph, maneuver, chances=_chances(answers, maneuver))
+        for maneuver in answers.listed
+    ]
+
+
+def _maneuver(
+    graph: NavigationGraph,
+    maneuver: Maneuver,
+    *,
+    place: int | UnsetType = UNSET,
+    penalty: Sequence[LevelPenalty] | UnsetType = UNSET,
+    members: int | UnsetType = UNSET,
+    violations: Sequence[ManeuverViolation] | UnsetType = UNSET,
+    chances: ChancesData | UnsetType = UNSET,
+) -> ManeuverData:
+    return ManeuverData(
+        place=place,
+        penalty=penalty,
+        members=members,
+        violations=violations,
+        cost=maneuver.cost,
+        margin_s=maneuver.margin_s,
+        cells=[
+            CellData(
+                cell=index,
+                start_s=layer.start_s,
+                surface=layer.cells[index].surface,
+                signature=layer.cells[index].signature,
+            )
+            for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
+        ],
+        envelope=[
+            EnvelopeData(
+                s_min=bounds.s_min,
+                s_max=bounds.s_max,
+                d_left=bounds.d_left,
+                d_right=bounds.d_right,
+            )
+            for bounds in envelope(graph, maneuver.nodes)
+        ],
+        chances=chances,
+    )
+
+
+def _violation(maneuvers: Maneuvers, violation: Violation, rule: CompiledRule) -> ManeuverViolation:
+    step = violation.step
+    return ManeuverViolation(
+        rule=violation.rule,
+        cite=rule.cite,
+        binding=violation.binding,
+        lost_s=None if step is None else maneuvers.graph.layers[step].start_s,
+        strength=violation.strength,
+        level=rule.level or None,
+        weight=plain_number(rule.weight),
+    )
+
+
+def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | UnsetType:
+    chances: RuleProbabilities | None = answers.chances.get(maneuver.nodes)
+    if chances is None:
+        return UNSET
+    return ChancesData(
+        clear=float(chances.clear),
+        every_hard_rule=_float(chances.hard),
+        rules=[
+            RuleProbabilityData(
+                rule=rule.rule.name,
+                strength=rule.rule.strength,
+                kept=_float(rule.kept),
+                bindings=[
+                    BindingProbability(binding=binding.binding, kept=float(binding.kept))
+                    for binding in rule.bindings
+                ],
+            )
+            for rule in chances.rules
+        ],
+    )
+
+
+def _worlds(answers: ManeuverAnswers) -> Sequence[WorldData] | UnsetType:
+    if answers.worlds is None:
+        return UNSET
+    return [
+        WorldData(
+            obstacle=world.obstacle,
+            prediction=world.number + 1,
+            weight=float(world.weight),
+            traces=world.traces,
+            satisfying=world.satisfying,
+        )
+        for world in answers.worlds
+    ]
+
+
+def _pruning(maneuvers: Maneuvers, pruning: RulePruning) -> PruningData:
+    example = None
+    if pruning.example is not None:
+        example = _maneuver(
+            maneuvers.graph,
+            pruning.example,
+            violations=[
+                _violation(maneuvers, violation, pruning.rule) for violation in pruning.violations
+            ],
+        )
+    return PruningData(
+        rule=pruning.rule.name,
+        strength=pruning.rule.strength,
+        violating=pruning.violating,
+        alone=pruning.alone,
+        example=example,
+    )
+
+
+def _classes(
+    maneuvers: Maneuvers, classes: HomotopyClasses, variants: Sequence[Variant]
+) -> ClassesData:
+    return ClassesData(
+        total=classes.total,
+        satisfying=classes.satisfying,
+        divided=classes.divided,
+        counting_steps=[rule.name for rule in maneuvers.counting_steps()],
+        representatives=[
+            _maneuver(maneuvers.graph, variant.cheapest, members=variant.members)
+            for variant in variants
+        ],
+    )
+
+
+def _float(probability: Fraction | None) -> float | None:
+    return None if probability is None else float(probability)

@@ -1,0 +1,146 @@
+"""Rules as JSON, one of them with its automaton and shortest traces; see docs/commands.md."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from msgspec import UNSET, UnsetType
+from msgspec.structs import replace
+
+from rulec.logic.english.sentence_layout import in_one_line
+from rulec.logic.printing import in_words
+from rulec.report.automata.automaton_model import Automaton, Fate
+from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
+from rulec.report.text.json_document import Document, Part, as_indented
+from rulec.rulebook.model import Certainty, Rule, Strength, Variable
+from rulec.vocabulary import Vocabulary
+
+
+class StateData(Part, frozen=True, kw_only=True):
+    """A state of the automaton, and whether the verdict is final in it."""
+
+    state: int
+    fate: Fate
+
+
+class TransitionData(Part, frozen=True, kw_only=True):
+    """Some steps between two states; ``accepted`` is the verdict on a trace that ends there.
+
+    ``otherwise``: the condition is easier said as what the other transitions from there are not.
+    """
+
+    source: int
+    target: int
+    condition: str
+    otherwise: bool
+    accepted: bool
+
+
+class AutomatonData(Part, frozen=True, kw_only=True):
+    """The rule's automaton; traces start in state 0."""
+
+    states: Sequence[StateData]
+    transitions: Sequence[TransitionData]
+
+
+class ShortestTrace(Part, frozen=True, kw_only=True):
+    """A trace as an example says it: further objects, states, and what it cannot say."""
+
+    objects: Sequence[Variable]
+    states: Sequence[str]
+    remarks: Sequence[str]
+
+
+class RuleData(Part, frozen=True, kw_only=True):
+    """A rule, in English and as a formula.
+
+    If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and
+    the shortest traces that it accepts and rejects, null where there are none.
+    """
+
+    name: str
+    strength: Strength
+    variables: Sequence[Variable]
+    cite: str
+    says: str
+    source: str
+    certainty: Certainty
+    level: str
+    weight: float
+    in_force_from: str
+    in_force_until: str
+    book: str
+    sentence: str
+    restrictions: Sequence[str]
+    formula: str
+    automaton: AutomatonData | UnsetType = UNSET
+    step_s: float | UnsetType | None = UNSET
+    accepts: ShortestTrace | UnsetType | None = UNSET
+    rejects: ShortestTrace | UnsetType | None = UNSET
+
+
+class RulesDocument(Document, frozen=True, kw_only=True):
+    """Rules of a rulebook."""
+
+    rulebook: str
+    rules: Sequence[RuleData]
+
+
+def as_json(
+    rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
+) -> str:
+    """Write the rules, with all that is on the page of the only one."""
+    return as_indented(
+        RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
+    )
+
+
+def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData:
+    data = RuleData(
+        name=rule.name,
+        strength=rule.strength,
+        variables=rule.variables,
+        cite=rule.cite,
+        says=rule.says,
+        source=rule.source,
+        certainty=rule.certainty,
+        level=rule.level,
+        weight=float(rule.weight),
+        in_force_from=rule.in_force_from,
+        in_force_until=rule.in_force_until,
+        book=rule.book,
+        sentence=in_one_line(phrase_of(rule, vocabulary)),
+        restrictions=[in_one_line(phrase) for phrase in restrictions_of(rule)],
+        formula=in_words(rule.formula),
+    )
+    if page is None:
+        return data
+    return replace(
+        data,
+        automaton=_automaton(page.automaton),
+        step_s=None if page.step_s is None else float(page.step_s),
+        accepts=_trace(page.accepted),
+        rejects=_trace(page.rejected),
+    )
+
+
+def _automaton(automaton: Automaton) -> AutomatonData:
+    return AutomatonData(
+        states=[StateData(state=state, fate=fate) for state, fate in enumerate(automaton.fates)],
+        transitions=[
+            TransitionData(
+                source=transition.source,
+                target=transition.target,
+                condition=transition.condition,
+                otherwise=transition.otherwise,
+                accepted=transition.accepted,
+            )
+            for transition in automaton.transitions
+        ],
+    )
+
+
+def _trace(trace: ShownTrace | None) -> ShortestTrace | None:
+    if trace is None:
+        return None
+    return ShortestTrace(objects=trace.objects, states=trace.states, remarks=trace.remarks)

@@ -1,0 +1,65 @@
+"""JSON outputs: typed documents, which msgspec turns into data and into published schemas.
+
+A document's class is its JSON: the fields are the keys, in this order, and one that is ``UNSET``
+is not there. ``docs/schemas`` is generated from the classes, see ``src/tools/json_schemas.py``.
+"""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any, Literal
+
+import msgspec
+
+Number = int | float
+
+
+class Part(msgspec.Struct, frozen=True, kw_only=True):
+    """An object inside of a document."""
+
+
+class Document(msgspec.Struct, frozen=True, kw_only=True):
+    """A whole output, or a line of one.
+
+    ``version`` grows with every change that a reader has to know of: a field that goes, or that
+    means something else. Fields may be added without it.
+    """
+
+    version: Literal[1] = 1
+
+
+def as_line(document: Document) -> str:
+    """Write a document on one line."""
+    return _ENCODER.encode(as_builtins(document))
+
+
+def as_indented(document: Any) -> str:
+    """Write a document, or a list of them, over several lines."""
+    return json.dumps(as_builtins(document), ensure_ascii=False, indent=2)
+
+
+def as_builtins(document: Any) -> Any:
+    """Turn a document into dicts, lists, texts and numbers.
+
+    ``json`` writes them: it spells numbers as Python does, and takes integers of any size.
+    """
+    return msgspec.to_builtins(document, enc_hook=_plain)
+
+
+def plain_number(number: Fraction) -> Number:
+    """An integer if the fraction is one, else the nearest float."""
+    return int(number) if number.denominator == 1 else float(number)
+
+
+_ENCODER = json.JSONEncoder(ensure_ascii=False)
+
+
+def _plain(value: object) -> object:
+    """Views of dicts, and numbers that a library has made."""
+    if isinstance(value, float):
+        return float(value)
+    try:
+        return dict(value)  # type: ignore[call-overload]
+    except (TypeError, ValueError):
+        raise NotImplementedError from None

@@ -1,0 +1,57 @@
+"""Verdicts behind the states of a running trace as JSON; docs/online.md describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rulec.diagnostics import RulecError
+from rulec.monitoring.online.four_valued import FourValued
+from rulec.monitoring.online.monitor_state import SoFar
+from rulec.report.text.json_document import Document, Part, as_line
+from rulec.report.verdicts.verdict_json import ErrorData, error_data
+
+
+class ChangeData(Part, frozen=True, kw_only=True):
+    """A rule's verdict on a binding that is not what it was before the state.
+
+    ``ended``: one of the objects is no longer there.
+    """
+
+    rule: str
+    binding: Mapping[str, str]
+    before: FourValued
+    verdict: FourValued
+    ended: bool
+
+
+class StateVerdict(Document, frozen=True, kw_only=True):
+    """The verdicts behind a state, which is counted from 0; ``verdict`` is that of hard rules."""
+
+    state: int
+    verdict: FourValued
+    rules: Mapping[str, FourValued]
+    changes: Sequence[ChangeData]
+
+
+class StateRefused(Document, frozen=True, kw_only=True):
+    """A line that is no state, or not one that can follow."""
+
+    state: None
+    error: ErrorData
+
+
+def as_json(result: SoFar) -> str:
+    """Write the verdicts behind a state."""
+    return as_line(
+        StateVerdict(
+            state=result.state,
+            verdict=result.verdict,
+            rules=result.rules,
+            changes=[ChangeData(**change._asdict()) for change in result.changes],
+        )
+    )
+
+
+def refused_as_json(error: RulecError) -> str:
+    """Write why a state could not be taken."""
+    return as_line(StateRefused(state=None, error=error_data(error)))

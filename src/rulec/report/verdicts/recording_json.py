@@ -1,0 +1,112 @@
+"""Verdicts on recorded drives as JSON, a line each; docs/recordings.md describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from msgspec import UNSET, UnsetType
+from msgspec.structs import replace
+
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.verdict import NotJudged
+from rulec.report.text.json_document import Document, as_line
+from rulec.report.verdicts.recording_table import defaulted_names
+from rulec.report.verdicts.verdict_json import (
+    TraceNotJudged,
+    TraceVerdict,
+    error_data,
+    violation_data,
+)
+
+
+class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
+    """The verdict on what a vehicle did, whose id is the ``trace``; times are the recording's."""
+
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    start_s: float
+    step_s: float
+    by_default: Sequence[str]
+
+
+class RecordedNotJudged(TraceNotJudged, frozen=True, kw_only=True):
+    """A drive that could not be judged."""
+
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    start_s: float
+    step_s: float
+    by_default: Sequence[str]
+
+
+class NotDriven(Document, frozen=True, kw_only=True):
+    """A vehicle without a drive to judge, and ``why_not``."""
+
+    trace: str
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    why_not: str
+
+
+def as_json(
+    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
+) -> str:
+    """Write what became of a vehicle; ``explained`` are explanations of its first violations."""
+    return as_line(_document(result, verdicts, explained))
+
+
+def _document(
+    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
+) -> Document:
+    name, mirrored = verdicts.recording.name, verdicts.mirrored
+    remarks = verdicts.recording.remarks or UNSET
+    if isinstance(result, NoDrive):
+        return NotDriven(
+            trace=result.ego,
+            recording=name,
+            mirrored=mirrored,
+            remarks=remarks,
+            why_not=result.why,
+        )
+    drive, answer = result.drive, result.answer
+    by_default = defaulted_names(verdicts, drive.words)
+    if isinstance(answer, NotJudged):
+        return RecordedNotJudged(
+            trace=answer.trace,
+            error=error_data(answer.error),
+            recording=name,
+            mirrored=mirrored,
+            remarks=remarks,
+            start_s=drive.start_s,
+            step_s=drive.trace.step_s,
+            by_default=by_default,
+        )
+    rules = {rule.name: rule for rule in verdicts.rules.rules}
+    by_rule = verdicts.by_default(drive.words)
+    return RecordedVerdict(
+        trace=answer.trace,
+        satisfied=answer.satisfied,
+        violations=[
+            replace(
+                violation_data(
+                    violation,
+                    rules[violation.rule],
+                    explained[number] if number < len(explained) else None,
+                ),
+                time_s=drive.time_s(violation.step),
+                by_default=by_rule[violation.rule],
+            )
+            for number, violation in enumerate(answer.violations)
+        ],
+        recording=name,
+        mirrored=mirrored,
+        remarks=remarks,
+        start_s=drive.start_s,
+        step_s=drive.trace.step_s,
+        by_default=by_default,
+    )
