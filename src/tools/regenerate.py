@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from rulec.files import written_whole
 from tools.codes_page import codes_page
+from tools.json_schemas import SCHEMAS, schema_text
 from tools.parser_tables import parser_tables
 from tools.textmate import textmate_grammar
 from tools.vocabulary_page import road_page
@@ -21,6 +23,7 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "grammar/rulec.tmLanguage.json": textmate_grammar,
     "docs/codes.md": codes_page,
     "docs/vocabulary.md": road_page,
+    **{f"docs/schemas/{name}.json": partial(schema_text, name) for name in SCHEMAS},
 }
 """Path from the root -> what makes its text."""
 

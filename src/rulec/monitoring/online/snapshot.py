@@ -48,7 +48,9 @@ class _Violation(msgspec.Struct, forbid_unknown_fields=True):
     step: int | None
 
 
-class _Saved(msgspec.Struct, forbid_unknown_fields=True):
+class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
+    """A saved monitor: behind how many states, and where each rule stands for each binding."""
+
     format: str
     version: int
     rulebook: str
@@ -147,7 +149,7 @@ def from_data(
 
 def _checked(
     data: Any, rulebook: CompiledRulebook, place: SourceLocation | None
-) -> tuple[_Saved, Fraction | None]:
+) -> tuple[SavedMonitor, Fraction | None]:
     try:
         header = msgspec.convert(data, _Header)
     except msgspec.ValidationError as problem:
@@ -159,7 +161,7 @@ def _checked(
             place,
         )
     try:
-        saved = msgspec.convert(data, _Saved)
+        saved = msgspec.convert(data, SavedMonitor)
         step_s = None if saved.step_s is None else Fraction(saved.step_s)
     except (msgspec.ValidationError, ValueError, ZeroDivisionError) as problem:
         raise _refused(f"this saved monitor is damaged: {json_words(problem)}", place) from None
@@ -175,7 +177,7 @@ def _checked(
     return saved, step_s
 
 
-def _edges(saved: _Saved, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:
+def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:
     """The edge of each binding. Raises LookupError or ValueError unless just these are saved."""
     edges: dict[str, list[MonitorEdge]] = {}
     for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):

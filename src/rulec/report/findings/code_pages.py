@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from textwrap import fill, indent
 
 from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.findings.code_registry import STAGES, codes_of_stage
+from rulec.report.text.json_document import Document, as_indented
 
 _KINDS: dict[ExampleKind, str] = {
     "rules": "to check",
@@ -68,22 +68,31 @@ def as_markdown(code: Code) -> str:
     return "\n\n".join(parts)
 
 
+class CodeData(Document, frozen=True, kw_only=True):
+    """A message's code with its explanation; examples are empty where there can be none."""
+
+    code: str
+    title: str
+    why: str
+    kind: ExampleKind
+    bad: str
+    good: str
+
+
 def as_json(codes: Iterable[Code]) -> str:
-    """A list with an object for each code."""
-    return json.dumps(
+    """Write a list with an object for each code."""
+    return as_indented(
         [
-            {
-                "code": code.code,
-                "title": code.title,
-                "why": code.why,
-                "kind": code.kind,
-                "bad": code.bad,
-                "good": code.good,
-            }
+            CodeData(
+                code=code.code,
+                title=code.title,
+                why=code.why,
+                kind=code.kind,
+                bad=code.bad,
+                good=code.good,
+            )
             for code in codes
-        ],
-        ensure_ascii=False,
-        indent=2,
+        ]
     )
 
 

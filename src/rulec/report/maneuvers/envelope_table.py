@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from types import MappingProxyType
-from typing import IO
+from typing import IO, Any
 
 from rulec.partition import Envelope, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
+from rulec.report.text.json_document import Document, as_line
+from rulec.scenario.model import Surface
 from rulec.trace import Value
 from rulec.trace.formats.trace_files import Format
 
@@ -30,6 +31,23 @@ COLUMNS = MappingProxyType(
     }
 )
 """The columns with the types of their values; in all rows of a maneuver the first three agree."""
+
+
+class EnvelopeLine(Document, frozen=True, kw_only=True):
+    """A stretch of a layer of a maneuver on which the bounds are constant, in m and s."""
+
+    maneuver: int
+    cost: float
+    margin_s: float | None
+    layer: int
+    start_s: float
+    end_s: float
+    cell: int
+    surface: Surface
+    s_min: float
+    s_max: float
+    d_right: float
+    d_left: float
 
 
 def write_envelopes(
@@ -55,9 +73,8 @@ def write_envelopes(
         write_parquet(rows, list(COLUMNS.items()), stream, file)
     else:
         for row in rows:
-            stream.write(
-                f"{json.dumps({'version': 1} | dict(zip(COLUMNS, row, strict=True)))}\n".encode()
-            )
+            values: dict[str, Any] = dict(zip(COLUMNS, row, strict=True))
+            stream.write(f"{as_line(EnvelopeLine(**values))}\n".encode())
 
 
 def _rows(

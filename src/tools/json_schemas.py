@@ -1,0 +1,75 @@
+"""The JSON schemas in docs/schemas, made from the types that rulec writes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+
+from rulec.automata.bundle.bundle_schema import File
+from rulec.monitoring.online.snapshot import SavedMonitor
+from rulec.report.findings.code_pages import CodeData
+from rulec.report.findings.diagnostics_json import FindingData
+from rulec.report.maneuvers.envelope_table import EnvelopeLine
+from rulec.report.maneuvers.maneuver_json import ManeuversDocument
+from rulec.report.rulebooks.audit_report import AuditDocument
+from rulec.report.rulebooks.diff_json import DiffDocument, TraceData
+from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
+from rulec.report.rulebooks.matrix_report import MatrixDocument
+from rulec.report.rulebooks.rule_json import RulesDocument
+from rulec.report.tests.example_json import ExamplesRun
+from rulec.report.text.listing import ListingDocument
+from rulec.report.verdicts.monitor_json import StateRefused, StateVerdict
+from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
+from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict
+
+SCHEMAS: Mapping[str, tuple[Any, ...]] = {
+    "audit": (AuditDocument,),
+    "codes": (list[CodeData],),
+    "compiled": (File,),
+    "diff": (DiffDocument,),
+    "envelope": (EnvelopeLine,),
+    "findings": (list[FindingData],),
+    "list": (ListingDocument,),
+    "maneuvers": (ManeuversDocument,),
+    "matrix": (MatrixDocument,),
+    "monitor": (SavedMonitor,),
+    "show": (RulesDocument,),
+    "state": (StateVerdict, StateRefused),
+    "test": (ExamplesRun,),
+    "trace": (TraceData,),
+    "tree": (LineageDocument, ForestDocument),
+    "verdict": (
+        TraceVerdict,
+        TraceNotJudged,
+        RecordedVerdict,
+        RecordedNotJudged,
+        NotDriven,
+    ),
+}
+"""Name -> the types of an output, or of a line of one; which of several, its fields tell."""
+
+
+def schema_text(name: str) -> str:
+    """Write a schema of JSON Schema 2020-12."""
+    schemas, definitions = msgspec.json.schema_components(
+        SCHEMAS[name], ref_template="#/$defs/{name}"
+    )
+    outputs = list(schemas)
+    schema = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"rulec: {name}",
+        **(outputs[0] if len(outputs) == 1 else {"anyOf": outputs}),
+        "$defs": {key: _required_version(value) for key, value in sorted(definitions.items())},
+    }
+    return json.dumps(schema, ensure_ascii=False, indent=2) + "\n"
+
+
+def _required_version(definition: dict[str, Any]) -> dict[str, Any]:
+    """A version has a default in the type, but is always written."""
+    if "version" not in definition.get("properties", {}):
+        return definition
+    required = [key for key in definition.get("required", []) if key != "version"]
+    return {**definition, "required": ["version", *required]}
