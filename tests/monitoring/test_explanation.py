@@ -11,7 +11,7 @@ from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOpera
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.explain.explanation import MOST_STATES, explain
 from rulec.monitoring.verify import verify
-from rulec.report.text.json_document import as_builtins
+from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.explanation_json import explanation_data
 from rulec.rulebook.model import Rulebook

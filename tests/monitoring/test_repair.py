@@ -14,7 +14,7 @@ from rulec.logic.semantics import holds
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.nearest_satisfying import MOST_WAYS, nearest_kept
 from rulec.monitoring.verify import verify
-from rulec.report.text.json_document import as_builtins
+from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.explanation_json import explanation_data
 from rulec.rulebook.loader import parse_rulebook

@@ -7,7 +7,7 @@ from textwrap import fill, indent
 
 from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.findings.code_registry import STAGES, codes_of_stage
-from rulec.report.text.json_document import Document, as_indented
+from rulec.report.json_document import Document, as_indented
 
 _KINDS: dict[ExampleKind, str] = {
     "rules": "to check",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, SourceLocation
-from rulec.report.text.json_document import Document, Part, as_indented
+from rulec.report.json_document import Document, Part, as_indented
 
 
 class PlaceData(Part, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ from typing import IO, Any
 
 from rulec.partition import Envelope, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.text.json_document import Document, as_line
+from rulec.report.json_document import Document, as_line
 from rulec.scenario.model import Surface
 from rulec.trace import Value
 from rulec.trace.formats.trace_files import Format

@@ -14,10 +14,10 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
+from rulec.report.json_document import Document, Number, Part, as_line, plain_number
 from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
 from rulec.report.maneuvers.probabilities import likeliest
 from rulec.report.maneuvers.scene_notes import derived_signals
-from rulec.report.text.json_document import Document, Number, Part, as_line, plain_number
 from rulec.rulebook.model import Strength
 from rulec.scenario import Account
 from rulec.scenario.model import Surface

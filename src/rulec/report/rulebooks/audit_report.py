@@ -12,8 +12,8 @@ import click
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
 from rulec.report.findings.source_excerpt import visible
+from rulec.report.json_document import Document, as_indented
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.json_document import Document, as_indented
 from rulec.report.text.markdown import code, escaped, table
 
 Compared = Mapping[str, AuditChanges]

@@ -15,7 +15,7 @@ from rulec.analysis.diff.rulebook_comparison import (
     SettingPair,
 )
 from rulec.logic.printing import number_in_words
-from rulec.report.text.json_document import Document, Part, as_indented
+from rulec.report.json_document import Document, Part, as_indented
 from rulec.rulebook.model import Certainty, Rule, Rulebook, Strength, Variable
 from rulec.trace import Trace
 

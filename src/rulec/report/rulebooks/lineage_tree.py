@@ -21,8 +21,8 @@ from rulec.analysis.lineage.rule_lineage import (
     RuleHistory,
 )
 from rulec.report.findings.source_excerpt import visible
+from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.rulebooks.rule_provenance import provenance
-from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 

@@ -10,10 +10,10 @@ import click
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.findings.source_excerpt import visible
+from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.rulebooks.diff_csv import table as csv_table
 from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
-from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
 from rulec.rulebook.model import Strength

@@ -10,8 +10,8 @@ from msgspec.structs import replace
 from rulec.logic.english.sentence_layout import in_one_line
 from rulec.logic.printing import in_words
 from rulec.report.automata.automaton_model import Automaton, Fate
+from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
-from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.rulebook.model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
 

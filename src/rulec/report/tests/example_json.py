@@ -10,8 +10,8 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import in_words
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
+from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.tests.example_text import missing_example
-from rulec.report.text.json_document import Document, Part, as_indented
 from rulec.rulebook.model import Rulebook
 
 ExampleVerdict = Literal["accept", "reject"]

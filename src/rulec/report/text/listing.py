@@ -10,7 +10,7 @@ from typing import Any
 from msgspec import UNSET, UnsetType
 
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.text.json_document import Document, as_indented
+from rulec.report.json_document import Document, as_indented
 
 LONGEST_TITLE = 90
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from msgspec import UNSET, UnsetType
 
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.report.text.json_document import Part
+from rulec.report.json_document import Part
 from rulec.report.verdicts.violation_table import repaired_states
 
 Value = bool | int | float | str

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.four_valued import FourValued
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.report.text.json_document import Document, Part, as_line
+from rulec.report.json_document import Document, Part, as_line
 from rulec.report.verdicts.verdict_json import ErrorData, error_data
 
 

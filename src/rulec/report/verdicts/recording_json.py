@@ -11,7 +11,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged
-from rulec.report.text.json_document import Document, as_line
+from rulec.report.json_document import Document, as_line
 from rulec.report.verdicts.recording_table import defaulted_names
 from rulec.report.verdicts.verdict_json import (
     TraceNotJudged,

@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.report.text.json_document import Document, Number, Part, as_line, plain_number
+from rulec.report.json_document import Document, Number, Part, as_line, plain_number
 from rulec.report.verdicts.explanation_json import ExplanationData, explanation_data
 
 
