@@ -60,6 +60,7 @@ def test_json(capsys):
     assert [one["code"] for one in listed] == list(all_codes())
     first = all_codes()["R0101"]
     assert listed[0] == {
+        "version": 1,
         "code": "R0101",
         "title": first.title,
         "why": first.why,
