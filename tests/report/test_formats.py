@@ -64,7 +64,7 @@ def test_json_has_every_field():
         ],
         "notes": ["by the way"],
     }
-    assert set(whole) == set(Diagnostic.__slots__)
+    assert set(whole) == {"version", *Diagnostic.__slots__}
     assert (bare["place"], bare["severity"], bare["labels"]) == (None, "warning", [])
 
 
