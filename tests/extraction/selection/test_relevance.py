@@ -1,0 +1,57 @@
+"""The participants that count for ego."""
+
+from math import pi
+
+import pytest
+
+from rulec.extraction.drives import Drives
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording
+from support.generators.random_recordings import lanes
+
+
+def relevant(*others, ego=None, **thresholds):
+    """Ids of those that count, with the states in which they do."""
+    ego = ego or steady(7, 0, 0)
+    context = context_of(recording(lanes(2), [ego, *others]), **thresholds)
+    return {
+        body.id: flags.tolist()
+        for body, flags in zip(context.tracks.participants, context.relevant, strict=True)
+    }
+
+
+@pytest.mark.parametrize(("x", "counts"), [(153.9, True), (154.1, False), (-99, True)])
+def test_along_the_road_distance_between_bodies_counts(x, counts):
+    assert ("8" in relevant(steady(8, x, 0))) is counts
+
+
+def test_the_distance_is_a_threshold_and_changes_with_time():
+    # 40 m ahead between bodies, and 5 m farther away in each state
+    assert relevant(steady(8, 44, 0, speed=20), near_m=51) == {"8": [True, True, True, False]}
+
+
+@pytest.mark.parametrize(
+    ("kind", "y", "counts"),
+    [("car", -3.2, False), ("pedestrian", -3.2, True), ("bicycle", -9, True), ("car", -1, True)],
+)
+def test_beside_the_road_only_vulnerable_users_count(kind, y, counts):
+    body = steady(8, 30, y, kind=kind, width=0.6)
+    assert ("8" in relevant(body)) is counts
+
+
+def test_beside_the_road_there_is_a_limit():
+    # Lanes from -2 m on: 8 m beside them is -10 m
+    assert "8" in relevant(steady(8, 30, -10.1, kind="pedestrian", width=0.6))
+    assert "8" not in relevant(steady(8, 30, -10.5, kind="pedestrian", width=0.6))
+
+
+def test_oncoming_vehicles_beside_the_lanes_count_if_they_ever_move():
+    assert "8" in relevant(steady(8, 90, 8, speed=-5))
+    assert "8" not in relevant(steady(8, 90, 8, speed=-0.1, heading=pi))
+    assert "8" not in relevant(steady(8, 90, 8, speed=5))
+
+
+def test_ego_never_counts_for_itself():
+    assert relevant() == {}
+    (drive,) = Drives(recording(lanes(1), [steady(7, 0, 0)]), "right").of("7")
+    assert drive.trace.objects == {}

@@ -1,0 +1,66 @@
+"""The drives that a user requests, mirrored where the rulebook's side is the other one."""
+
+from dataclasses import replace
+
+import pytest
+
+from rulec.diagnostics import RulecError
+from rulec.extraction.selection.requested import RequestedDrives, selected_drives
+from rulec.extraction.selection.traffic_thresholds import USUAL
+from support.builders.drive_contexts import steady
+from support.builders.recordings import recording
+from support.generators.random_recordings import lanes
+
+RIGHT = replace(
+    recording(lanes(1), [steady(k, 20 * k, 0) for k in (7, 8)], step_s=0.5), side="right"
+)
+
+
+@pytest.mark.parametrize(
+    ("side", "traffic", "as_recorded", "mirrored"),
+    [
+        ("right", "left", False, True),
+        ("right", "left", True, False),
+        ("right", "right", False, False),
+        ("right", "", False, False),
+        (None, "left", False, False),
+        ("left", "right", False, True),
+    ],
+)
+def test_recordings_of_the_other_side_are_mirrored(side, traffic, as_recorded, mirrored):
+    found = replace(RIGHT, side=side)
+    wanted = RequestedDrives(as_recorded=as_recorded)
+    drives = selected_drives(found, wanted, "file", traffic)
+    assert drives.mirrored is mirrored
+    # A mirror turns y round, and so a body's second corner, at y = -1
+    assert drives.recording.participants[0].outlines[0][1, 1] == (1 if mirrored else -1)
+
+
+def test_egos_come_in_the_order_of_the_file():
+    assert selected_drives(RIGHT, RequestedDrives(), "file").egos == ("7", "8")
+    assert selected_drives(RIGHT, RequestedDrives(("8", "7")), "file").egos == ("7", "8")
+    assert selected_drives(RIGHT, RequestedDrives(("8",)), "file").egos == ("8",)
+
+
+def test_an_unknown_vehicle_is_refused_with_those_there_are():
+    with pytest.raises(RulecError) as caught:
+        selected_drives(RIGHT, RequestedDrives(("lorry",)), "road.xml")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0612"
+    assert diagnostic.help == "choose `7`, `8`"
+    nobody = replace(RIGHT, participants=())
+    with pytest.raises(RulecError) as caught:
+        selected_drives(nobody, RequestedDrives(("7",)), "road.xml")
+    assert caught.value.diagnostics[0].help == "nobody in this file does"
+    crowd = replace(RIGHT, participants=tuple(steady(k, 9 * k, 0) for k in range(100, 115)))
+    with pytest.raises(RulecError) as caught:
+        selected_drives(crowd, RequestedDrives(("lorry",)), "road.xml")
+    assert caught.value.diagnostics[0].help.startswith("choose `100`, `101`, `102`, ")
+
+
+def test_thresholds_and_assumptions_reach_the_drives():
+    wanted = RequestedDrives(thresholds=replace(USUAL, near_m=5.0), assumed={"built_up": True})
+    (drive,) = selected_drives(RIGHT, wanted, "file").of("7")
+    # The other vehicle is 16 m away
+    assert drive.trace.objects == {}
+    assert [state["built_up"] for state in drive.trace.states] == [True] * 4

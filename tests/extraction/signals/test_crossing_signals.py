@@ -1,0 +1,79 @@
+"""Signals of pedestrians at a crossing, and of vehicles that stop for them.
+
+The crossing reaches from x = 58 to 62, over a road of one lane from y = -2 to 2.
+"""
+
+import pytest
+
+from rulec.extraction.signals.crossing_signals import crossing_signals
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import lanelet, recording, vehicle
+from support.generators.random_recordings import lanes
+
+ZEBRA = lanelet(9, [(60, -8), (60, 8)], width=4, types=frozenset({"crosswalk"}))
+
+
+def use(x, y, along=0.0, across=0.0, **thresholds):
+    """How a pedestrian uses the crossing; its speeds along the road and to its left are m/s."""
+    places = {k: (x + along * 0.5 * k, y + across * 0.5 * k) for k in range(2)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    ego = steady(7, 20, 0, steps=2)
+    context = context_of(recording([*lanes(1), ZEBRA], [ego, walker]), **thresholds)
+    return str(crossing_signals(context).about["crossing_use"][0, 0])
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "across", "expected"),
+    [
+        (60, 0, 0, "on_crossing"),
+        (60, 0, 1.5, "on_crossing"),
+        (60, 0, -1.5, "on_crossing"),
+        (70, 0, 0, "not_crossing"),
+        # 1.8 m from the lane, within the 2 m of a kerb
+        (60, -4, 0, "waiting_to_cross"),
+        (60, -4.5, 0, "not_crossing"),
+        # 1.8 m at 1 m/s are 1.8 s, at 4 m/s 0.45 s
+        (60, -4, 1, "about_to_cross"),
+        (60, -4, 4, "entering_crossing"),
+        (60, 4, -1, "about_to_cross"),
+        # Away from the lane
+        (60, -4, -1, "not_crossing"),
+        # 4.8 m at 2 m/s are 2.4 s
+        (60, -7, 2, "not_crossing"),
+    ],
+)
+def test_uses_of_the_crossing(x, y, across, expected):
+    assert use(x, y, across=across) == expected
+
+
+def test_walking_along_the_pavement_is_not_coming_to_cross():
+    assert use(60, -3, along=1.5, across=0.5) == "not_crossing"
+    assert use(60, -3, along=0.5, across=1.5) == "about_to_cross"
+
+
+def test_the_kerb_reaches_two_metres_beyond_the_crossing():
+    # It ends at 62 m; the body reaches 0.2 m back
+    assert use(64.1, -4) == "waiting_to_cross"
+    assert use(64.3, -4) == "not_crossing"
+    assert use(64.3, -4, kerb_m=2.5) == "waiting_to_cross"
+
+
+def stopped(x, speed=0.0, walks=True):
+    """Has a vehicle ahead of ego stopped for a pedestrian on the crossing?"""
+    walker = vehicle(8, {0: (60, 0), 1: (60, 0)}, "pedestrian", length=0.4, width=0.4)
+    others = [steady(9, x, 0, speed=speed, steps=2)] + ([walker] if walks else [])
+    context = context_of(recording([*lanes(1), ZEBRA], [steady(7, 20, 0, steps=2), *others]))
+    signals = crossing_signals(context)
+    assert signals.only["stopped_for_pedestrian"].tolist() == [True, False][: len(others)]
+    return bool(signals.about["stopped_for_pedestrian"][0, 0])
+
+
+def test_vehicles_that_stand_before_the_crossing_have_stopped_for_a_pedestrian():
+    # The front is 2 m ahead of the middle; the crossing begins at 58 m, 10 m before it at 48
+    assert stopped(55)
+    assert stopped(50)
+    assert stopped(46.1)
+    assert not stopped(45.9)
+    assert not stopped(57)
+    assert not stopped(55, speed=2)
+    assert not stopped(50, walks=False)

@@ -1,0 +1,117 @@
+"""Signals of ego alone, on a straight road."""
+
+from dataclasses import replace
+
+import pytest
+
+from rulec.extraction.signals.ego_signals import ego_signals, steady_lane
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording, vehicle
+from support.generators.random_recordings import lanes
+
+
+def world(body, count=3, route=("1",), side="right", **thresholds):
+    return ego_signals(context_of(recording(lanes(count), [body]), route, side, **thresholds)).world
+
+
+def drive(*places, **more):
+    return vehicle(7, dict(enumerate(places)), **more)
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [
+        ("car", "ego_car"),
+        ("taxi", "ego_car"),
+        ("truck", "ego_truck"),
+        ("bus", "ego_bus"),
+        ("motorcycle", "ego_motorcycle"),
+        ("priorityVehicle", "ego_emergency_vehicle"),
+        ("bicycle", "ego_cycle"),
+    ],
+)
+def test_type_and_length(kind, expected):
+    found = world(steady(7, 0, 0, kind=kind, length=6.5))
+    assert set(found["ego_type"].tolist()) == {expected}
+    assert found["ego_length"].tolist() == [6.5] * 4
+
+
+def test_speed_in_km_h_and_standing():
+    assert world(steady(7, 0, 0, speed=10))["speed"].tolist() == [36.0] * 4
+    # 0.2 m/s are 0.72 km/h, below the 1 km/h at which a vehicle stands
+    assert world(steady(7, 0, 0, speed=0.2))["speed"].tolist() == [0.0] * 4
+    assert world(steady(7, 0, 0, speed=0.2), standing_kmh=0.5)["speed"].tolist() == [0.72] * 4
+
+
+def test_what_can_stop_at_once():
+    assert world(steady(7, 0, 0, speed=5.5))["can_stop_at_once"].all()  # 19.8 km/h
+    assert not world(steady(7, 0, 0, speed=5.6))["can_stop_at_once"].any()  # 20.16 km/h
+
+
+def test_acceleration_and_hard_braking():
+    # 1, 2, 3, 4 m in half seconds: 2, 3, 5, 7, 8 m/s, so 2 m/s² at the first and 4 in the middle
+    faster = world(drive((0, 0), (1, 0), (3, 0), (6, 0), (10, 0)))
+    assert faster["accelerating"].all()
+    assert not faster["braking_hard"].any()
+    slower = world(drive((0, 0), (10, 0), (16, 0), (18, 0), (18, 0)))
+    # 20, 16, 8, 2, 0 m/s; the last difference is 4 m/s² exactly, which is not harder than 4
+    assert slower["braking_hard"].tolist() == [True, True, True, True, False]
+    assert not world(steady(7, 0, 0))["accelerating"].any()
+
+
+@pytest.mark.parametrize(
+    ("y", "right_hand", "left_hand"),
+    [
+        (0, "kerb_lane", "far_lane"),
+        (4, "middle_lane", "middle_lane"),
+        (8, "far_lane", "kerb_lane"),
+    ],
+)
+def test_the_lane_counted_from_the_kerb(y, right_hand, left_hand):
+    body = steady(7, 0, y)
+    assert set(world(body)["lane"].tolist()) == {right_hand}
+    assert set(world(body, side="left")["lane"].tolist()) == {left_hand}
+
+
+@pytest.mark.parametrize(
+    ("count", "expected"),
+    [(1, "one_lane"), (2, "two_lanes"), (3, "three_or_more_lanes"), (4, "three_or_more_lanes")],
+)
+def test_the_number_of_lanes(count, expected):
+    found = world(steady(7, 0, 0), count)
+    assert set(found["lanes"].tolist()) == {expected}
+    # An only lane is the one at the kerb
+    assert set(found["lane"].tolist()) == {"kerb_lane"}
+
+
+@pytest.mark.parametrize(("y", "expected"), [(1.2, False), (1.4, True), (2, True), (2.8, False)])
+def test_straddling_needs_thirty_centimetres_on_each_side(y, expected):
+    # 2 m wide; the mark lies at 2 m, the road ends at -2 m
+    assert world(steady(7, 0, y))["straddling"].tolist() == [expected] * 4
+    assert not world(steady(7, 0, -1.5))["straddling"].any()
+
+
+@pytest.mark.parametrize(
+    ("y", "expected"),
+    [(0, "centred"), (-0.5, "centred"), (-0.7, "at_near_edge"), (0.7, "at_far_edge")],
+)
+def test_the_place_in_the_lane(y, expected):
+    assert set(world(steady(7, 0, y))["lane_position"].tolist()) == {expected}
+    other = {"at_near_edge": "at_far_edge", "at_far_edge": "at_near_edge"}.get(expected, expected)
+    assert set(world(steady(7, 0, y), side="left")["lane_position"].tolist()) == {other}
+
+
+def test_no_edge_is_kept_to_in_a_lane_hardly_wider_than_ego():
+    # 20 cm of room to the right, 40 cm to the left
+    found = world(steady(7, 0, -0.1, width=3.4))
+    assert set(found["lane_position"].tolist()) == {"centred"}
+
+
+def test_a_lane_is_left_only_well_beyond_its_mark():
+    found = recording(lanes(2), [drive((0, 1.9), (5, 2.2), (10, 2.4), (15, 1.8), (20, 1.6))])
+    context = context_of(found)
+    existing = context.road.lanes_at(context.ego_extents.s[0])
+    assert context.ego_lane.tolist() == [0, 1, 1, 0, 0]
+    assert steady_lane(context, existing).tolist() == [0, 0, 1, 1, 0]
+    early = replace(context, thresholds=replace(context.thresholds, changed_m=0.1))
+    assert steady_lane(early, existing).tolist() == [0, 1, 1, 0, 0]

@@ -1,0 +1,111 @@
+"""Signals of junctions, stop lines and traffic lights before them."""
+
+from math import cos, radians, sin
+
+import pytest
+
+from rulec.extraction.signals.junction_signals import junction_signals
+from rulec.scenario.recorded.recording import Light
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+JUNCTION = frozenset({"intersection"})
+
+
+def signals(body, middle=None, side="right", before=None, **thresholds):
+    """On a road with a junction from x = 100 to 120."""
+    lanes = [
+        straight(1, 0, 100, successors=(2,), **(before or {})),
+        middle or straight(2, 100, 120, predecessors=(1,), successors=(3,), types=JUNCTION),
+    ]
+    if middle is None:
+        lanes.append(straight(3, 120, 300, predecessors=(2,)))
+    route = tuple(lane.id for lane in lanes)
+    return junction_signals(context_of(recording(lanes, [body]), route, side, **thresholds))
+
+
+def along(*xs, length=4.0):
+    return vehicle(7, {k: (x, 0) for k, x in enumerate(xs)}, length=length)
+
+
+def test_the_zone_reaches_from_before_the_junction_to_its_end():
+    # The front is 2 m ahead of the middle: 5 m before the junction begins at 93
+    found = signals(along(92, 94, 97, 99, 121, 123)).world
+    assert found["junction_zone"].tolist() == [False, True, True, True, True, False]
+    assert found["enters_junction"].tolist() == [False, False, False, True, False, False]
+
+
+def test_whoever_begins_in_a_junction_does_not_enter_it():
+    assert not signals(along(105, 110, 115)).world["enters_junction"].any()
+
+
+def bend(degrees):
+    """A junction in which the road turns to the left, by a quarter or less."""
+    turn = radians(degrees)
+    ends = [(110, 0), (110 + 30 * cos(turn), 30 * sin(turn))]
+    return lanelet(2, [(100, 0), *ends], predecessors=(1,), types=JUNCTION)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "right_hand", "left_hand"),
+    [
+        (0, "straight_on", "straight_on"),
+        (40, "straight_on", "straight_on"),
+        (60, "turn_far", "turn_near"),
+        (-60, "turn_near", "turn_far"),
+        (-130, "turn_near", "turn_far"),
+    ],
+)
+def test_turns_by_their_angle_and_the_side_of_traffic(degrees, right_hand, left_hand):
+    body = along(90, 97, 99, 101)
+    found = signals(body, bend(degrees)).world
+    assert found["turn"].tolist() == ["straight_on", *[right_hand] * 3]
+    assert signals(body, bend(degrees), "left").world["turn"][-1] == left_hand
+
+
+def test_a_junction_in_which_a_road_comes_back_is_a_turn_round():
+    round_again = lanelet(
+        2, [(100, 0), (120, 0), (125, 5), (120, 10), (90, 10)], predecessors=(1,), types=JUNCTION
+    )
+    assert signals(along(97, 99), round_again).world["turn"][-1] == "turn_round"
+
+
+def test_preparing_is_known_from_what_follows():
+    body = along(80, 85, 90, 95, 97, 99)
+    found = signals(body, bend(60), preparing_s=1.0).world["preparing_to_leave"]
+    # The zone begins in state 3: a second before are two states
+    assert found.tolist() == [False, True, True, True, True, True]
+
+
+def test_stop_lines_lie_at_the_ends_of_their_lanelets():
+    stop = {"signs": frozenset({"STOP"})}
+    assert "crosses_stop_line" not in signals(along(90, 99)).world
+    found = signals(along(90, 97, 99, 101), before=stop).world["crosses_stop_line"]
+    assert found.tolist() == [False, False, True, False]
+
+
+def test_the_light_at_the_line_ahead():
+    # Red for two steps, then green for ten
+    before = {"lights": (Light(0, (("red", 2), ("green", 10))),)}
+    found = signals(along(40, 60, 80, 99, 105), before=before)
+    assert found.world["light"].tolist() == [
+        "no_light",  # 58 m away
+        "red_light",
+        "green_light",
+        "green_light",  # in the state in which the line is crossed
+        "no_light",
+    ]
+    assert found.world["crosses_light_line"].tolist() == [False, False, False, True, False]
+    assert not found.unknown["light"].any()
+
+
+def test_lights_of_several_colours_leave_egos_unknown():
+    both = (Light(0, (("red", 9),)), Light(0, (("green", 9),)))
+    found = signals(along(60, 70), before={"lights": both})
+    assert found.unknown["light"].tolist() == [True, True]
+    same = (Light(0, (("red", 9),)), Light(0, (("redYellow", 9),)))
+    assert signals(along(60, 70), before={"lights": same}).world["light"][0] == "red_light"
+
+
+def test_a_map_without_lights_says_nothing_of_them():
+    assert "light" not in signals(along(90, 99)).world

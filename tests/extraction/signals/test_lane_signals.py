@@ -1,0 +1,134 @@
+"""Signals of lane changes and of the marks between lanes."""
+
+from dataclasses import replace
+
+import pytest
+
+from rulec.extraction.signals.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording, vehicle
+from support.generators.random_recordings import lanes
+
+# From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
+CHANGE = {0: (0, 0), 1: (5, 1.5), 2: (10, 2.5), 3: (15, 4)}
+
+
+def changes(*others, body=None, side="right", **thresholds):
+    ego = body or vehicle(7, CHANGE)
+    return lane_change_signals(
+        context_of(recording(lanes(2), [ego, *others]), side=side, **thresholds)
+    )
+
+
+def test_the_state_in_which_the_lane_is_another_one():
+    assert changes().world["lane_change"].tolist() == [False, False, True, False]
+    assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
+
+
+def clear(x, speed, **thresholds):
+    """Is the left lane clear in the state of the change, when ego is at 10 m?"""
+    other = steady(8, x - 1.0 * speed, 4, speed=speed)
+    return bool(changes(other, **thresholds).world["lane_is_clear"][2])
+
+
+@pytest.mark.parametrize(
+    ("x", "speed", "expected"),
+    [
+        (10, 10, False),  # beside ego
+        (30, 10, True),  # ahead of it
+        (0, 10, True),  # 6 m behind, but no faster
+        # 5 m/s faster: after a second of reaction it needs 25 / (2 x 2) = 6.25 m
+        (-6, 15, True),  # 12 m behind, 7 m after the reaction
+        (-5, 15, False),  # 11 m behind, 6 m after the reaction
+        (3, 15, False),  # 3 m behind: there is no room left after the reaction
+    ],
+)
+def test_who_would_have_to_brake_is_disturbed(x, speed, expected):
+    assert clear(x, speed) is expected
+
+
+def test_comfort_and_reaction_are_thresholds():
+    assert clear(-5, 15, disturbing_mps2=2.1)
+    assert not clear(-6, 15, reaction_s=1.2)
+
+
+def test_the_lane_is_clear_while_ego_does_not_change():
+    other = steady(8, 0, 4)
+    assert changes(other).world["lane_is_clear"].tolist() == [True, True, False, True]
+
+
+def test_indicators_by_side_and_where_lamps_are_unknown():
+    lamps = {
+        0: frozenset(),
+        1: frozenset({"left_indicator"}),
+        2: frozenset({"left_indicator", "right_indicator"}),
+    }
+    body = replace(vehicle(7, CHANGE), lamps=lamps)
+    found = changes(body=body)
+    assert found.world["indicator"].tolist()[:3] == [
+        "no_indicator",
+        "far_indicator",
+        "no_indicator",
+    ]
+    assert found.unknown["indicator"].tolist() == [False, False, False, True]
+    left = changes(body=body, side="left")
+    assert left.world["indicator"][1] == "near_indicator"
+    assert "indicator" not in changes().world
+
+
+def marks(y, right=None, left=None, count=2, route=("1",)):
+    """The signals of marks in the first state; marks are those on both lanelets beside a line."""
+    road = lanes(count)
+    road[0] = replace(road[0], left_mark=right)
+    if count > 1:
+        road[1] = replace(road[1], right_mark=left)
+    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, y)]), route))
+    known = {name: column[0].item() for name, column in signals.world.items()}
+    return known, {name: column[0].item() for name, column in signals.unknown.items()}
+
+
+def test_a_map_without_marks_says_nothing_of_them():
+    assert marks(0) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    ("right", "left", "marked", "unknown"),
+    [
+        ("solid", "solid", True, False),
+        ("none", "broken", True, False),
+        ("none", "none", False, False),
+        ("none", None, True, False),
+    ],
+)
+def test_lanes_are_marked_by_any_line_between_them(right, left, marked, unknown):
+    known, where = marks(0, right, left)
+    assert known["marked_lanes"] is marked
+    assert where["marked_lanes"] is unknown
+
+
+def test_an_only_lane_has_no_marks_between_lanes():
+    assert marks(0, "solid", count=1)[0]["marked_lanes"] is False
+
+
+def test_a_line_between_lanes_without_any_mark_leaves_it_unknown():
+    road = lanes(3)
+    road[0] = replace(road[0], left_mark="broken")
+    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, 0)])))
+    assert signals.unknown["marked_lanes"].all()
+
+
+@pytest.mark.parametrize(("y", "solid"), [(0, False), (1.2, False), (1.4, True), (2.8, False)])
+def test_a_solid_line_lies_under_ego_from_thirty_centimetres_on(y, solid):
+    assert marks(y, "solid", "solid")[0]["on_solid_line"] is solid
+
+
+def test_of_two_lines_the_one_on_ego_s_side_counts():
+    # Ego's middle is in the right lane, at whose side the line is broken
+    known, _ = marks(1.5, "broken", "solid")
+    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
+    known, _ = marks(1.5, "solid", "broken")
+    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, False)
+    # And in the left lane it is the other one
+    known, _ = marks(2.5, "solid", "broken", route=("2",))
+    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)

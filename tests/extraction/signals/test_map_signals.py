@@ -1,0 +1,85 @@
+"""Signals of the map where ego is."""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map_signals import (
+    NO_CROSSING_M,
+    NO_LIMIT_KMH,
+    distance_to_crossing,
+    map_signals,
+    next_crossing,
+)
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+
+def context(xs, *others, first=None, second=None):
+    lanes = [
+        straight(1, 0, 100, successors=(2,), **(first or {})),
+        straight(2, 100, 200, predecessors=(1,), **(second or {})),
+        *others,
+    ]
+    body = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
+    return context_of(recording(lanes, [body]), ("1", "2"))
+
+
+def zebra(number, x):
+    return lanelet(number, [(x, -6), (x, 6)], width=4, types=frozenset({"crosswalk"}))
+
+
+def test_the_limit_of_the_lanelet_under_ego():
+    found = map_signals(context([90, 110], first={"limit_mps": 50 / 3.6})).world["limit"]
+    assert found.tolist() == [50.0, NO_LIMIT_KMH]
+    assert "limit" not in map_signals(context([90, 110])).world
+
+
+def test_the_class_of_the_road_is_unknown_where_no_type_says_it():
+    found = map_signals(context([90, 110], first={"types": frozenset({"interstate"})}))
+    assert found.world["road_class"].tolist() == ["motorway", ""]
+    assert found.unknown["road_class"].tolist() == [False, True]
+    assert "road_class" not in map_signals(context([90, 110])).world
+
+
+def test_signs_of_lines_hold_until_the_line_is_crossed():
+    signs = {"signs": frozenset({"STOP", "NO_OVERTAKING_START"})}
+    # The front is at 92, 101, 105, the middle at 90, 99, 103
+    found = map_signals(context([90, 99, 103], first=signs)).world
+    assert found["stop_sign"].tolist() == [True, True, False]
+    assert found["no_overtaking_sign"].tolist() == [True, True, False]
+    assert "give_way_sign" not in found
+    late = map_signals(context([90, 103, 107], first=signs)).world
+    assert late["stop_sign"].tolist() == [True, True, False]
+    assert late["no_overtaking_sign"].tolist() == [True, False, False]
+
+
+def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():
+    found = context([10, 36, 41, 70, 90], zebra(8, 40), zebra(9, 80))
+    start, end = next_crossing(found)
+    assert start == pytest.approx([38, 38, 38, 78, np.inf], abs=0.05)
+    assert end == pytest.approx([42, 42, 42, 82, np.inf], abs=0.05)
+    # Fronts are at 12, 38, 43, 72 and 92
+    expected = [26, 0, 0, 6, NO_CROSSING_M]
+    assert distance_to_crossing(found) == pytest.approx(expected, abs=0.05)
+    signals = map_signals(found).world
+    assert signals["crossing_zone"].tolist() == [False, True, True, False, False]
+    assert signals["surface"].tolist() == [
+        "carriageway",
+        *(["crossing"] * 2),
+        "carriageway",
+        "carriageway",
+    ]
+
+
+def test_surfaces_by_ego_s_middle():
+    junction = {"types": frozenset({"intersection"})}
+    assert map_signals(context([97, 101, 103], second=junction)).world["surface"].tolist() == [
+        "carriageway",
+        "junction",
+        "junction",
+    ]
+    bus_lane = {"types": frozenset({"busLane"})}
+    assert map_signals(context([97, 101], second=bus_lane)).world["surface"].tolist() == [
+        "carriageway",
+        "bus_lane",
+    ]

@@ -1,0 +1,107 @@
+"""Signals of other participants, measured against ego on a straight road of two lanes."""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.other_signals import (
+    LONGEST_S,
+    is_oncoming,
+    other_signals,
+    safe_distance,
+)
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording
+from support.generators.random_recordings import lanes
+
+
+def context(*others, ego_speed=10.0, **thresholds):
+    ego = steady(7, 0, 0, speed=ego_speed)
+    return context_of(recording(lanes(2), [ego, *others]), **thresholds)
+
+
+def about(*others, **more):
+    """The first state of each signal, of the first of the others."""
+    signals = other_signals(context(*others, **more))
+    return {name: rows[0, 0] for name, rows in signals.about.items()}
+
+
+def test_relations_and_distances():
+    found = about(steady(8, 30, 4))
+    assert (found["station"], found["lateral"], found["position"]) == ("behind", "right_of", "r")
+    # From 2 to 28 m along the road; from 1 to 3 m across it
+    assert (found["gap"], found["lateral_gap"]) == (26.0, 2.0)
+    ahead = about(steady(8, -30, 0))
+    assert (ahead["station"], ahead["lateral"], ahead["position"]) == (
+        "in_front_of",
+        "same_lane",
+        "f",
+    )
+    beside = about(steady(8, 1, 4))
+    assert (beside["station"], beside["gap"]) == ("beside", 0.0)
+
+
+def test_headway_is_the_time_for_the_gap():
+    assert about(steady(8, 30, 0))["time_headway"] == 2.6
+    assert about(steady(8, 30, 0), ego_speed=0.1)["time_headway"] == LONGEST_S
+    assert about(steady(8, 130, 0), ego_speed=0.3)["time_headway"] == 420.0
+
+
+def test_speed_difference_is_positive_for_a_faster_ego():
+    assert about(steady(8, 30, 0, speed=5))["speed_difference"] == 18.0
+    assert about(steady(8, 30, 0, speed=15))["speed_difference"] == -18.0
+    # Drift below 1 km/h is standing
+    assert about(steady(8, 30, 0, speed=0.2))["speed_difference"] == 36.0
+
+
+def test_the_safe_distance_is_that_of_two_emergency_brakings():
+    # 10 m in the second of reaction, and (100 - 25) / 16 m
+    assert safe_distance(context(steady(8, 30, 0, speed=5)))[0, 0] == pytest.approx(14.6875)
+    # Somebody oncoming counts as standing: 10 + 100 / 16
+    assert safe_distance(context(steady(8, 30, 0, speed=-5)))[0, 0] == pytest.approx(16.25)
+    assert about(steady(8, 18.7, 0, speed=5))["safe_gap"]  # 14.7 m
+    assert not about(steady(8, 18.5, 0, speed=5))["safe_gap"]  # 14.5 m
+    assert not about(steady(8, 18.7, 0, speed=5), reaction_s=1.1)["safe_gap"]
+
+
+def test_a_safe_gap_is_asked_for_in_egos_lane_only():
+    assert not about(steady(8, 10, 0, speed=5))["safe_gap"]
+    assert about(steady(8, 10, 4, speed=5))["safe_gap"]
+    assert about(steady(8, -10, 0, speed=5))["safe_gap"]
+
+
+def test_only_the_next_one_ahead_precedes():
+    others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
+    signals = other_signals(context(*others))
+    assert signals.about["precedes"][:, 0].tolist() == [False, True, False, False]
+    oncoming = other_signals(context(steady(8, 30, 0, speed=-5), steady(9, 50, 0)))
+    assert oncoming.about["precedes"][:, 0].tolist() == [False, True]
+
+
+def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
+    assert is_oncoming(context(steady(8, 60, 4, speed=-5)))[0].all()
+    assert not is_oncoming(context(steady(8, 60, 4, speed=5)))[0].any()
+    waiting = {"speed": -0.01, "heading": float(np.pi)}
+    # On ego's own lanes one that stands the wrong way round is an obstacle
+    assert not about(steady(8, 60, 4, **waiting))["oncoming"]
+    # It has moved at some time, so that it is relevant beside the road
+    places = steady(8, 60, 8, speed=-5, steps=3)
+    stopped = steady(8, 40, 8, **waiting)
+    found = context(steady(8, 60, 8, speed=-5))
+    assert found.relevant[0].all()
+    assert other_signals(found).about["oncoming"][0].all()
+    assert places.states.keys() <= stopped.states.keys()
+    # Reversing is not coming: it faces ego's way
+    assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
+
+
+def test_what_holds_for_good():
+    found = about(steady(8, 30, 0, kind="motorcycle", speed=0))
+    assert (found["stopped"], found["two_wheeled"], found["parked"]) == (True, True, False)
+    parked = about(steady(8, 30, 0, steps=1, standing=True))
+    assert (parked["stopped"], parked["two_wheeled"], parked["parked"]) == (True, False, True)
+
+
+def test_in_the_road_is_about_vulnerable_users():
+    signals = other_signals(context(steady(8, 30, 0), steady(9, 30, 1, speed=0, kind="pedestrian")))
+    assert signals.about["in_the_road"][:, 0].tolist() == [False, True]
+    assert signals.only["in_the_road"].tolist() == [False, True]

@@ -1,0 +1,62 @@
+"""The tally of violations over the drives of a recording."""
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.extraction.to_trace import Drive
+from rulec.extraction.violation_tally import ViolationTally
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.trace import Trace
+
+
+def drive(name, start_s=0.0, kinds=("speed",)):
+    return Drive(name, start_s, Trace(name, 0.5, {}, ({},) * 4, {}), dict.fromkeys(kinds, float))
+
+
+def verdict(own, *violations):
+    found = [Violation(rule, strength, {}, step) for rule, strength, step in violations]
+    return DriveVerdict(own, Verdict(own.trace.id, tuple(found)))
+
+
+def tally(*verdicts):
+    counted = ViolationTally()
+    for each in verdicts:
+        counted.add(each)
+    return counted
+
+
+def test_drives_are_counted_by_their_verdict():
+    counted = tally(
+        verdict(drive("1")),
+        verdict(drive("2"), ("fast", "hard", 1)),
+        # Soft rules do not decide
+        verdict(drive("3"), ("gentle", "soft", 1)),
+    )
+    assert counted.satisfied == ["1", "3"]
+    assert counted.violated == ["2"]
+    assert counted.judged == 3
+
+
+def test_the_first_time_of_each_rule_and_drive_counts():
+    own = drive("2", start_s=10.0)
+    counted = tally(
+        verdict(own, ("fast", "hard", 3), ("fast", "hard", 1), ("late", "hard", None)),
+        verdict(drive("3"), ("fast", "hard", 0)),
+    )
+    # Only the end decides `late`: in state 3
+    assert counted.first_s == {"fast": {"2": 10.5, "3": 0.0}, "late": {"2": 11.5}}
+
+
+def test_names_are_those_that_all_drives_supply():
+    counted = tally(verdict(drive("1", kinds=("a", "b"))), verdict(drive("2", kinds=("b", "c"))))
+    assert counted.words == {"b"}
+    assert tally().words is None
+
+
+def test_drives_without_a_verdict_are_kept_with_the_reason():
+    error = RulecError(Diagnostic("R0502", "something is missing"))
+    nobody = NoDrive("4", "it is never on a lane that leads its way")
+    counted = tally(nobody, DriveVerdict(drive("5"), NotJudged("5", error)))
+    assert counted.not_judged == [nobody, NoDrive("5", "something is missing")]
+    assert counted.judged == 0
+    assert counted.words is None

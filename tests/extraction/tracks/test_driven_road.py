@@ -1,0 +1,61 @@
+"""The road of a chain of lanelets: its lanes, and what lies where along it."""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.tracks.driven_road import driven_road
+from support.builders.recordings import lanelet, recording, straight
+
+TWO_LANES = [
+    straight(1, 0, 100, left_of=2, successors=(3,)),
+    straight(2, 0, 100, y=4, right_of=1, successors=(4,)),
+    straight(3, 100, 200, left_of=4, predecessors=(1,)),
+    straight(4, 100, 200, y=4, right_of=3, predecessors=(2,)),
+]
+
+
+def road(lanes=TWO_LANES, route=("1", "3"), junctions=frozenset()):
+    return driven_road(recording(lanes), route, junctions)
+
+
+def test_rows_are_the_lanelets_beside_each_other():
+    found = road()
+    assert [[own.id for own in row] for row in found.rows] == [["1", "2"], ["3", "4"]]
+    assert found.own_lane == 0
+    assert road(route=("2", "4")).own_lane == 1
+    assert found.borders.tolist() == [0, 100, 200]
+    assert found.lanelet(1, 1).id == "4"
+
+
+def test_the_road_goes_on_before_and_after_the_way():
+    assert [row[0].id for row in road(route=("3",)).rows] == ["1", "3"]
+    assert [row[0].id for row in road(route=("1",)).rows] == ["1", "3"]
+
+
+def test_places_have_lanelets_and_lanes():
+    found = road()
+    assert found.piece(np.array([-5.0, 0.0, 99.0, 101.0, 250.0])).tolist() == [0, 0, 0, 1, 1]
+    # Marks lie at -2, 2 and 6; beside the road the nearest lane counts
+    assert found.lane_of(np.array([-9.0, 1.9, 2.1, 9.0])).tolist() == [0, 0, 1, 1]
+
+
+def test_a_lane_that_ends_is_missing_from_then_on():
+    found = road([TWO_LANES[0], straight(2, 0, 100, y=4, right_of=1), TWO_LANES[2]])
+    assert found.rows[1][1] is None
+    # Where the map has no lanelet ego's own stands in
+    assert found.lanelet(1, 1).id == "3"
+    assert found.lanes_at(np.array([50.0, 150.0])).tolist() == [[True, True], [True, False]]
+
+
+def test_crossings_and_junctions_lie_along_the_road():
+    zebra = lanelet(9, [(40, -5), (40, 9)], width=4, types=frozenset({"crosswalk"}))
+    found = road([*TWO_LANES, zebra], junctions=frozenset({"3", "4"}))
+    ((start, end),) = found.crossings
+    assert (start, end) == (pytest.approx(38, abs=0.1), pytest.approx(42, abs=0.1))
+    assert found.junctions == ((100.0, 200.0),)
+    assert road(junctions=frozenset({"1", "3"})).junctions == ((0.0, 200.0),)
+
+
+def test_a_road_without_lanes_is_refused():
+    with pytest.raises(ValueError, match="no lane of the road is as wide as 1 m"):
+        road([straight(1, 0, 100, width=0.5)], ("1",))

@@ -1,0 +1,40 @@
+"""The lanelets in junctions: those that a map marks, else those whose ways cross."""
+
+from math import cos, radians, sin
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.extraction.tracks.junction_lanelets import junction_lanelets
+from support.builders.recordings import lanelet, recording, straight
+
+
+def across(number, degrees, **more):
+    """A lanelet through the origin, at an angle to the x axis."""
+    x, y = 50 * cos(radians(degrees)), 50 * sin(radians(degrees))
+    return lanelet(number, [(-x, -y), (x, y)], **more)
+
+
+ALONG = straight(1, -60, 60)
+
+
+@given(st.integers(1, 179))
+def test_ways_cross_at_more_than_30_degrees(degrees):
+    if degrees in (30, 150):
+        return
+    crossing = 30 < degrees < 150
+    found = junction_lanelets(recording([ALONG, across(2, degrees)]))
+    assert found == ({"1", "2"} if crossing else frozenset())
+
+
+def test_ways_that_do_not_meet_or_are_no_lanes_make_no_junction():
+    far = lanelet(2, [(90, -50), (90, 50)])
+    assert junction_lanelets(recording([ALONG, far])) == frozenset()
+    zebra = across(2, 90, types=frozenset({"crosswalk"}))
+    assert junction_lanelets(recording([ALONG, zebra])) == frozenset()
+    assert junction_lanelets(recording([])) == frozenset()
+
+
+def test_where_a_map_marks_junctions_only_those_count():
+    marked = straight(3, 60, 80, types=frozenset({"intersection"}))
+    assert junction_lanelets(recording([ALONG, across(2, 90), marked])) == {"3"}

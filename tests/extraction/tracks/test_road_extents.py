@@ -1,0 +1,91 @@
+"""Extents along and across a road, in Frenet coordinates."""
+
+from dataclasses import replace
+from math import cos, pi, radians, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.extraction.selection.traffic_thresholds import USUAL
+from rulec.extraction.tracks.driven_road import driven_road
+from rulec.extraction.tracks.road_extents import road_extents
+from rulec.extraction.tracks.tracks import tracks_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")
+
+
+def extents(lanes, *participants, route=("1",)):
+    found = recording(lanes, participants)
+    return road_extents(tracks_of(found, USUAL), driven_road(found, route, frozenset()))
+
+
+def bounds(found, row=0, column=0):
+    return [float(getattr(found, name)[row, column]) for name in BOUNDS]
+
+
+@given(st.floats(5, 95), st.floats(-6, 6), st.floats(0.5, 12), st.floats(0.3, 3))
+def test_on_a_straight_road_extents_are_coordinates(x, y, length, width):
+    found = extents([straight(1, 0, 100)], vehicle(7, {0: (x, y)}, length=length, width=width))
+    along = [x - length / 2, x + length / 2]
+    across = [y - width / 2, y + width / 2]
+    assert bounds(found) == pytest.approx([*along, *across, *across], abs=1e-6)
+
+
+@given(st.floats(-pi, pi), st.floats(-900, 900), st.floats(-900, 900))
+def test_they_do_not_depend_on_where_the_road_lies_and_leads(angle, x, y):
+    def placed(s, d):
+        return x + s * cos(angle) - d * sin(angle), y + s * sin(angle) + d * cos(angle)
+
+    road = lanelet(1, [placed(0, 0), placed(100, 0)])
+    body = vehicle(7, {0: placed(40, 1), 1: placed(45, 1)}, heading=angle)
+    found = extents([road], body)
+    assert bounds(found) == pytest.approx([38, 42, 0, 2, 0, 2], abs=1e-6)
+    assert found.turned[0] == pytest.approx([0, 0], abs=1e-6)
+    assert (found.along[0, 0], found.across[0, 0]) == pytest.approx((10, 0), abs=1e-6)
+
+
+def test_motion_is_seen_from_the_road():
+    places = {0: (50.0, 0.0), 1: (53.0, -1.0)}
+    found = extents([straight(1, 0, 100)], vehicle(7, places, heading=radians(-20)))
+    assert found.turned[0, 0] == pytest.approx(radians(-20))
+    # Half a second: 3 m ahead are 6 m/s, 1 m to the right are -2 m/s to the left
+    assert (found.along[0, 0], found.across[0, 0]) == pytest.approx((6, -2))
+    towards = extents([straight(1, 0, 100)], vehicle(7, {0: (60, 0), 1: (50, 0)}, heading=pi))
+    assert abs(towards.turned[0, 0]) == pytest.approx(pi)
+    assert towards.along[0, 0] == pytest.approx(-20)
+
+
+def test_across_a_lane_that_widens_places_keep_their_proportion():
+    # 4 m wide at the middle of the road, where lanes have their usual width, 8 m at its end
+    road = lanelet(1, [(0, 0), (50, 0), (100, 0)], width=[4, 4, 8])
+    found = extents([road], vehicle(7, {0: (99.9, 0)}, length=0.2, width=4.0))
+    _, _, d_min, d_max, w_min, w_max = bounds(found)
+    assert (d_min, d_max) == pytest.approx((-2, 2), abs=0.01)
+    assert (w_min, w_max) == pytest.approx((-1, 1), abs=0.05)
+
+
+def test_a_standing_body_has_one_extent_for_all_steps():
+    post = vehicle(8, {0: (70, 3)}, standing=True)
+    found = extents([straight(1, 0, 100)], vehicle(7, {0: (0, 0), 3: (9, 0)}), post)
+    assert found.s_min[1].tolist() == [68, 68, 68, 68]
+    assert np.isnan(found.s_min[0, 1:3]).all()
+
+
+def test_a_body_is_not_torn_apart_where_a_road_meets_itself():
+    # There and back again, 5 m apart: a lorry that reaches over the middle stays on its side
+    points = [(0, 0), (100, 0), (105, 2.5), (100, 5), (0, 5)]
+    lorry = vehicle(7, {0: (30, 1.5)}, length=10, width=2.6)
+    s_min, s_max, d_min, d_max, _, _ = bounds(extents([lanelet(1, points, width=2)], lorry))
+    assert (s_min, s_max) == pytest.approx((25, 35), abs=0.1)
+    assert (d_min, d_max) == pytest.approx((0.2, 2.8), abs=0.05)
+
+
+def test_one_row_and_a_part():
+    bodies = [vehicle(k, {0: (10 * k, 0), 1: (10 * k + 1, 0)}) for k in (1, 2, 3)]
+    found = extents([straight(1, 0, 100)], *bodies)
+    assert found.of(1).s.tolist() == [[20, 21]]
+    assert found.part(np.array([2, 0]), slice(1, 2)).s.tolist() == [[31], [11]]
+    assert replace(found, w_min=found.w_min + 2).w[0, 0] == 1

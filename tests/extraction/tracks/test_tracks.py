@@ -1,0 +1,92 @@
+"""Tracks: who is where when, and velocities as differences of places."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.extraction.selection.traffic_thresholds import USUAL
+from rulec.extraction.tracks.tracks import tracks_of
+from support.builders.recordings import recording, straight, vehicle
+
+ROAD = [straight(1, -100, 300)]
+
+
+def tracks(*participants, **thresholds):
+    return tracks_of(recording(ROAD, participants), replace(USUAL, **thresholds))
+
+
+def test_columns_begin_with_the_first_step_of_anybody():
+    found = tracks(vehicle(7, {3: (0, 0), 4: (5, 0)}), vehicle(8, {5: (9, 1), 6: (9, 2)}))
+    assert found.first == 3
+    assert found.present.tolist() == [[True, True, False, False], [False, False, True, True]]
+    assert found.x[0, :2].tolist() == [0, 5]
+    assert np.isnan(found.x[0, 2:]).all()
+    assert found.y[1, 2:].tolist() == [1, 2]
+
+
+def test_velocities_are_differences_over_the_window_around_a_moment():
+    # Half a second apart: 5 m, then 10 m. What the file says of speeds does not count
+    found = tracks(vehicle(7, {0: (0, 0), 1: (5, 0), 2: (15, 0)}, speed=99))
+    assert found.vx[0] == pytest.approx([10, 15, 20])
+    assert found.speed[0] == pytest.approx([10, 15, 20])
+    # Speeds differ by 5 m/s in half a second at the ends, by 10 m/s in a second between
+    assert found.acceleration[0] == pytest.approx([10, 10, 10])
+    wide = tracks(vehicle(7, {0: (0, 0), 1: (5, 0), 2: (15, 0)}), smoothing_s=2.0)
+    assert wide.vx[0] == pytest.approx([15, 15, 15])
+
+
+def test_no_difference_is_taken_over_an_absence():
+    places = {0: (0, 0), 1: (5, 0), 4: (100, 0), 5: (110, 0)}
+    assert tracks(vehicle(7, places)).vx[0, [0, 1, 4, 5]] == pytest.approx([10, 10, 20, 20])
+
+
+def test_in_a_single_moment_the_stated_speed_counts():
+    found = tracks(vehicle(7, {0: (0, 0)}, speed=6, heading=np.pi / 2))
+    assert (found.vx[0, 0], found.vy[0, 0]) == (pytest.approx(0), pytest.approx(6))
+    assert found.acceleration[0, 0] == 0
+
+
+def test_a_standing_participant_is_there_all_the_time():
+    found = tracks(vehicle(7, {0: (0, 0), 3: (9, 0)}), vehicle(8, {0: (5, 2)}, standing=True))
+    assert found.present[1].all()
+    assert found.x[1].tolist() == [5, 5, 5, 5]
+    assert found.speed[1].tolist() == [0, 0, 0, 0]
+    # Its outline is handed out once
+    assert [(row, column) for row, column, _ in found.outlines()] == [(0, 0), (0, 3), (1, 0)]
+
+
+def test_types_include_their_supertypes():
+    found = tracks(
+        vehicle(1, {0: (0, 0)}, "truck"),
+        vehicle(2, {0: (9, 0)}, "bicycle"),
+        vehicle(3, {0: (20, 0)}, "made of cheese"),
+    )
+    assert found.of_type("vehicle").tolist() == [True, False, False]
+    assert found.of_type("vulnerable_user").tolist() == [False, True, False]
+    assert found.of_type("road_user").tolist() == [True, True, True]
+
+
+def test_a_part_has_the_rows_and_columns_asked_for():
+    bodies = [vehicle(k, {step: (step + 10 * k, k) for step in range(4)}) for k in range(3)]
+    part = tracks(*bodies).part(np.array([2, 0]), slice(1, 3))
+    assert [body.id for body in part.participants] == ["2", "0"]
+    assert part.first == 1
+    assert part.x.tolist() == [[21, 22], [1, 2]]
+
+
+@given(
+    st.floats(-50, 50),
+    st.floats(-50, 50),
+    st.sets(st.integers(0, 12), min_size=2),
+    st.floats(0.5, 4),
+)
+def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_s):
+    places = {k: (vx * 0.5 * k, vy * 0.5 * k) for k in sorted(steps)}
+    found = tracks(vehicle(7, places), smoothing_s=smoothing_s)
+    for step in steps:
+        alone = step - 1 not in steps and step + 1 not in steps
+        expected = 0.0 if alone else vx
+        assert found.vx[0, step - found.first] == pytest.approx(expected, abs=1e-9)
