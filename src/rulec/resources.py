@@ -28,8 +28,8 @@ def package_files() -> Iterator[tuple[str, os.stat_result]]:
     """The files of code and grammar that rulec consists of, in an order that stays."""
     folders = [str(_PACKAGE), str(_folder("grammar"))]
     while folders:
-        with os.scandir(folders.pop()) as found:
-            for entry in sorted(found, key=lambda one: one.name):
+        with os.scandir(folders.pop()) as scandir_iterator:
+            for entry in sorted(scandir_iterator, key=lambda dir_entry: dir_entry.name):
                 if entry.is_dir(follow_symlinks=False):
                     folders += [] if entry.name == "__pycache__" else [entry.path]
                 elif entry.name.endswith((".py", ".lark", ".json")):

@@ -42,15 +42,15 @@ def _folders(file: Path) -> tuple[Path, ...]:
     folders = settings.get("search_path", [])
     if not isinstance(folders, list) or not all(isinstance(item, str) for item in folders):
         raise _wrong(file, "`search_path` is not a list of folders", _HOW)
-    found = [file.parent / item for item in folders]
-    for item, path in zip(folders, found, strict=True):
+    result = [file.parent / item for item in folders]
+    for item, path in zip(folders, result, strict=True):
         if not path.is_dir():
             raise _wrong(
                 file,
                 f"`search_path` names `{item}`, which is no folder",
                 f"it is looked for at `{path}`",
             )
-    return tuple(found)
+    return tuple(result)
 
 
 def _wrong(file: Path, message: str, way_out: str) -> RulecError:

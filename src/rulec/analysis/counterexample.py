@@ -38,24 +38,33 @@ def counterexample(
     own = {variable.name: variable.name for variable in side.rule.variables}
     machines, wanted = [side.rule.machine], [False]
     columns = [monitor_function(side.rule.machine, own, scene)]
-    for other in others:
-        for binding in scene.bindings(other.rule.variables):
-            machines.append(other.rule.machine)
-            columns.append(monitor_function(other.rule.machine, binding, scene))
+    for analyzed_rule in others:
+        for binding in scene.bindings(analyzed_rule.rule.variables):
+            machines.append(analyzed_rule.rule.machine)
+            columns.append(monitor_function(analyzed_rule.rule.machine, binding, scene))
             wanted.append(True)
     alphabet = JointAlphabet(scene, columns)
     word = shortest_word(machines, wanted, alphabet.symbols)
     if word is None:
         return None
     forbidding = single_rule_rulebook(side.rulebook, side.rule, scene)
-    allowing = [single_rule_rulebook(other.rulebook, other.rule, scene) for other in others]
+    allowing = [
+        single_rule_rulebook(analyzed_rule.rulebook, analyzed_rule.rule, scene)
+        for analyzed_rule in others
+    ]
 
     def shows(trace: Trace) -> bool:
         forbids = bool(verify(trace, forbidding).violations)
-        return forbids and not any(verify(trace, one).violations for one in allowing)
+        return forbids and not any(
+            verify(trace, compiled_rulebook).violations for compiled_rulebook in allowing
+        )
 
     situations = [alphabet.situations[symbol] for symbol in word]
-    steps = [one.rule.step_s for one in (side, *others) if one.rule.step_s is not None]
+    steps = [
+        analyzed_rule.rule.step_s
+        for analyzed_rule in (side, *others)
+        if analyzed_rule.rule.step_s is not None
+    ]
     return synthesize_trace(situations, scene, (*steps, Fraction(1))[0], shows)
 
 
@@ -64,14 +73,14 @@ def _scene(
 ) -> ObjectUniverse:
     """The objects that a rule speaks of, in the words of all the rulebooks."""
     sides = (side, *others)
-    read = {name for one in sides for name in declarations_read(one.rule)}
-    axioms = tuple(dict.fromkeys((*(fact for one in sides for fact in one.axioms), *given)))
+    read = {name for side in sides for name in declarations_read(side.rule)}
+    axioms = tuple(dict.fromkeys((*(fact for side in sides for fact in side.axioms), *given)))
     asked = read | {name for fact in axioms for name in names_in(fact.formula)}
     vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
-    for other in others:
-        if other.rulebook.vocabulary == vocabulary:
+    for analyzed_rule in others:
+        if analyzed_rule.rulebook.vocabulary == vocabulary:
             continue
-        words = shared_vocabulary(vocabulary, other.rulebook.vocabulary)
+        words = shared_vocabulary(vocabulary, analyzed_rule.rulebook.vocabulary)
         for name in sorted(words.unlike & asked):
             raise UndecidedError(f"`{name}` is not declared alike in both")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike

@@ -46,14 +46,14 @@ class SharedCompiler:
 
         Raises RulecError if one cannot be compiled.
         """
-        found = []
+        result = []
         for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True)):
             keys = {name: _key(rule, book) for name, rule in chosen.items()}
             missing = {key: chosen[name] for name, key in keys.items() if key not in self._machines}
             header = compile_rulebook(replace(book, rules=tuple(missing.values())))
             self._machines.update(zip(missing, header.rules, strict=True))
             self._tell(number + 1)
-            found.append(
+            result.append(
                 {
                     name: AnalyzedRule(
                         replace(header, rules=()),
@@ -64,7 +64,7 @@ class SharedCompiler:
                     for name, key in keys.items()
                 }
             )
-        return found
+        return result
 
 
 def _key(rule: Rule, book: Rulebook) -> CompilationKey:

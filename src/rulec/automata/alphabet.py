@@ -40,9 +40,13 @@ def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRea
     Comparisons of the same terms read one number.
     """
     used: dict[tuple[object, ...], list[Proposition]] = {}
-    for one in propositions_of(formula):
-        key = one.terms if isinstance(one, Comparison) else (one.name, one.arguments)
-        used.setdefault(key, []).append(one)
+    for proposition in propositions_of(formula):
+        key = (
+            proposition.terms
+            if isinstance(proposition, Comparison)
+            else (proposition.name, proposition.arguments)
+        )
+        used.setdefault(key, []).append(proposition)
     return tuple(_read(together, vocabulary) for together in used.values())
 
 
@@ -52,16 +56,16 @@ def _read(together: Sequence[Proposition], vocabulary: Vocabulary) -> Read | Num
     if isinstance(first, Comparison):
         passed = {
             threshold
-            for one in together
-            if isinstance(one, Comparison)
-            for threshold in _sides(one)
+            for comparison in together
+            if isinstance(comparison, Comparison)
+            for threshold in _sides(comparison)
             if threshold is not None
         }
         return NumberRead(first.terms, tuple(sorted(passed, key=_position)))
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
         return Read(first.name, first.arguments)
-    mentioned = {one.value for one in together if isinstance(one, Atom)}
+    mentioned = {atom.value for atom in together if isinstance(atom, Atom)}
     values = tuple(value for value in declaration.values if value in mentioned)
     return Read(first.name, first.arguments, values, others=len(values) < len(declaration.values))
 
@@ -130,11 +134,17 @@ def letters_with(
         about[key] = read, stride
         stride *= read.size
     sets: dict[Proposition, int] = {}
-    for one in propositions:
-        key = one.terms if isinstance(one, Comparison) else (one.name, one.arguments)
+    for proposition in propositions:
+        key = (
+            proposition.terms
+            if isinstance(proposition, Comparison)
+            else (proposition.name, proposition.arguments)
+        )
         read, stride = about[key]
         repeated = _repeat((1 << stride) - 1, stride * read.size, total)
-        sets[one] = sum(repeated << (digit * stride) for digit in _digits_with(one, read))
+        sets[proposition] = sum(
+            repeated << (digit * stride) for digit in _digits_with(proposition, read)
+        )
     return sets
 
 
@@ -161,8 +171,12 @@ def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposi
     axioms: list[Formula] = []
     for read in reads:
         if isinstance(read, NumberRead):
-            about = [one for one in propositions if isinstance(one, Comparison)]
-            axioms += _number_facts(read, [one for one in about if one.terms == read.terms])
+            about = [
+                proposition for proposition in propositions if isinstance(proposition, Comparison)
+            ]
+            axioms += _number_facts(
+                read, [comparison for comparison in about if comparison.terms == read.terms]
+            )
             continue
         atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
         axioms += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
@@ -172,14 +186,14 @@ def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposi
 
 
 def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
-    if any(one.relation in ("=", "!=") for one in comparisons):
+    if any(comparison.relation in ("=", "!=") for comparison in comparisons):
         yield from _each_digit(read, comparisons)
         return
     # Comparisons with one threshold form a chain: who passes a later one has passed the earlier.
     passing: list[tuple[int, Formula]] = []
-    for one in comparisons:
-        (side,) = _sides(one)
-        passed = one if one.relation in (">=", ">") else Unary(NOT, one)
+    for comparison in comparisons:
+        (side,) = _sides(comparison)
+        passed = comparison if comparison.relation in (">=", ">") else Unary(NOT, comparison)
         passing.append((-1 if side is None else read.thresholds.index(side), passed))
     passing.sort(key=lambda each: each[0])
     yield from (passed for place, passed in passing if place < 0)
@@ -191,15 +205,15 @@ def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterat
 
 def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
     """One of the digits, with all that holds there."""
-    true_at = [set(_digits(one, read)) for one in comparisons]
+    true_at = [set(_digits(comparison, read)) for comparison in comparisons]
     cases: dict[tuple[bool, ...], Formula] = {}
     for digit in range(read.size):
         values = tuple(digit in digits for digits in true_at)
         cases[values] = joined(
             AND,
             [
-                one if value else Unary(NOT, one)
-                for one, value in zip(comparisons, values, strict=True)
+                comparison if value else Unary(NOT, comparison)
+                for comparison, value in zip(comparisons, values, strict=True)
             ],
         )
     if len(cases) < 1 << len(comparisons):
@@ -219,9 +233,9 @@ def names_of(propositions: Iterable[Proposition]) -> dict[Proposition, str]:
     """A name for each: its text, told apart from earlier ones."""
     names: dict[Proposition, str] = {}
     taken: set[str] = set()
-    for one in dict.fromkeys(propositions):
-        names[one] = fresh_name(str(one) or "comparison", taken)
-        taken.add(names[one])
+    for proposition in dict.fromkeys(propositions):
+        names[proposition] = fresh_name(str(proposition) or "comparison", taken)
+        taken.add(names[proposition])
     return names
 
 

@@ -69,9 +69,9 @@ def counts(formula: Formula) -> bool:
     """Does it speak of how many objects there are, or whether there are some?"""
     return any(
         isinstance(term, Count)
-        for one in atoms_of(formula)
-        if isinstance(one, Comparison)
-        for _, term in one.terms
+        for atom in atoms_of(formula)
+        if isinstance(atom, Comparison)
+        for _, term in atom.terms
     )
 
 
@@ -89,7 +89,7 @@ class AxiomGroup:
     @property
     def known(self) -> Formula:
         """All of it."""
-        return joined(AND, [self.natural, *(one.formula for one in self.instances)])
+        return joined(AND, [self.natural, *(instance.formula for instance in self.instances)])
 
 
 def axiom_groups(
@@ -101,7 +101,9 @@ def axiom_groups(
     for group in linked(instances):
         about = _subjects(group)
         touched = [one for one in every if _subject(one) in about]
-        natural = _natural([*touched, *(one.formula for one in group)], vocabulary)
+        natural = _natural(
+            [*touched, *(axiom_instance.formula for axiom_instance in group)], vocabulary
+        )
         groups.append(AxiomGroup(natural, group))
     return tuple(groups)
 
@@ -117,8 +119,8 @@ def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
 def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:
     """The instances in groups that have nothing to do with each other."""
     groups: list[tuple[set[object], list[AxiomInstance]]] = []
-    for one in instances:
-        about, members = _subjects([one]), [one]
+    for instance in instances:
+        about, members = _subjects([instance]), [instance]
         for group in [group for group in groups if group[0] & about]:
             groups.remove(group)
             about |= group[0]
@@ -160,9 +162,13 @@ def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything
 
 
 def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
-    return {_subject(atom) for one in instances for atom in atoms_of(one.formula)}
+    return {_subject(atom) for instance in instances for atom in atoms_of(instance.formula)}
 
 
-def _subject(one: Proposition) -> object:
+def _subject(proposition: Proposition) -> object:
     """What has a value by which a proposition is true or false."""
-    return one.terms if isinstance(one, Comparison) else (one.name, one.arguments)
+    return (
+        proposition.terms
+        if isinstance(proposition, Comparison)
+        else (proposition.name, proposition.arguments)
+    )

@@ -143,7 +143,8 @@ def build_all(
         semantics=rulebook.semantics,
         traffic=rulebook.traffic,
         axioms=tuple(
-            CompiledAxiom(one.variables, one.formula, at(one.span)) for one in rulebook.axioms
+            CompiledAxiom(axiom.variables, axiom.formula, at(axiom.span))
+            for axiom in rulebook.axioms
         ),
         levels=rulebook.levels,
         priorities=rulebook.priorities,

@@ -36,7 +36,7 @@ class GuardedEdge:
 def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
     """All edges but those of the states in which the verdict is final, state by state."""
     cover = _Covers(machine)
-    found: list[GuardedEdge] = []
+    guarded_edges: list[GuardedEdge] = []
     for source, row in enumerate(machine.successors):
         if source in (machine.rejecting_sink, machine.accepting_sink):
             continue
@@ -48,8 +48,8 @@ def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
             GuardedEdge(source, target, accepted, cover.cubes(onset))
             for (target, accepted), onset in sorted(onsets.items())
         ]
-        found += _with_otherwise(leaving, cover.sizes)
-    return tuple(found)
+        guarded_edges += _with_otherwise(leaving, cover.sizes)
+    return tuple(guarded_edges)
 
 
 def literals(cubes: Sequence[Cube], sizes: Sequence[int]) -> int:

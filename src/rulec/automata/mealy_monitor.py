@@ -68,7 +68,8 @@ class NumberRead:
     def digit(self, value: Fraction) -> int:
         """The digit of a number."""
         return sum(
-            value >= one.limit if one.inclusive else value > one.limit for one in self.thresholds
+            value >= threshold.limit if threshold.inclusive else value > threshold.limit
+            for threshold in self.thresholds
         )
 
 

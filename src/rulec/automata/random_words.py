@@ -41,7 +41,7 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
 
 def _bounds(formula: Formula) -> list[int]:
     """The numbers of steps that it makes a difference by, and those around them."""
-    ranges = {range_of(one) for one in operations_of(formula)}
+    ranges = {range_of(operation) for operation in operations_of(formula)}
     numbers = {number for limits in ranges for number in limits if number is not None}
     return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})
 

@@ -112,18 +112,18 @@ def _answer(job: Job) -> Done | Failed:
             return Failed("facts", contradiction=_contradiction(group))
         axioms += [said] if said != Constant(True) else []
     try:
-        found = spot_bridge.translate(job.formula, job.reads, job.semantics, axioms)
+        translation = spot_bridge.translate(job.formula, job.reads, job.semantics, axioms)
     except spot_bridge.CheckError:
         return Failed("check")
     possible = possible_letters(job.reads, axioms) if axioms else None
-    automaton = spot_bridge.explore(found, job.reads)
+    automaton = spot_bridge.explore(translation, job.reads)
     machine = build_machine(automaton, job.reads, n_letters, possible)
-    if not found.is_checked and not agrees(machine, job.formula, job.semantics):
+    if not translation.is_checked and not agrees(machine, job.formula, job.semantics):
         return Failed("check")
     remarks = list(job.remarks)
-    if found.alive is not None:
-        remarks.append(f'finite words: "{found.alive}" is true as long as the word lasts')
-    return Done(machine, spot_bridge.in_hoa(found.automaton, job.name, remarks))
+    if translation.alive is not None:
+        remarks.append(f'finite words: "{translation.alive}" is true as long as the word lasts')
+    return Done(machine, spot_bridge.in_hoa(translation.automaton, job.name, remarks))
 
 
 def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
@@ -131,8 +131,10 @@ def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
     from rulec.automata import spot_bridge
 
     needed = group
-    for one in group.instances:
-        without = tuple(other for other in needed.instances if other is not one)
+    for instance in group.instances:
+        without = tuple(
+            axiom_instance for axiom_instance in needed.instances if axiom_instance is not instance
+        )
         fewer = replace(needed, instances=without)
         if spot_bridge.projected(fewer.known, ()) == Constant(False):
             needed = fewer

@@ -34,14 +34,14 @@ def floor_of(threshold: Threshold) -> float:
     Decimals of floats are in the order of the floats, so these and no others are at least it.
     """
     try:
-        found = float(threshold.limit)
+        result = float(threshold.limit)
     except OverflowError:
         return inf if threshold.limit > 0 else -inf
     # The nearest float. The decimals of the others are nearest to those, so they are beyond the
     # limit on their side of it; that of this one may be on either.
-    number = _decimal(found)
+    number = _decimal(result)
     passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
-    return found if passes else nextafter(found, inf)
+    return result if passes else nextafter(result, inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -65,8 +65,8 @@ class RuleCoverage:
 def percent(rules: Iterable[RuleCoverage]) -> float:
     """The part of all edges and values that is covered, from 0 to 100; 100 if there are none."""
     rules = list(rules)
-    total = sum(one.total for one in rules)
-    return 100.0 * sum(one.covered for one in rules) / total if total else 100.0
+    total = sum(rule.total for rule in rules)
+    return 100.0 * sum(rule.covered for rule in rules) / total if total else 100.0
 
 
 def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
@@ -74,14 +74,14 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
 
     Where a pattern chose among the examples, rules without a chosen one are left out.
     """
-    found = []
+    rule_coverages = []
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
-        outcomes = [one for one in run.outcomes if one.rule is rule]
+        outcomes = [outcome for outcome in run.outcomes if outcome.rule is rule]
         if outcomes or run.pattern is None:
             known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
-            axioms = [one.formula for one in known]
-            found.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
-    return tuple(found)
+            axioms = [axiom_instance.formula for axiom_instance in known]
+            rule_coverages.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
+    return tuple(rule_coverages)
 
 
 def _coverage(
@@ -95,7 +95,7 @@ def _coverage(
     letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
-    taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
+    taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
     states = {
         symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
         for symbol, letter in letters.items()
@@ -104,7 +104,7 @@ def _coverage(
         UncoveredEdge(
             source,
             machine.successors[source][symbol],
-            tuple(states[one] for one in (*paths[source], symbol)),
+            tuple(states[path] for path in (*paths[source], symbol)),
             machine.outputs[source][symbol],
         )
         for source, symbol in edges
@@ -128,8 +128,8 @@ def _coverage(
 def _moments(
     rule: Rule, outcomes: Sequence[ExampleOutcome], rulebook: CompiledRulebook
 ) -> Iterator[StateView]:
-    for one in outcomes:
-        trace = example_trace(rule, one.example)
+    for outcome in outcomes:
+        trace = example_trace(rule, outcome.example)
         columns = columns_of(trace, rulebook)
         yield from (columns.moment(number) for number in range(len(trace.states)))
 

@@ -107,12 +107,17 @@ def _outcome(
 
 
 def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:
-    (found,) = error.diagnostics
+    (diagnostic,) = error.diagnostics
     spans = example.state_spans
     place = spans[error.number].place if spans else at(example.span)
     note = f"in an example of rule `{rule.name}`"
     return RulecError(
-        replace(found, code=CONTRADICTORY_STATE.code, place=place, notes=(*found.notes[:1], note))
+        replace(
+            diagnostic,
+            code=CONTRADICTORY_STATE.code,
+            place=place,
+            notes=(*diagnostic.notes[:1], note),
+        )
     )
 
 
@@ -147,10 +152,10 @@ def example_warnings(
     """
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
     rules = tuple(
-        [one for one in rulebook.rules if one.examples or not speaks_of_seconds(one.formula)]
+        [rule for rule in rulebook.rules if rule.examples or not speaks_of_seconds(rule.formula)]
     )
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [example_warning(one) for one in outcomes if not one.passed]
+    return [example_warning(outcome) for outcome in outcomes if not outcome.passed]
 
 
 def example_warning(outcome: ExampleOutcome) -> Diagnostic:

@@ -21,13 +21,13 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
     if run.pattern is not None:
         return
     of_rule: dict[int, list[ExampleOutcome]] = {id(rule): [] for rule in run.rulebook.rules}
-    for one in run.outcomes:
-        of_rule[id(one.rule)].append(one)
+    for outcome in run.outcomes:
+        of_rule[id(outcome.rule)].append(outcome)
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = of_rule[id(rule)]
-        if not all(one.passed for one in outcomes):
+        if not all(outcome.passed for outcome in outcomes):
             continue
-        shown = {one.accepted for one in outcomes}
+        shown = {outcome.accepted for outcome in outcomes}
         if len(shown) < 2 and (missing := verdicts(compiled.machine) - shown):
             yield _unexercised(rule, missing, any_examples=bool(outcomes))
 
@@ -35,17 +35,17 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
 def verdicts(machine: MealyMonitor) -> set[bool]:
     """The verdicts that a rule has for some trace: accepted (True), rejected (False), or both."""
     symbols = sorted(possible_letters(machine))
-    found: set[bool] = set()
+    result: set[bool] = set()
     waiting = [0]
     seen = {0}
     for state in waiting:
-        found.update(machine.outputs[state][symbol] for symbol in symbols)
-        if len(found) == 2:
+        result.update(machine.outputs[state][symbol] for symbol in symbols)
+        if len(result) == 2:
             break
         new = {machine.successors[state][symbol] for symbol in symbols} - seen
         seen |= new
         waiting += sorted(new)
-    return found
+    return result
 
 
 def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:

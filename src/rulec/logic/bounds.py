@@ -103,7 +103,7 @@ def _whole(steps: Fraction) -> int:
 
 def speaks_of_seconds(formula: Formula) -> bool:
     """Has it a bound in seconds? If not, the step of a trace makes no difference to it."""
-    bounds = (one.bound for one in operations_of(formula))
+    bounds = (operation.bound for operation in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
 
 
@@ -169,5 +169,7 @@ def reach(formula: Formula) -> int:
 
     Each counts as far as it looks. ValueError for a bound in seconds.
     """
-    ranges = [range_of(one) for one in operations_of(formula) if one.bound is not None]
+    ranges = [
+        range_of(operation) for operation in operations_of(formula) if operation.bound is not None
+    ]
     return sum(low if high is None else high for low, high in ranges)

@@ -32,7 +32,7 @@ def deciding_instants(
     # A part begins to decide where its mark is above 0, and ceases to where it is below.
     marks = {part: [0] * (length + 1) for part in known}
     marks[formula][:2] = [1, -1]
-    found = {}
+    result = {}
     for part in reversed(known):  # all that it is an operand of has been before it
         begun, decides = 0, []
         for instant, mark in enumerate(marks[part][:length]):
@@ -50,8 +50,8 @@ def deciding_instants(
                 marks[operand][start] += 1
                 marks[operand][stop + 1] -= 1
         # What comes after the word's end is its last letter again.
-        found[part] = [*decides[:last], any(decides[last:])]
-    return found
+        result[part] = [*decides[:last], any(decides[last:])]
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +70,10 @@ class _Column:
         """The column of these values."""
         following: dict[bool, list[int]] = {}
         for value in (False, True):
-            found = [len(values)]
+            numbers = [len(values)]
             for instant in range(len(values) - 1, -1, -1):
-                found.append(instant if values[instant] == value else found[-1])
-            following[value] = found[::-1]
+                numbers.append(instant if values[instant] == value else numbers[-1])
+            following[value] = numbers[::-1]
         return _Column(values, following[False], following[True])
 
     def next(self, value: bool, instant: int) -> int:
@@ -141,11 +141,11 @@ def _of_search(
     # Beyond the last instant everything is as it is there, which is then on the way, too.
     beyond = start > last and not ends and (high is None or low <= high)
     start = last if beyond else start
-    found = columns[right].next(wanted, start)
+    result = columns[right].next(wanted, start)
     broken = last + 1 if left is None else columns[left].next(not wanted, instant)
-    way = found + 1 if beyond else found
-    if found <= end and broken >= way:
-        yield right, found, found
+    way = result + 1 if beyond else result
+    if result <= end and broken >= way:
+        yield right, result, result
         if left is not None and instant < way:
             yield left, instant, way - 1
         return
@@ -156,5 +156,5 @@ def _of_search(
     if left is not None and (weak or beyond or broken < end) and broken <= last:
         yield left, broken, broken
         stop = min(broken, end)
-    if start <= stop < found:
+    if start <= stop < result:
         yield right, start, stop

@@ -86,21 +86,21 @@ class Past:
 
 def remembered(formula: Formula) -> Past:
     """The formula without operators of the past. Its bounds are in steps; ValueError if not."""
-    found = _Found()
-    present = _present(formula, found)
-    fresh: list[Register | Memory] = [*found.registers.values(), *found.memories.values()]
+    result = _Found()
+    present = _present(formula, result)
+    fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
     needed: list[Register | Memory] = []
     spoken_of = set(atoms_of(present))
     # None of them speaks of a later one.
-    for one in sorted(fresh, key=lambda each: found.order[each.atom], reverse=True):
+    for one in sorted(fresh, key=lambda each: result.order[each.atom], reverse=True):
         if one.atom in spoken_of:
             needed.insert(0, one)
             for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):
                 spoken_of.update(atoms_of(part))
     return Past(
         present,
-        tuple(one for one in needed if isinstance(one, Register)),
-        tuple(one for one in needed if isinstance(one, Memory)),
+        tuple(register for register in needed if isinstance(register, Register)),
+        tuple(memory for memory in needed if isinstance(memory, Memory)),
     )
 
 
@@ -131,7 +131,7 @@ class _Found:
 
     def is_settled(self, formula: Formula) -> bool:
         """Does the word up to an instant decide it?"""
-        unsettled = {one.atom for one in self.memories.values()}
+        unsettled = {memory.atom for memory in self.memories.values()}
         return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
 
 

@@ -60,4 +60,4 @@ def _term(term: Term, names: Mapping[str, str]) -> Term:
 
 
 def _each(arguments: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:
-    return tuple(names.get(one, one) for one in arguments)
+    return tuple(names.get(argument, argument) for argument in arguments)

@@ -16,12 +16,12 @@ def asked(
     ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
     types is the second or one below it.
     """
-    for one in atoms_of(formula):
-        if isinstance(one, Comparison):
-            for _, term in one.terms:
+    for atom in atoms_of(formula):
+        if isinstance(atom, Comparison):
+            for _, term in atom.terms:
                 yield from _of_term(term, objects, fits)
         else:
-            yield one
+            yield atom
 
 
 def _of_term(

@@ -101,9 +101,9 @@ def _evaluate(
     formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
 ) -> list[bool]:
     """Truth values on a word that ends with its last instant, or goes on like it for ever."""
-    found = known.get(formula)
-    if found is not None:
-        return found
+    result = known.get(formula)
+    if result is not None:
+        return result
     match formula:
         case Atom() | Comparison():
             values = [formula in letter for letter in word]
@@ -192,12 +192,12 @@ def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list
         earliest = instant + span.low
         if earliest > last and not ends:
             # Any such instant is like the last one.
-            found = earliest if right[last] else None
+            result = earliest if right[last] else None
         else:
-            found = first_right[min(earliest, last + 1)]
-        within = found is not None and (span.high is None or found <= instant + span.high)
+            result = first_right[min(earliest, last + 1)]
+        within = result is not None and (span.high is None or result <= instant + span.high)
         broken = first_break[instant]
-        values.append(within and (broken is None or found is None or broken >= found))
+        values.append(within and (broken is None or result is None or broken >= result))
     return values
 
 
@@ -211,7 +211,7 @@ def _since(left: list[bool], right: list[bool], span: Range) -> list[bool]:
     for instant, (a, b) in enumerate(zip(left, right, strict=True)):
         latest.append(instant if b else latest[-1] if latest else None)
         broken = broken if a else instant
-        found = latest[instant - span.low] if instant >= span.low else None
-        within = found is not None and (span.high is None or found >= instant - span.high)
-        values.append(within and found is not None and broken <= found)
+        result = latest[instant - span.low] if instant >= span.low else None
+        within = result is not None and (span.high is None or result >= instant - span.high)
+        values.append(within and result is not None and broken <= result)
     return values

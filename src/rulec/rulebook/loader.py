@@ -172,11 +172,11 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
         RulecError: it is not found, or with every mistake in it.
     """
     asked = Source("<vocabulary>", name)
-    found = Vocabularies(tuple(search_path))
+    vocabularies = Vocabularies(tuple(search_path))
     use = tree.UseLine(tree.Name(name, Span(asked, 0, len(name))))
-    file = found.read(use, None)
-    if file is None or found.mistakes:
-        raise RulecError(found.mistakes)
+    file = vocabularies.read(use, None)
+    if file is None or vocabularies.mistakes:
+        raise RulecError(vocabularies.mistakes)
     vocabulary, mistakes = resolve_vocabulary(file)
     if vocabulary is None:
         raise RulecError(mistakes)
@@ -213,18 +213,18 @@ def diagnose(
 
 def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
     based = read_bases(parsed, file.path, file.search_path)
-    found = Vocabularies(file.search_path)
+    vocabularies = Vocabularies(file.search_path)
     books = (*based.books, Book(parsed, file.path))
-    read = [found.read(use, book.path) for book in books for use in _once(book.file.uses)]
-    opaque = found.failed or based.failed
+    read = [vocabularies.read(use, book.path) for book in books for use in _once(book.file.uses)]
+    opaque = vocabularies.failed or based.failed
     return Trees(
         name=file.source.name,
         file=parsed,
         books=books,
         vocabularies=tuple(vocabulary for vocabulary in read if vocabulary is not None),
-        sources=(source_file(file.source.name, file.data), *based.sources, *found.sources),
-        mistakes=(*mistakes, *based.mistakes, *found.mistakes),
-        dependencies=None if opaque else (*based.dependencies, *found.dependencies),
+        sources=(source_file(file.source.name, file.data), *based.sources, *vocabularies.sources),
+        mistakes=(*mistakes, *based.mistakes, *vocabularies.mistakes),
+        dependencies=None if opaque else (*based.dependencies, *vocabularies.dependencies),
     )
 
 

@@ -49,38 +49,40 @@ def resolve(
     books = [*bases, file]
     declared = declare([*vocabularies, *books], opaque=opaque)
     spans = {**declared.type_spans, **declared.spans}
-    unsure = opaque or not all(one.complete for one in books)
+    unsure = opaque or not all(book.complete for book in books)
     laid = overlay(books, spans, unsure=unsure)
     provisions = ConstantsAndMacros(laid, at, traffic or _last_traffic(books))
-    levels, priorities, mistakes = pre_order([line for one in books for line in one.priorities])
+    levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
     known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
     mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
     mistakes += check_provisions(declared, provisions)
     axioms: list[Axiom] = []
-    for fact in (item for one in (*vocabularies, *books) for item in one.items):
+    for fact in (item for vocabulary in (*vocabularies, *books) for item in vocabulary.items):
         if isinstance(fact, tree.FactItem):
-            known, found = axiom_of(fact, declared, provisions)
-            mistakes += found
+            known, diagnostics = axiom_of(fact, declared, provisions)
+            mistakes += diagnostics
             axioms += [known] if known is not None else []
     rules: list[Rule | None] = []
     for entry in laid.rules.values():
-        rule, found = translate_rule(entry, declared, provisions, known_levels)
-        mistakes += found
+        rule, diagnostics = translate_rule(entry, declared, provisions, known_levels)
+        mistakes += diagnostics
         if in_force(entry.item.in_force, at):
             rules.append(rule)
     good = [rule for rule in rules if rule is not None]
     if not declared.mistakes:
         words = declared.vocabulary(file.name.text if file.name else "")
-        mistakes += [one for rule in good for one in contradicted(rule, axioms, words)]
+        mistakes += [
+            diagnostic for rule in good for diagnostic in contradicted(rule, axioms, words)
+        ]
     mistakes = _once(mistakes)
-    wrong = any(one.severity == "error" for one in mistakes)
-    whole = all(_is_whole(one) for one in (*vocabularies, *books)) and not opaque
+    wrong = any(mistake.severity == "error" for mistake in mistakes)
+    whole = all(_is_whole(vocabulary) for vocabulary in (*vocabularies, *books)) and not opaque
     # A rulebook without rules is there to be extended.
     if whole and not wrong and laid.rules:
         mistakes += _unused(file, books)
     if file.name is None or wrong or not whole or len(good) < len(rules):
         return None, tuple(mistakes)
-    semantics = [one.semantics.kind for one in books if one.semantics]
+    semantics = [book.semantics.kind for book in books if book.semantics]
     rulebook = Rulebook(
         file.name.text,
         declared.vocabulary(file.name.text),
@@ -91,7 +93,7 @@ def resolve(
         sources,
         semantics[-1] if semantics else "stutter",
         provisions.traffic,
-        tuple(one.name.text for one in reversed(bases) if one.name),
+        tuple(base.name.text for base in reversed(bases) if base.name),
         levels,
         priorities,
         tuple(laid.remarks),
@@ -116,20 +118,20 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
 
 def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
     """The names in `priority` lines that could not be read: they may be meant as levels."""
-    broken = (item for one in books for item in one.items if isinstance(item, tree.BrokenItem))
+    broken = (item for book in books for item in book.items if isinstance(item, tree.BrokenItem))
     return sorted({name for item in broken if item.word == "priority" for name in item.names})
 
 
 def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Each mistake once: a definition's may come back with every use of it."""
     first: dict[tuple[str, str, SourceLocation | None], Diagnostic] = {}
-    for one in mistakes:
-        first.setdefault((one.code, one.message, one.place), one)
+    for mistake in mistakes:
+        first.setdefault((mistake.code, mistake.message, mistake.place), mistake)
     return list(first.values())
 
 
 def _last_traffic(books: Sequence[tree.File]) -> Traffic:
-    sides: list[Traffic] = [one.traffic.side for one in books if one.traffic]
+    sides: list[Traffic] = [book.traffic.side for book in books if book.traffic]
     return sides[-1] if sides else ""
 
 

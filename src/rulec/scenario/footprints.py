@@ -11,14 +11,14 @@ from rulec.scenario.model import Footprints
 
 def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
     """The bounds of all that is occupied from ``start`` to ``end`` (s); None if nothing is."""
-    found = list(_boxes(motion, start, end))
-    if not found:
+    boxes = list(_boxes(motion, start, end))
+    if not boxes:
         return None
     return Box(
-        min(box.s_min for box in found),
-        max(box.s_max for box in found),
-        min(box.d_min for box in found),
-        max(box.d_max for box in found),
+        min(box.s_min for box in boxes),
+        max(box.s_max for box in boxes),
+        min(box.d_min for box in boxes),
+        max(box.d_max for box in boxes),
     )
 
 
@@ -36,14 +36,14 @@ def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float]
 
 def displacement_within(motion: Footprints, start: float, end: float) -> tuple[float, float]:
     """How far along and across the road the middle moved between two times (s)."""
-    found = list(_boxes(motion, start, end))
-    return _shift(found[0], found[-1]) if found else (0.0, 0.0)
+    boxes = list(_boxes(motion, start, end))
+    return _shift(boxes[0], boxes[-1]) if boxes else (0.0, 0.0)
 
 
-def _shift(one: Box, other: Box) -> tuple[float, float]:
+def _shift(left: Box, right: Box) -> tuple[float, float]:
     return (
-        (other.s_min + other.s_max - one.s_min - one.s_max) / 2,
-        (other.d_min + other.d_max - one.d_min - one.d_max) / 2,
+        (right.s_min + right.s_max - left.s_min - left.s_max) / 2,
+        (right.d_min + right.d_max - left.d_min - left.d_max) / 2,
     )
 
 

@@ -129,26 +129,26 @@ def root_of(path: Path, form: XmlFormat) -> str:
         RulecError: R0610 for a file that is no XML, R0701 for one that cannot be read.
     """
     parser = ParserCreate()
-    found: list[str] = []
-    parser.StartElementHandler = lambda name, _: found.append(name)
+    names: list[str] = []
+    parser.StartElementHandler = lambda name, _: names.append(name)
     size = 0
     try:
         for block in _blocks(path, form):
             size += len(block)
             _parse(parser, block, path, form)
-            if found:
+            if names:
                 break
             if size > LONGEST_TAG:
                 raise form.refused(path, f"nothing begins in its first {LONGEST_TAG:,} bytes")
         if not size:
             raise form.refused(path, "it is empty")
-        if not found:
+        if not names:
             parser.Parse(b"", True)
     except ExpatError as problem:
-        if not found:
+        if not names:
             why = f"it is not well-formed XML: {errors.messages[problem.code]}"
             raise form.refused(path, why, problem.lineno) from None
-    return found[0]
+    return names[0]
 
 
 def is_xml(path: Path) -> bool:

@@ -51,13 +51,13 @@ def assemble_rule(
         complete = False
 
     def value(word: str, kind: type[_Kind]) -> _Kind | None:
-        found = said[word][1] if word in said else None
-        return found if isinstance(found, kind) else None
+        result = said[word][1] if word in said else None
+        return result if isinstance(result, kind) else None
 
     def formula(word: str) -> tree.Formula | None:
-        found = said[word][1] if word in said else None
+        result = said[word][1] if word in said else None
         clauses = tree.Text | tree.Unless | tree.InForce | str
-        return None if isinstance(found, clauses) else found
+        return None if isinstance(result, clauses) else result
 
     certainty = value("certainty", str)
     rule = tree.RuleItem(
@@ -103,8 +103,8 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
         for word, lines in once.items():
             mistakes += [_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]]
         mistakes += _used_twice(parts)
-        said = {one.place for one in mistakes}
-        mistakes += [one for one in _misplaced(parts) if one.place not in said]
+        said = {mistake.place for mistake in mistakes}
+        mistakes += [diagnostic for diagnostic in _misplaced(parts) if diagnostic.place not in said]
         mistakes += _no_rule(parts)
     file = tree.File(
         kind,

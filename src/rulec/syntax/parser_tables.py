@@ -32,8 +32,8 @@ def to_text(made_of: str, serialized: Serialized) -> str:
     tokens = sorted(table["tokens"].values())
     rest = _refer(data, numbers)
     lists = (rest["rules"], rest["parser"]["parser_conf"]["rules"])
-    for one in (*lists, rest["parser"]["lexer_conf"]["terminals"]):
-        one.sort(key=lambda reference: reference["@"])
+    for list_ in (*lists, rest["parser"]["lexer_conf"]["terminals"]):
+        list_.sort(key=lambda reference: reference["@"])
     rest["parser"]["parser"] = None
     order = _state_order(table)
     states = [_row(table, state, tokens, order, numbers) for state in order]

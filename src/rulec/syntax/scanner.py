@@ -55,11 +55,11 @@ def scan(source: Source) -> list[Token]:
     position = 0
     match = _TOKEN.match
     while position < len(text):
-        found = match(text, position)
-        assert found is not None, "the last alternative takes any character"
-        kind, end = found.lastgroup or "", found.end()
+        match_ = match(text, position)
+        assert match_ is not None, "the last alternative takes any character"
+        kind, end = match_.lastgroup or "", match_.end()
         if kind == "skip":
-            first = first or "\n" in found.group()
+            first = first or "\n" in match_.group()
         else:
             if kind == "run_on":
                 kind = "unterminated"

@@ -90,7 +90,7 @@ def _enough(count: Count, state: JointState) -> int:
         if any(term == count for _, term in read.terms):
             if len(read.terms) > 1:
                 return MOST_COUNTED_OBJECTS + 1
-            most = max(most, *(ceil(one.limit) + 1 for one in read.thresholds))
+            most = max(most, *(ceil(threshold.limit) + 1 for threshold in read.thresholds))
     return most
 
 
@@ -121,16 +121,16 @@ def object_kinds(
     """
     vocabulary = universe.vocabulary
     counts = _counts_of(state)
-    found: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
+    counted_objects: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
     fitting = [
         kind
         for kind in vocabulary.types
         if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
     ]
     for kind in sorted(fitting, key=lambda one: len(list(vocabulary.ancestors(one)))):
-        for one in _of_type(kind, counts, state, universe):
-            found.setdefault((kind, one.adds), one)
-    return list(found.values())
+        for counted_object in _of_type(kind, counts, state, universe):
+            counted_objects.setdefault((kind, counted_object.adds), counted_object)
+    return list(counted_objects.values())
 
 
 def _of_type(
@@ -150,20 +150,20 @@ def _of_type(
         for read, digit in zip(reads, digits, strict=True):
             letter += stride * digit
             stride *= read.size
-        values = [bool(one >> letter & 1) for one in truths]
+        values = [bool(truth >> letter & 1) for truth in truths]
         if not all(values[len(bodies) :]):
             continue
         said = _said(list(zip(reads, digits, strict=True)), state, universe)
         if said is not None:
             holds = dict(zip(asked, values, strict=False))
-            yield CountedObject(kind, tuple(int(holds.get(one, False)) for one in counts), said)
+            yield CountedObject(kind, tuple(int(holds.get(count, False)) for count in counts), said)
 
 
 def _facts_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
     with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
-    for one in with_it.fact_formulas():
-        if not any(True for _ in counts_in(one)) and EXTRA in variables_of(one):
-            yield one
+    for fact_formula in with_it.fact_formulas():
+        if not any(True for _ in counts_in(fact_formula)) and EXTRA in variables_of(fact_formula):
+            yield fact_formula
 
 
 def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:
@@ -209,5 +209,7 @@ def _given(read: NumberRead, state: JointState, universe: ObjectUniverse) -> Num
         else:
             assert isinstance(term, Quantity)
             known += factor * state.number(term, universe.vocabulary)
-    thresholds = tuple(replace(one, limit=one.limit - known) for one in read.thresholds)
+    thresholds = tuple(
+        replace(threshold, limit=threshold.limit - known) for threshold in read.thresholds
+    )
     return NumberRead(tuple(left), thresholds)

@@ -28,11 +28,11 @@ class _Nodes:
         if level != inf and children.count(children[0]) == len(children):
             return children[0]
         key = (level, children)
-        found = self._known.get(key)
-        if found is None:
-            found = self._known[key] = len(self.all)
+        result = self._known.get(key)
+        if result is None:
+            result = self._known[key] = len(self.all)
             self.all.append(key)
-        return found
+        return result
 
 
 class _Own:

@@ -43,18 +43,20 @@ class JointAlphabet:
 
     def __init__(self, scene: ObjectUniverse, machines: Sequence[LetterFunction]) -> None:
         self._scene = scene
-        axioms = [axiom_function(one, scene.vocabulary) for one in scene.fact_formulas()]
+        axioms = [
+            axiom_function(fact_formula, scene.vocabulary) for fact_formula in scene.fact_formulas()
+        ]
         self._counts = [
-            count_function(one, scene)
-            for one in counts_read(
+            count_function(count, scene)
+            for count in counts_read(
                 read for function in (*machines, *axioms) for read in function.reads
             )
         ]
-        columns = [*machines, *(one.column for one in self._counts), *axioms]
+        columns = [*machines, *(count.column for count in self._counts), *axioms]
         self._joint = joint_reads(columns, scene.vocabulary)
         self._n_machines = len(machines)
         self._n_keys = len(machines) + len(self._counts)
-        self._n_numbers = sum(isinstance(one, NumberRead) for one in self._joint.reads)
+        self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
         roots = [
             self._diagrams.of(column, views)
@@ -62,7 +64,7 @@ class JointAlphabet:
         ]
         self._usual = [default_digit(read, scene.vocabulary) for read in self._joint.reads]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
-        found: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
+        result: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
         number = 0
         for sides, ways in self._numbered(self._cleared(roots), ()):
             cost = sum(self._cost(level, digit) for level, digit in sides)
@@ -71,14 +73,14 @@ class JointAlphabet:
                     steps = (side, steps)
                 number += 1
                 heappush(
-                    found.setdefault(key[: self._n_machines], []),
+                    result.setdefault(key[: self._n_machines], []),
                     (cost + more, number, steps, key[self._n_machines :]),
                 )
-            if len(found) > MOST_SYMBOLS:
+            if len(result) > MOST_SYMBOLS:
                 raise UndecidedError("too many different states of the world have to be told apart")
         self.situations: Mapping[JointLetter, JointState] = {
             symbol: best
-            for symbol, candidates in found.items()
+            for symbol, candidates in result.items()
             if (best := self._best(candidates)) is not None
         }
 
@@ -141,9 +143,9 @@ class JointAlphabet:
         if len(self._plain) > MOST_NODES:
             raise UndecidedError("too many different states of the world have to be told apart")
         level = self._level(nodes)
-        found: dict[JointLetter, tuple[int, Steps]] = {}
+        result: dict[JointLetter, tuple[int, Steps]] = {}
         if level is None:
-            found[tuple(map(self._diagrams.value, nodes))] = 0, None
+            result[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
             for digit in range(self._joint.reads[level].size):
                 following = self._after(nodes, level, digit)
@@ -151,10 +153,10 @@ class JointAlphabet:
                     continue
                 own = self._cost(level, digit)
                 for key, (cost, steps) in self._ways(following).items():
-                    if key not in found or own + cost < found[key][0]:
-                        found[key] = own + cost, ((level, digit), steps)
-        self._plain[nodes] = found
-        return found
+                    if key not in result or own + cost < result[key][0]:
+                        result[key] = own + cost, ((level, digit), steps)
+        self._plain[nodes] = result
+        return result
 
     def _best(self, candidates: list[tuple[int, int, Steps, JointLetter]]) -> JointState | None:
         while candidates:
@@ -164,10 +166,13 @@ class JointAlphabet:
                 (level, digit), steps = steps
                 digits.append((self._joint.reads[level], digit))
             counted = tuple(
-                (one.count, one.counted[which])
-                for one, which in zip(self._counts, classes, strict=True)
+                (count.count, count.counted[which])
+                for count, which in zip(self._counts, classes, strict=True)
             )
-            found = synthesize_state(self._scene, digits, counted)
-            if found is not None and fewest_counted_objects(found, self._scene) is not None:
-                return found
+            joint_state = synthesize_state(self._scene, digits, counted)
+            if (
+                joint_state is not None
+                and fewest_counted_objects(joint_state, self._scene) is not None
+            ):
+                return joint_state
         return None

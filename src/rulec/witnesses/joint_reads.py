@@ -88,7 +88,7 @@ def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read 
         passed = {
             side for read in reads if isinstance(read, NumberRead) for side, _ in _sides(read)
         }
-        order = sorted(passed, key=lambda one: (one.limit, not one.inclusive))
+        order = sorted(passed, key=lambda threshold: (threshold.limit, not threshold.inclusive))
         return NumberRead(normal(first)[0], tuple(order))
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
@@ -101,11 +101,11 @@ def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read 
 def _sides(read: NumberRead) -> Iterable[tuple[Threshold, bool]]:
     """The read's thresholds as those of the normal sum; are they passed by what passes those?"""
     _, factor = normal(read)
-    for one in read.thresholds:
-        limit = one.limit / factor
+    for threshold in read.thresholds:
+        limit = threshold.limit / factor
         # The larger a sum, the smaller its negative: one passes where the other stays below.
         upward = factor > 0
-        yield Threshold(limit, one.inclusive if upward else not one.inclusive), upward
+        yield Threshold(limit, threshold.inclusive if upward else not threshold.inclusive), upward
 
 
 def _seen(

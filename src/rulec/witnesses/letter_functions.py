@@ -56,7 +56,7 @@ def monitor_function(
     reads: list[Read | NumberRead] = []
     for read in machine.reads:
         if isinstance(read, Read):
-            variables = tuple(names[one] for one in read.variables)
+            variables = tuple(names[variable] for variable in read.variables)
             reads.append(Read(read.name, variables, read.values, read.others))
         else:
             terms = tuple(
@@ -69,7 +69,7 @@ def monitor_function(
 
 def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
     if isinstance(term, Quantity):
-        return Quantity(term.name, tuple(names[one] for one in term.arguments))
+        return Quantity(term.name, tuple(names[argument] for argument in term.arguments))
     return Count(term.variable, term.type, renamed(term.body, names))
 
 
@@ -119,7 +119,7 @@ def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
     letters = []
     for letter in range(total):
         own_digits = digits[letter][::-1]
-        number = sum(one >> letter & 1 for one in truths)
+        number = sum(truth >> letter & 1 for truth in truths)
         key = (number, *(own_digits[n] for n in beside))
         letters.append(classes.setdefault(key, len(classes)))
     return CountFunction(
@@ -152,8 +152,8 @@ def _key(read: Read | NumberRead) -> object:
 
 def _all_of(formulas: Sequence[Formula]) -> Formula:
     whole: Formula = Constant(True)
-    for one in formulas:
-        whole = Binary(BinaryOperator.AND, whole, one)
+    for formula in formulas:
+        whole = Binary(BinaryOperator.AND, whole, formula)
     return whole
 
 

@@ -28,8 +28,8 @@ class ObjectUniverse:
         """Every way to bind variables to distinct objects of their types."""
         names = [variable.name for variable in variables]
         types = [variable.type for variable in variables]
-        found = choices(types, self.objects, self.vocabulary)
-        return [dict(zip(names, chosen, strict=True)) for chosen in found]
+        result = choices(types, self.objects, self.vocabulary)
+        return [dict(zip(names, chosen, strict=True)) for chosen in result]
 
     def fact_formulas(self) -> Iterator[Formula]:
         """What the facts say of the objects."""
@@ -72,11 +72,11 @@ EXTRA = "+"
 
 def _depth(formula: Formula) -> int:
     """How deep counts stand in each other."""
-    return max((len(one.variable) for one in counts_in(formula)), default=0)
+    return max((len(count.variable) for count in counts_in(formula)), default=0)
 
 
 def counts_in(formula: Formula) -> Iterator[Count]:
     """The counts that a formula compares, not those inside of others."""
-    for one in atoms_of(formula):
-        if isinstance(one, Comparison):
-            yield from (term for _, term in one.terms if isinstance(term, Count))
+    for atom in atoms_of(formula):
+        if isinstance(atom, Comparison):
+            yield from (term for _, term in atom.terms if isinstance(term, Count))

@@ -93,11 +93,11 @@ def audit(
     used = used_declarations(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
     findings = [
-        *(one for rule in rulebook.rules for one in _of_rule(rule)),
+        *(audit_finding for rule in rulebook.rules for audit_finding in _of_rule(rule)),
         *(AuditFinding("failing", rule, f"example {name}") for rule, name in failing),
         *_soft_only(articles, rulebook),
         *_history(inherited, rulebook.at),
-        *(one for item in inherited.provisions for one in _of_provision(item)),
+        *(audit_finding for item in inherited.provisions for audit_finding in _of_provision(item)),
         *(AuditFinding("unused", name) for name in words if name not in used),
     ]
     order = list(KINDS)
@@ -109,17 +109,17 @@ def audit(
         rulebook.at,
         _counts(rulebook, articles, sum(name in used for name in words)),
         articles,
-        tuple(sorted(findings, key=lambda one: order.index(one.kind))),
+        tuple(sorted(findings, key=lambda finding: order.index(finding.kind))),
     )
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
     """What has come and gone between two audits; notes do not count."""
-    known = {(one.kind, one.name) for one in before.findings}
-    still = {(one.kind, one.name) for one in now.findings}
+    known = {(finding.kind, finding.name) for finding in before.findings}
+    still = {(finding.kind, finding.name) for finding in now.findings}
     return AuditChanges(
-        tuple(one for one in now.findings if (one.kind, one.name) not in known),
-        tuple(one for one in before.findings if (one.kind, one.name) not in still),
+        tuple(finding for finding in now.findings if (finding.kind, finding.name) not in known),
+        tuple(finding for finding in before.findings if (finding.kind, finding.name) not in still),
     )
 
 
@@ -128,9 +128,9 @@ def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str,
 
     To a rulebook that has no older audit everything is new.
     """
-    by_name = {one.rulebook: one for one in older}
+    by_name = {audit_.rulebook: audit_ for audit_ in older}
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
-    pairs = ((one, by_name.get(one.rulebook, only)) for one in audits)
+    pairs = ((audit_, by_name.get(audit_.rulebook, only)) for audit_ in audits)
     return {
         now.rulebook: AuditChanges(now.findings) if before is None else audit_changes(now, before)
         for now, before in pairs
@@ -142,20 +142,22 @@ def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArt
 
     Numbers in them are in the order of numbers.
     """
-    citing = {one.name: one.cited_by for one in inherited.rules}
-    nearest = [one.name for one in reversed(inherited.books)]
-    found: dict[tuple[str, str], list[str]] = {}
+    citing = {rule.name: rule.cited_by for rule in inherited.rules}
+    nearest = [book.name for book in reversed(inherited.books)]
+    result: dict[tuple[str, str], list[str]] = {}
     for rule in rules:
         if rule.cite:
-            found.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
-    ordered = sorted(found, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
-    return tuple(CitedArticle(*one, tuple(found[one])) for one in ordered)
+            result.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
+    ordered = sorted(result, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
+    return tuple(CitedArticle(*one, tuple(result[one])) for one in ordered)
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
     """Something to sort by, in which 9 comes before 11."""
     parts = re.findall(r"[0-9]+|[^0-9]+", text)
-    return [(one.isdigit(), int(one), "") if one.isdigit() else (False, 0, one) for one in parts]
+    return [
+        (part.isdigit(), int(part), "") if part.isdigit() else (False, 0, part) for part in parts
+    ]
 
 
 def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -> AuditCounts:
@@ -180,7 +182,7 @@ def _lacks(rule: Rule) -> str:
     missing = [
         word
         for word, accepts in (("accepts", True), ("rejects", False))
-        if all(one.accepts is not accepts for one in rule.examples)
+        if all(example.accepts is not accepts for example in rule.examples)
     ]
     return f"no example that it {' or '.join(missing)}" if missing else ""
 
@@ -205,24 +207,24 @@ def _soft_only(articles: Sequence[CitedArticle], rulebook: Rulebook) -> Iterator
 
 
 def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
-    for one in inherited.rules:
-        last = one.last
+    for rule in inherited.rules:
+        last = rule.last
         if last.deed in ("dropped", "silent"):
-            yield AuditFinding(last.deed, one.name, last.because)
-        if one.rule is None:
+            yield AuditFinding(last.deed, rule.name, last.because)
+        if rule.rule is None:
             continue
         softened = [
-            step for step in one.steps if step.deed == "softened" and HARDNESS in step.clauses
+            step for step in rule.steps if step.deed == "softened" and HARDNESS in step.clauses
         ]
-        if softened and one.rule.strength == "soft":
-            yield AuditFinding("softened", one.name, softened[-1].because)
-        if one.rule.in_force is not None and not in_force(one.rule.in_force, at):
-            yield AuditFinding("out-of-force", one.name, print_in_force(one.rule.in_force))
+        if softened and rule.rule.strength == "soft":
+            yield AuditFinding("softened", rule.name, softened[-1].because)
+        if rule.rule.in_force is not None and not in_force(rule.rule.in_force, at):
+            yield AuditFinding("out-of-force", rule.name, print_in_force(rule.rule.in_force))
 
 
 def _of_provision(item: ConstantHistory) -> Iterator[AuditFinding]:
     """Of a parameter the value that counts, if it counts for a time only."""
-    for one in item.settings:
-        if one.current and (one.since or one.until):
-            dates = print_in_force(tree.InForce(one.since, one.until))
-            yield AuditFinding("dated", item.name, f"{one.text} {dates}")
+    for setting in item.settings:
+        if setting.current and (setting.since or setting.until):
+            dates = print_in_force(tree.InForce(setting.since, setting.until))
+            yield AuditFinding("dated", item.name, f"{setting.text} {dates}")

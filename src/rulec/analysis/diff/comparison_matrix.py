@@ -72,15 +72,15 @@ class ComparisonMatrix:
         ``only`` are those that the second one does not have, ``silent`` those of them of which it
         says why.
         """
-        found: Counter[str] = Counter()
+        counter: Counter[str] = Counter()
         for rule in self.rules:
             relation = rule.relation(first, second)
             if relation is not None:
-                found[relation] += 1
+                counter[relation] += 1
             elif first in rule.laws:
-                found["only"] += 1
-                found["silent"] += second in rule.remarks
-        return found
+                counter["only"] += 1
+                counter["silent"] += second in rule.remarks
+        return counter
 
     @property
     def is_complete(self) -> bool:
@@ -114,22 +114,22 @@ def comparison_matrix(
             if has[name] > 1:
                 stepped[number][name] = rule
     sides = SharedCompiler(tell).sides(books, stepped)
-    found = []
+    shared_rules = []
     for number, name in enumerate(names, 1):
         of_each = {
             book.name: side[name] for book, side in zip(books, sides, strict=True) if name in side
         }
         laws, relations = _classified(of_each)
         # What only one of them has is its own law, whatever it is.
-        laws = laws or {book.name: 0 for book, one in zip(books, ours, strict=True) if name in one}
-        found.append(
+        laws = laws or {book.name: 0 for book, our in zip(books, ours, strict=True) if name in our}
+        shared_rules.append(
             SharedRule(
                 name,
                 laws,
                 {
-                    book.name: one[name]
-                    for book, one in zip(books, ours, strict=True)
-                    if name in one
+                    book.name: our[name]
+                    for book, our in zip(books, ours, strict=True)
+                    if name in our
                 },
                 relations,
                 {
@@ -141,7 +141,7 @@ def comparison_matrix(
             )
         )
         tell(len(books) + number)
-    return ComparisonMatrix(tuple(books), tuple(found))
+    return ComparisonMatrix(tuple(books), tuple(shared_rules))
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
@@ -170,15 +170,15 @@ def _law(
     relations: dict[tuple[int, int], RuleRelation],
 ) -> int:
     """The law among those known that is the same, or a new one, compared to all of them."""
-    found = {}
-    for number, other in enumerate(representatives):
-        found[number] = compare(side, other).relation
-        if found[number] == "equal":
+    result = {}
+    for number, representative in enumerate(representatives):
+        result[number] = compare(side, representative).relation
+        if result[number] == "equal":
             return number
     own = len(representatives)
     representatives.append(side)
     relations[own, own] = "equal"
-    for number, relation in found.items():
+    for number, relation in result.items():
         relations[own, number] = relation
         relations[number, own] = CONVERSE[relation]
     return own

@@ -39,11 +39,11 @@ def diverse_witnesses(
         most: how many to look for.
     """
     vocabulary = one.rulebook.vocabulary
-    found = [first]
+    traces = [first]
     shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
     asked: set[frozenset[str]] = set()
-    while waiting and len(found) < most and len(asked) < MOST_SEARCHES:
+    while waiting and len(traces) < most and len(asked) < MOST_SEARCHES:
         usual = waiting.popleft()
         if usual in asked:
             continue
@@ -54,10 +54,10 @@ def diverse_witnesses(
             if trace is None:
                 continue
             known = non_default_names(trace, vocabulary)
-            found.append(trace)
+            traces.append(trace)
             shown.append(known)
         waiting.extend(usual | {name} for name in sorted(known))
-    return tuple(found)
+    return tuple(traces)
 
 
 def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
@@ -73,9 +73,9 @@ def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     )
 
 
-def _without(names: frozenset[str], one: AnalyzedRule, other: AnalyzedRule) -> Trace | None:
+def _without(names: frozenset[str], left: AnalyzedRule, right: AnalyzedRule) -> Trace | None:
     try:
-        return counterexample(one, [other], tuple(_as_usual(names, one.rulebook.vocabulary)))
+        return counterexample(left, [right], tuple(_as_usual(names, left.rulebook.vocabulary)))
     except UndecidedError:
         return None
 

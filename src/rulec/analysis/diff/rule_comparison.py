@@ -45,23 +45,23 @@ def compare(one: AnalyzedRule, other: AnalyzedRule, most: int = 1) -> RuleCompar
     """
     if one.law == other.law:
         return RuleComparison("equal")
-    found = _compare(one, other, most)
+    rule_comparison = _compare(one, other, most)
     common = common_types(one.rule.variables, other.rule.variables, one.rulebook.vocabulary)
-    if common is None or found.undecided:
-        return found
+    if common is None or rule_comparison.undecided:
+        return rule_comparison
     narrow, narrower = (_narrowed(side, common) for side in (one, other))
-    return replace(found, common=common, on_common=_compare(narrow, narrower, 1).relation)
+    return replace(rule_comparison, common=common, on_common=_compare(narrow, narrower, 1).relation)
 
 
-def _compare(one: AnalyzedRule, other: AnalyzedRule, most: int) -> RuleComparison:
+def _compare(left: AnalyzedRule, right: AnalyzedRule, most: int) -> RuleComparison:
     try:
-        first, second = counterexample(one, [other]), counterexample(other, [one])
+        first, second = counterexample(left, [right]), counterexample(right, [left])
     except UndecidedError as problem:
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
         relation_of(first, second),
-        () if first is None else diverse_witnesses(one, other, first, most),
-        () if second is None else diverse_witnesses(other, one, second, most),
+        () if first is None else diverse_witnesses(left, right, first, most),
+        () if second is None else diverse_witnesses(right, left, second, most),
     )
 
 

@@ -118,18 +118,22 @@ class RulebookDiff:
 
 def setting_pairs(one: BookLineage, other: BookLineage) -> tuple[SettingPair, ...]:
     """The options and parameters that both have with different values."""
-    theirs = {each.name: each for each in other.provisions if each.kind != "definition"}
-    found = []
+    theirs = {
+        provision.name: provision
+        for provision in other.provisions
+        if provision.kind != "definition"
+    }
+    result = []
     for ours in one.provisions:
         if ours.name in theirs and theirs[ours.name].kind == ours.kind:
             values = [_value(ours), _value(theirs[ours.name])]
             if values[0] != values[1]:
-                found.append(SettingPair(ours.kind, ours.name, *values))
-    return tuple(found)
+                result.append(SettingPair(ours.kind, ours.name, *values))
+    return tuple(result)
 
 
 def _value(provision: ConstantHistory) -> str:
-    return next((one.text for one in provision.settings if one.current), "")
+    return next((setting.text for setting in provision.settings if setting.current), "")
 
 
 def diff_rulebooks(
@@ -195,7 +199,7 @@ def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
 def _only(
     ours: dict[str, Rule], theirs: dict[str, Rule], remarks: Sequence[Remark]
 ) -> tuple[OneSided, ...]:
-    said = {one.name: one for one in remarks if one.kind != "softened"}
+    said = {remark.name: remark for remark in remarks if remark.kind != "softened"}
     return tuple(
         OneSided(rule, said.get(name)) for name, rule in ours.items() if name not in theirs
     )

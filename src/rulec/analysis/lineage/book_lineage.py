@@ -44,8 +44,8 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
         tuple(map(book_header, chain)),
         tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
         tuple(
-            replace(_provision(name, one, at), used=name in used)
-            for name, one in told.provisions.items()
+            replace(_provision(name, provision, at), used=name in used)
+            for name, provision in told.provisions.items()
         ),
     )
 
@@ -60,13 +60,13 @@ def read_with_lineage(
 
 def _used(told: _Tale) -> set[str]:
     """The provisions that the rules speak of, those included that provisions speak of in turn."""
-    found: set[str] = set()
+    result: set[str] = set()
     open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
     while open_:
         names = set(names_used(open_.pop())) & told.provisions.keys()
-        open_ += [item for name in names - found for item, _, _ in told.provisions[name]]
-        found |= names
-    return found
+        open_ += [item for name in names - result for item, _, _ in told.provisions[name]]
+        result |= names
+    return result
 
 
 def book_header(file: tree.File) -> BookHeader:
@@ -169,8 +169,10 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
             return ConstantHistory("option", name, name, settings)
         case tree.DefineItem(parameters=parameters):
             shown = (
-                f"{one.name.text}: {one.type.text}" if one.type else one.name.text
-                for one in parameters
+                f"{parameter.name.text}: {parameter.type.text}"
+                if parameter.type
+                else parameter.name.text
+                for parameter in parameters
             )
             head = f"{name}({', '.join(shown)})" if parameters else name
             return ConstantHistory("definition", name, head, settings)

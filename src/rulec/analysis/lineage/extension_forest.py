@@ -21,7 +21,7 @@ def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]
 
     Rulebooks that go round in a circle hang below the first of them by name.
     """
-    by_name = {one.name: one for one in members}
+    by_name = {member.name: member for member in members}
     children: dict[str, list[str]] = {}
     roots = []
     for name in sorted(by_name):
@@ -31,11 +31,11 @@ def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]
         else:
             roots.append(name)
     placed: set[str] = set()
-    found = [_branch(name, by_name, children, placed) for name in roots]
-    found += [
+    extension_trees = [_branch(name, by_name, children, placed) for name in roots]
+    extension_trees += [
         _branch(name, by_name, children, placed) for name in sorted(by_name) if name not in placed
     ]
-    return tuple(sorted(found, key=lambda one: one.book.name))
+    return tuple(sorted(extension_trees, key=lambda extension_tree: extension_tree.book.name))
 
 
 def _branch(

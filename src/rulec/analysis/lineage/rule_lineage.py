@@ -59,13 +59,13 @@ class RuleHistory:
     @property
     def cited_by(self) -> str:
         """The book whose law its ``cite`` speaks of: the last that has changed it."""
-        saying = [one for one in self.steps if one.deed == "declared" or "cite" in one.clauses]
+        saying = [step for step in self.steps if step.deed == "declared" or "cite" in step.clauses]
         return saying[-1].book if saying else ""
 
     def before(self, book: str) -> tree.RuleItem | None:
         """The rule that a book has inherited; None if it has inherited none."""
-        found = [step for step in self.steps if step.book != book]
-        return found[-1].rule if found else None
+        lineage_steps = [step for step in self.steps if step.book != book]
+        return lineage_steps[-1].rule if lineage_steps else None
 
 
 @dataclass(frozen=True, slots=True)

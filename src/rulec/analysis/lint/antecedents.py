@@ -25,9 +25,9 @@ def antecedents(rule: Rule) -> Iterator[Antecedent]:
 
     What an option has switched off is not among them.
     """
-    for one in _all(rule):
-        if not has_constant(one.formula):
-            yield one
+    for antecedent in _all(rule):
+        if not has_constant(antecedent.formula):
+            yield antecedent
 
 
 def has_constant(formula: Formula) -> bool:

@@ -20,7 +20,7 @@ def conflicts(
     names: Sequence[str], sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
-    found: list[frozenset[str]] = []
+    result: list[frozenset[str]] = []
     for pair in combinations(names, 2):
         if not are_related(sides[pair[0]], sides[pair[1]]):
             continue
@@ -31,22 +31,22 @@ def conflicts(
             yield undecided_diagnostic(rules[pair[1]], what, problem)
             continue
         if clash is not None:
-            found.append(frozenset(pair))
+            result.append(frozenset(pair))
             yield _cannot_be_kept(pair, clash, sides, rules)
     for name in names:
         related = [sides[one] for one in names if are_related(sides[name], sides[one])]
-        others = [one for one in related if one.rule.name != name]
+        others = [analyzed_rule for analyzed_rule in related if analyzed_rule.rule.name != name]
         group = [sides[name], *small_premises(sides[name], others)]
-        clash = None if _holds_one(found, group) else _clash(group)
+        clash = None if _holds_one(result, group) else _clash(group)
         if clash is not None:
             smaller = _smallest(group)
-            chosen = tuple(one for one in names if one in {side.rule.name for side in smaller})
-            found.append(frozenset(chosen))
+            chosen = tuple(name for name in names if name in {side.rule.name for side in smaller})
+            result.append(frozenset(chosen))
             yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
 
 
 def _holds_one(found: Sequence[frozenset[str]], group: Sequence[AnalyzedRule]) -> bool:
-    names = {one.rule.name for one in group}
+    names = {analyzed_rule.rule.name for analyzed_rule in group}
     return any(one <= names for one in found)
 
 
@@ -62,8 +62,8 @@ def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
 
 def _smallest(group: Sequence[AnalyzedRule]) -> Sequence[AnalyzedRule]:
     """The group without those that its conflict does not need."""
-    for one in group:
-        fewer = [other for other in group if other is not one]
+    for analyzed_rule in group:
+        fewer = [rule for rule in group if rule is not analyzed_rule]
         if _clash(fewer) is not None:
             return _smallest(fewer)
     return group

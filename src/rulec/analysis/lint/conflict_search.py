@@ -46,7 +46,7 @@ def conflict(sides: Sequence[AnalyzedRule]) -> Conflict | None:
     """
     vocabulary = sides[0].rulebook.vocabulary
     scene = ObjectUniverse(
-        common_objects([one.rule.variables for one in sides], vocabulary), vocabulary
+        common_objects([side.rule.variables for side in sides], vocabulary), vocabulary
     )
     scene = replace(scene, axioms=sides[0].axioms)
     bound = [
@@ -80,12 +80,12 @@ def conflict(sides: Sequence[AnalyzedRule]) -> Conflict | None:
         return None
     if not word:
         return Conflict(None)
-    steps = [one.rule.step_s for one in sides if one.rule.step_s is not None]
+    steps = [side.rule.step_s for side in sides if side.rule.step_s is not None]
     judged = [single_rule_rulebook(side.rulebook, side.rule, scene) for side in sides]
 
     def is_open(trace: Trace) -> bool:
-        found = [one for book in judged for one in verify(trace, book).violations]
-        return all(one.step is None for one in found)
+        violations = [violation for book in judged for violation in verify(trace, book).violations]
+        return all(violation.step is None for violation in violations)
 
     situations = [alphabet.situations[symbol] for symbol in word]
     return Conflict(synthesize_trace(situations, scene, (*steps, Fraction(1))[0], is_open))
@@ -108,18 +108,18 @@ def common_objects(
     for variables in heads:
         free = list(objects)
         for variable in variables:
-            found = next(
+            result = next(
                 (name for name in free if _fits(objects[name], variable, vocabulary)), None
             )
-            if found is None:
-                found = variable.name
-                while found in objects:
-                    found += "_"
-                objects[found] = variable.type
+            if result is None:
+                result = variable.name
+                while result in objects:
+                    result += "_"
+                objects[result] = variable.type
             else:
-                free.remove(found)
-                if vocabulary.is_subtype(variable.type, objects[found]):
-                    objects[found] = variable.type
+                free.remove(result)
+                if vocabulary.is_subtype(variable.type, objects[result]):
+                    objects[result] = variable.type
     return objects
 
 
@@ -140,16 +140,16 @@ def _explored(
     seen = {start}
     for node in waiting:
         steps: dict[tuple[ProductState, frozenset[int]], _Step] = {}
-        lost = any(a == one.rejecting_sink for a, one in zip(node, machines, strict=True))
+        lost = any(a == machine.rejecting_sink for a, machine in zip(node, machines, strict=True))
         for symbol in () if lost else symbols:
             unsatisfied = {
                 owner
-                for owner, one, state, which in zip(owners, machines, node, symbol, strict=True)
-                if not one.outputs[state][which]
+                for owner, machine, state, which in zip(owners, machines, node, symbol, strict=True)
+                if not machine.outputs[state][which]
             }
             target = tuple(
-                one.successors[state][which]
-                for one, state, which in zip(machines, node, symbol, strict=True)
+                machine.successors[state][which]
+                for machine, state, which in zip(machines, node, symbol, strict=True)
             )
             key = (target, frozenset(owners) - unsatisfied)
             steps.setdefault(key, _Step(*key, symbol))
@@ -180,13 +180,13 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
     waiting = [
         node for node, steps in graph.items() if any(step.satisfied >= everyone for step in steps)
     ]
-    found = set(waiting)
+    result = set(waiting)
     for node in waiting:
         for earlier in before.get(node, ()):
-            if earlier not in found:
-                found.add(earlier)
+            if earlier not in result:
+                result.add(earlier)
                 waiting.append(earlier)
-    return frozenset(found)
+    return frozenset(result)
 
 
 def _shortest(

@@ -15,7 +15,7 @@ from rulec.witnesses.undecided import UndecidedError
 
 def trace_note(what: str, trace: Trace, sides: Sequence[AnalyzedRule]) -> tuple[str, ...]:
     """The note on a trace, in the words of these rules."""
-    rules = [one.rule for one in sides]
+    rules = [side.rule for side in sides]
     return (f"{what}: {trace_literal(trace, rules, sides[0].rulebook.vocabulary)}",)
 
 

@@ -43,15 +43,15 @@ def implied_by(side: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[Anal
     The others are taken together as far as their automata stay small; so more of them together may
     imply it without being found. Raises UndecidedError.
     """
-    related = [other for other in others if are_related(side, other)]
-    for other in related:
-        if counterexample(side, [other]) is None:
-            return (other,)
+    related = [analyzed_rule for analyzed_rule in others if are_related(side, analyzed_rule)]
+    for analyzed_rule in related:
+        if counterexample(side, [analyzed_rule]) is None:
+            return (analyzed_rule,)
     premises = small_premises(side, related)
     if len(premises) < 2 or counterexample(side, premises) is not None:
         return ()
-    for other in premises:
-        fewer = [one for one in premises if one is not other]
+    for premise in premises:
+        fewer = [analyzed_rule for analyzed_rule in premises if analyzed_rule is not premise]
         if counterexample(side, fewer) is None:
             premises = fewer
     return tuple(premises)
@@ -61,10 +61,10 @@ def small_premises(side: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[
     """Those of the others whose automata stay small together with that of the rule."""
     types = sorted(variable.type for variable in side.rule.variables)
     chosen: list[AnalyzedRule] = []
-    for other in sorted(related, key=lambda one: len(one.rule.machine.successors)):
-        if sorted(variable.type for variable in other.rule.variables) not in (types, []):
+    for analyzed_rule in sorted(related, key=lambda rule: len(rule.rule.machine.successors)):
+        if sorted(variable.type for variable in analyzed_rule.rule.variables) not in (types, []):
             continue
-        sizes = [len(one.rule.machine.successors) for one in (side, *chosen, other)]
+        sizes = [len(rule.rule.machine.successors) for rule in (side, *chosen, analyzed_rule)]
         if prod(sizes) <= MOST_JOINT_STATES and len(chosen) < MOST_PREMISES:
-            chosen.append(other)
+            chosen.append(analyzed_rule)
     return chosen

@@ -48,11 +48,11 @@ def rulebook_findings(
         for rule in book.rules
         for number, trigger in enumerate(antecedents(rule))
     }
-    asked = {name: occurrence(*one, name) for name, one in whens.items()}
+    asked = {name: occurrence(*when, name) for name, when in whens.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
-    found = SharedCompiler().sides([book, *bases], [{**by_name, **asked}, *inherited])
-    own = {name: found[0][name] for name in by_name}
-    occurring = {name: (*one, found[0][name]) for name, one in whens.items()}
+    result = SharedCompiler().sides([book, *bases], [{**by_name, **asked}, *inherited])
+    own = {name: result[0][name] for name in by_name}
+    occurring = {name: (*when, result[0][name]) for name, when in whens.items()}
     diagnostics: list[Diagnostic] = []
     hopeless: set[str] = set()
     for number, (name, rule) in enumerate(by_name.items(), 1):
@@ -66,10 +66,12 @@ def rulebook_findings(
     diagnostics += _needless(good, by_name, own)
     hard = [name for name in good if by_name[name].strength == "hard"]
     diagnostics += conflicts(hard, own, by_name)
-    for base, sides in zip(bases, found[1:], strict=True):
+    for base, sides in zip(bases, result[1:], strict=True):
         for name, side in sides.items():
-            for one in _weaker(by_name[name], own[name], side, base):
-                diagnostics.append(one if by_name[name].book == book.name else _ours(one, extends))
+            for diagnostic in _weaker(by_name[name], own[name], side, base):
+                diagnostics.append(
+                    diagnostic if by_name[name].book == book.name else _ours(diagnostic, extends)
+                )
     return tuple(diagnostics)
 
 
@@ -122,12 +124,16 @@ def _needless(
 ) -> Iterator[Diagnostic]:
     """Rules that add nothing to the others that are left when they are all left out."""
     left = list(names)
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for name in reversed(names):
-        found += _implied(rules[name], [one for one in left if one != name], rules, sides)
-        if found and found[-1].code == ADDS_NOTHING.code and f"`{name}` adds" in found[-1].message:
+        diagnostics += _implied(rules[name], [one for one in left if one != name], rules, sides)
+        if (
+            diagnostics
+            and diagnostics[-1].code == ADDS_NOTHING.code
+            and f"`{name}` adds" in diagnostics[-1].message
+        ):
             left.remove(name)
-    yield from reversed(found)
+    yield from reversed(diagnostics)
 
 
 def _implied(
@@ -135,7 +141,7 @@ def _implied(
 ) -> Iterator[Diagnostic]:
     """A rule that adds nothing to others that are as hard."""
     others = [
-        sides[one] for one in names if rules[one].strength == "hard" or rule.strength == "soft"
+        sides[name] for name in names if rules[name].strength == "hard" or rule.strength == "soft"
     ]
     try:
         premises = implied_by(sides[rule.name], others)
@@ -143,7 +149,7 @@ def _implied(
         yield undecided_diagnostic(rule, "others imply it", problem)
         return
     if premises:
-        listed = [one.rule.name for one in premises]
+        listed = [premise.rule.name for premise in premises]
         verb = "forbids" if len(listed) == 1 else "together forbid"
         who = " and ".join(f"`{one}`" for one in listed)
         yield ADDS_NOTHING.at(
@@ -170,20 +176,20 @@ def _ours(found: Diagnostic, extends: Span | None) -> Diagnostic:
 def _weaker(
     rule: Rule, own: AnalyzedRule, inherited: AnalyzedRule, base: Rulebook
 ) -> Iterator[Diagnostic]:
-    found = compare(own, inherited)
-    if found.undecided:
-        problem = UndecidedError(found.undecided)
+    rule_comparison = compare(own, inherited)
+    if rule_comparison.undecided:
+        problem = UndecidedError(rule_comparison.undecided)
         yield undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
-    if not found.second_forbids and not softer:
+    if not rule_comparison.second_forbids and not softer:
         return
-    how = "laxer" if found.second_forbids else "softer"
-    if found.relation == "incomparable":
+    how = "laxer" if rule_comparison.second_forbids else "softer"
+    if rule_comparison.relation == "incomparable":
         how = "neither stricter nor laxer"
     notes = [
         note
-        for trace in found.second_forbids
+        for trace in rule_comparison.second_forbids
         for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
     yield WEAKER_THAN_BASE.at(

@@ -29,13 +29,13 @@ def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> Det
     seen: dict[int, int] = {buddy.bddfalse.id(): 0, buddy.bddtrue.id(): everything}
 
     def letters_on(condition: Any) -> int:
-        found = seen.get(condition.id())
-        if found is None:
+        result = seen.get(condition.id())
+        if result is None:
             true = variables[buddy.bdd_var(condition)]
             high = letters_on(buddy.bdd_high(condition))
             low = letters_on(buddy.bdd_low(condition))
-            found = seen[condition.id()] = (true & high) | (everything & ~true & low)
-        return found
+            result = seen[condition.id()] = (true & high) | (everything & ~true & low)
+        return result
 
     edges = tuple(
         tuple(

@@ -77,7 +77,7 @@ class Obligations:
 
     def __init__(self, formula: Formula, spot_formulas: SpotFormulas) -> None:
         self.propositions = spot.make_twa_graph(spot_formulas.dictionary)
-        self.names = {one: spot_formulas.names[one] for one in atoms_of(formula)}
+        self.names = {atom: spot_formulas.names[atom] for atom in atoms_of(formula)}
         self._letters = {
             one: buddy.bdd_ithvar(self.propositions.register_ap(name))
             for one, name in self.names.items()
@@ -100,11 +100,11 @@ class Obligations:
             done += len(pending)
             yield from pending
 
-    def _variable(self, one: _Obligation) -> Any:
-        if one not in self._variables:
+    def _variable(self, _obligation: _Obligation) -> Any:
+        if _obligation not in self._variables:
             name = fresh_name(f"obligation {len(self._variables)}", self._taken)
-            self._variables[one] = buddy.bdd_ithvar(self.propositions.register_ap(name))
-        return self._variables[one]
+            self._variables[_obligation] = buddy.bdd_ithvar(self.propositions.register_ap(name))
+        return self._variables[_obligation]
 
     def _now(self, formula: Formula, wanted: bool) -> Any:
         """That the formula, or its negation, holds: by this letter and what it leaves to do."""
@@ -156,16 +156,16 @@ class Obligations:
             one = _Obligation(not one.strong, *turned, span)
         return self._unfolded(one)
 
-    def _unfolded(self, one: _Obligation) -> Any:
+    def _unfolded(self, _obligation: _Obligation) -> Any:
         """What an obligation asks of this letter, and what it leaves to the rest of the word."""
-        strong, left, right, (low, high) = one
+        strong, left, right, (low, high) = _obligation
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue
         if high is not None and 0 < low < high and left == (_TRUE if strong else _FALSE):
             # Instant by instant, so that ranges that overlap are seen to ask for the same.
             asked = buddy.bddfalse if strong else buddy.bddtrue
             for distance in range(low, high + 1):
-                there = self._unfolded(one._replace(span=Range(distance, distance)))
+                there = self._unfolded(_obligation._replace(span=Range(distance, distance)))
                 asked = asked | there if strong else asked & there
             return asked
         ends_here = low == 0 and high == 0
@@ -173,7 +173,7 @@ class Obligations:
         if ends_here:
             return now
         rest = Range(max(low - 1, 0), None if high is None else high - 1)
-        later = self._variable(one._replace(span=rest))
+        later = self._variable(_obligation._replace(span=rest))
         if strong:
             return now | (self._now(left, True) & later)
         return now & (self._now(left, True) | later)

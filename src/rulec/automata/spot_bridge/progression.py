@@ -35,15 +35,15 @@ class Progression:
         """The state with every obligation unfolded."""
         if state == buddy.bddtrue or state == buddy.bddfalse:
             return state
-        found = self._composed.get(state.id())
-        if found is None:
+        result = self._composed.get(state.id())
+        if result is None:
             high = self._replaced(buddy.bdd_high(state))
             low = self._replaced(buddy.bdd_low(state))
             unfolded = self._of.unfolded[buddy.bdd_var(state)]
-            found = state, buddy.bdd_ite(unfolded, high, low)
+            result = state, buddy.bdd_ite(unfolded, high, low)
             # The first keeps its number from being given to another.
-            self._composed[state.id()] = found
-        return found[1]
+            self._composed[state.id()] = result
+        return result[1]
 
     def _split(self, left: Any, known: dict[int, Any]) -> dict[int, tuple[Any, Any]]:
         """By target: (letters, target). Letters' variables are above those of obligations."""
@@ -54,15 +54,15 @@ class Progression:
             return {left.id(): (buddy.bddtrue, left)}
         if left.id() not in known:
             letter = buddy.bdd_ithvar(variable)
-            found: dict[int, tuple[Any, Any]] = {}
+            results: dict[int, tuple[Any, Any]] = {}
             for side, branch in (
                 (letter, buddy.bdd_high(left)),
                 (-letter, buddy.bdd_low(left)),
             ):
                 for key, (letters, target) in self._split(branch, known).items():
-                    before = found[key][0] if key in found else buddy.bddfalse
-                    found[key] = before | (side & letters), target
-            known[left.id()] = found
+                    before = results[key][0] if key in results else buddy.bddfalse
+                    results[key] = before | (side & letters), target
+            known[left.id()] = results
         result: dict[int, tuple[Any, Any]] = known[left.id()]
         return result
 

@@ -30,8 +30,8 @@ def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
     others = buddy.bddtrue
     for one in set(every) - set(propositions):
         others &= buddy.bdd_ithvar(owner.register_ap(names[one]))
-    found = spot.bdd_to_formula(buddy.bdd_exist(condition, others), spot_formulas.dictionary)
-    return _read(found, {name: one for one, name in names.items()})
+    result = spot.bdd_to_formula(buddy.bdd_exist(condition, others), spot_formulas.dictionary)
+    return _read(result, {name: one for one, name in names.items()})
 
 
 def _read(said: Any, named: dict[str, Proposition]) -> Formula:

@@ -28,7 +28,7 @@ def with_registers(
     operands = _Operands(automaton, registers, spot_formulas)
     propositions = automaton.get_dict()
     product = spot.make_twa_graph(propositions)
-    fresh = {spot_formulas.formula_of(one.atom).ap_name() for one in registers}
+    fresh = {spot_formulas.formula_of(register.atom).ap_name() for register in registers}
     for proposition in automaton.ap():
         if proposition.ap_name() not in fresh:
             product.register_ap(proposition)
@@ -37,7 +37,7 @@ def with_registers(
         going = buddy.bdd_ithvar(product.register_ap(spot_formulas.alive))
     product.copy_acceptance_of(automaton)
     product.set_init_state(product.new_state())
-    empty = tuple(one.at_first for one in registers)
+    empty = tuple(register.at_first for register in registers)
     numbers = {(automaton.get_init_state_number(), empty): 0}
     reached = list(numbers)
     over = (-going, operands.nothing, empty)
@@ -72,8 +72,13 @@ class _Operands:
             )
 
         self._registers = [
-            (one, condition(one.left), condition(one.right), condition(one.atom))
-            for one in registers
+            (
+                register,
+                condition(register.left),
+                condition(register.right),
+                condition(register.atom),
+            )
+            for register in registers
         ]
         self.nothing = buddy.bddtrue
         """That no register says anything, as a condition on their atoms."""
@@ -84,11 +89,11 @@ class _Operands:
     def on(self, values: _Values) -> list[tuple[Any, Any, _Values]]:
         """For registers in these states: (letters, what they then say, their next states)."""
         if values not in self._known:
-            found: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
+            result: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
             for value, (register, left, right, atom) in zip(values, self._registers, strict=True):
-                found = [
+                result = [
                     (letters & more, said & (atom if later & 1 else -atom), (*others, later))
-                    for letters, said, others in found
+                    for letters, said, others in result
                     for later, more in _steps(
                         register,
                         value,
@@ -97,7 +102,7 @@ class _Operands:
                     ).items()
                     if (letters & more) != buddy.bddfalse
                 ]
-            self._known[values] = found
+            self._known[values] = result
         return self._known[values]
 
 

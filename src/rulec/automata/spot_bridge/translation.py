@@ -66,7 +66,10 @@ def translate(
     """
     propositions = propositions_of(formula)
     past = remembered(formula)
-    fresh = [*(one.atom for one in past.registers), *(one.atom for one in past.memories)]
+    fresh = [
+        *(register.atom for register in past.registers),
+        *(memory.atom for memory in past.memories),
+    ]
     names = names_of([*propositions, *fresh])
     alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
     spot_formulas = SpotFormulas(names, alive)
@@ -87,7 +90,7 @@ def translate(
         automaton = _shaped(with_registers(automaton, past.registers, spot_formulas))
     return Translation(
         automaton,
-        {one: names[one] for one in propositions},
+        {proposition: names[proposition] for proposition in propositions},
         alive,
         is_checked=is_small and not past.registers,
     )
@@ -105,7 +108,7 @@ def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFo
 
     What they are is guessed and projected away, which takes a determinisation.
     """
-    defined = [spot_formulas.formula_of(definition(one)) for one in memories]
+    defined = [spot_formulas.formula_of(definition(memory)) for memory in memories]
     guessing = spot_formulas.translate(
         spot_formulas.language([spot_formulas.formula_of(formula), *defined]), "small"
     )
@@ -186,9 +189,9 @@ def _by_trial(language: Any, spot_formulas: SpotFormulas) -> Any:
         )
 
     ways: tuple[Callable[[], Any], ...] = (plain, itself, complement)
-    for one in ways:
-        if tried(one, _TRY_CPU_S) is not None:
-            return one()
+    for way in ways:
+        if tried(way, _TRY_CPU_S) is not None:
+            return way()
     return plain()
 
 

@@ -23,7 +23,7 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
     Raises:
         ValueError: with what is wrong, for people.
     """
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for text in texts:
         name, value = _pair(text, "built_up=true")
         declaration = vocabulary.declarations.get(name)
@@ -34,8 +34,8 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
             raise ValueError(f"{message}; {hint}" if hint else message)
         if declaration.parameters:
             raise ValueError(f"`{name}` is about objects; only what is about none can be assumed")
-        found[name] = _value(value, declaration)
-    return found
+        values[name] = _value(value, declaration)
+    return values
 
 
 def _pair(text: str, example: str) -> tuple[str, str]:
@@ -79,7 +79,7 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
         ValueError: with what is wrong, for people.
     """
     known = {field.name: field.default for field in fields(Thresholds)}
-    found: dict[str, float | int] = {}
+    result: dict[str, float | int] = {}
     for text in texts:
         name, value = _pair(text, "near_m=200")
         if name not in known:
@@ -96,5 +96,5 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
             raise ValueError(f"`{name}` is a number from 0 on, not `{value}`")
         if isinstance(known[name], int) and number != int(number):
             raise ValueError(f"`{name}` is a whole number, not `{value}`")
-        found[name] = int(number) if isinstance(known[name], int) else number
-    return replace(Thresholds(), **found)  # type: ignore[arg-type]
+        result[name] = int(number) if isinstance(known[name], int) else number
+    return replace(Thresholds(), **result)  # type: ignore[arg-type]

@@ -46,8 +46,8 @@ class DrivenRoad:
 
     def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""
-        found = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
-        return np.clip(found, 0, len(self.rows) - 1)
+        result = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
+        return np.clip(result, 0, len(self.rows) - 1)
 
     def lanes_at(self, s: Floats) -> Flags:
         """Which lanes there are at places: the last axis is that of the lanes, from the right."""
@@ -57,8 +57,8 @@ class DrivenRoad:
     def lane_of(self, d: Floats) -> NDArray[intp]:
         """The lanes at straightened offsets; who is beside the road counts to the nearest."""
         straight = self.lanes.straight
-        found = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
-        return np.clip(found, 0, len(straight) - 2)
+        result = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
+        return np.clip(result, 0, len(straight) - 2)
 
 
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
@@ -71,7 +71,7 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     """
     whole = extended_route(recording, way)
     lanelets = tuple(recording.lanelets[number] for number in whole)
-    line = reference_line(np.concatenate([one.centre for one in lanelets]))
+    line = reference_line(np.concatenate([lanelet.centre for lanelet in lanelets]))
     borders = borders_along(lanelets, line)
     first = whole.index(way[0])
     middle = float(borders[first] + borders[first + len(way)]) / 2
@@ -86,7 +86,7 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
         borders,
         line,
         lanes,
-        tuple(one.s for one in road_crossings(view)),
+        tuple(road_crossing.s for road_crossing in road_crossings(view)),
         tuple(_runs(borders, [number in junctions for number in whole])),
     )
 

@@ -26,9 +26,9 @@ def mirrored_recording(recording: Recording) -> Recording:
     """With ``y`` turned round, and left and right of everything exchanged. Its own inverse."""
     return replace(
         recording,
-        lanelets={number: _lanelet(one) for number, one in recording.lanelets.items()},
-        participants=tuple(_participant(one) for one in recording.participants),
-        problems=tuple(_problem(one) for one in recording.problems),
+        lanelets={number: _lanelet(lanelet) for number, lanelet in recording.lanelets.items()},
+        participants=tuple(_participant(participant) for participant in recording.participants),
+        problems=tuple(_problem(problem) for problem in recording.problems),
         side=_OTHER[recording.side],
     )
 
@@ -50,14 +50,14 @@ def _lanelet(lanelet: Lanelet) -> Lanelet:
     )
 
 
-def _participant(one: Participant) -> Participant:
+def _participant(participant: Participant) -> Participant:
     return replace(
-        one,
-        states={step: _state(state) for step, state in one.states.items()},
-        outlines={step: _points(outline) for step, outline in one.outlines.items()},
+        participant,
+        states={step: _state(state) for step, state in participant.states.items()},
+        outlines={step: _points(outline) for step, outline in participant.outlines.items()},
         lamps={
             step: frozenset(_LAMPS.get(lamp, lamp) for lamp in lit)
-            for step, lit in one.lamps.items()
+            for step, lit in participant.lamps.items()
         },
     )
 

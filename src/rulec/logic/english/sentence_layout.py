@@ -21,9 +21,9 @@ class Line:
 
 def lines(phrase: Phrase) -> list[Line]:
     """The sentence from its capital letter to its full stop."""
-    found = list(_lines(phrase, 0, "", "."))
-    first = found[0]
-    return [Line(0, "", f"{first.text[:1].upper()}{first.text[1:]}"), *found[1:]]
+    result = list(_lines(phrase, 0, "", "."))
+    first = result[0]
+    return [Line(0, "", f"{first.text[:1].upper()}{first.text[1:]}"), *result[1:]]
 
 
 def in_one_line(phrase: Phrase) -> str:
@@ -34,8 +34,8 @@ def in_one_line(phrase: Phrase) -> str:
 def _lines(phrase: Phrase, depth: int, own: str, end: str) -> Iterator[Line]:
     labels = [_label(depth, index, own) for index in range(len(phrase.items))]
     text = phrase.text
-    for index, one in enumerate(labels):
-        text = text.replace(label(index), one)
+    for index, label_ in enumerate(labels):
+        text = text.replace(label(index), label_)
     yield Line(depth, own, text if phrase.items else f"{text}{end}")
     for index, (one, item) in enumerate(zip(labels, phrase.items, strict=True)):
         left = len(labels) - index - 1

@@ -32,24 +32,26 @@ def axiom_of(
         declared, provisions, variables, mistakes, in_moment=True, taken=frozenset(variables)
     )
     provisions.begin()
-    found = truth(formula, scope)
-    if found is None or mistakes:
+    result = truth(formula, scope)
+    if result is None or mistakes:
         return None, mistakes
-    typed = tuple(Variable(name, one.type) for name, one in variables.items() if one.type)
-    return Axiom(typed, found, item.span), mistakes
+    typed = tuple(
+        Variable(name, variable.type) for name, variable in variables.items() if variable.type
+    )
+    return Axiom(typed, result, item.span), mistakes
 
 
 def _variables(
     asked_for: Iterable[tuple[tree.Name, str]], declared: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
-    found: dict[str, BoundVariable] = {}
+    bound_variables: dict[str, BoundVariable] = {}
     for name, wanted in asked_for:
-        known = found.get(name.text)
+        known = bound_variables.get(name.text)
         if known is None or known.type is None or declared.fits(wanted, known.type):
-            found[name.text] = BoundVariable(wanted, name.span, name.text)
+            bound_variables[name.text] = BoundVariable(wanted, name.span, name.text)
         elif not declared.fits(known.type, wanted):
             mistakes.append(_two_types(name, known, wanted))
-    return found
+    return bound_variables
 
 
 def _asked_for(
@@ -81,7 +83,9 @@ def _parameters(
     name = use.name.text
     definition = provisions.definitions.get(name)
     if definition is not None:
-        kinds = [one.type.text if one.type else None for one in definition.parameters]
+        kinds = [
+            parameter.type.text if parameter.type else None for parameter in definition.parameters
+        ]
         return [kind if kind in declared.types else None for kind in kinds]
     item = declared.items.get(name) or declared.value_of.get(
         SIDES[name]["right"] if name in SIDES else name

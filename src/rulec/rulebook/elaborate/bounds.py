@@ -64,14 +64,14 @@ def _time(side: tree.Amount, scope: Scope, evaluate: Evaluate) -> _Time | None:
             scope.report(say.half_a_step(side))
             return None
         return whole, "steps"
-    found = evaluate(side, scope)
-    if found is None:
+    number = evaluate(side, scope)
+    if number is None:
         return None
-    if not found.is_constant or found.dimension not in (None, DIMENSIONS["time"]):
-        scope.report(say.no_time(side, found))
+    if not number.is_constant or number.dimension not in (None, DIMENSIONS["time"]):
+        scope.report(say.no_time(side, number))
         return None
-    amount = found.cases[0][1].constant
+    amount = number.cases[0][1].constant
     if amount < 0:
-        scope.report(say.no_time(side, found))
+        scope.report(say.no_time(side, number))
         return None
     return amount, "s"

@@ -64,32 +64,32 @@ Meaning = Formula | Number | Object | Anything
 
 def truth(node: tree.Formula, scope: Scope) -> Formula | None:
     """The formula; None if it has a mistake, which is then reported."""
-    found = meaning(node, scope)
-    match found:
+    result = meaning(node, scope)
+    match result:
         case None:
             return None
         case Anything():
             return Constant(True)
         case Number():
-            scope.report(say.number_for_truth(node, found, scope))
+            scope.report(say.number_for_truth(node, result, scope))
             return None
         case Object():
             scope.report(say.object_for_truth(node, scope))
             return None
         case _:
-            return found
+            return result
 
 
 def number(node: tree.Formula, scope: Scope) -> Number | None:
     """The number; None if it has a mistake, which is then reported."""
-    found = meaning(node, scope)
-    match found:
+    result = meaning(node, scope)
+    match result:
         case None | Anything():
             return None
         case Number():
-            return found
+            return result
         case _:
-            scope.report(say.no_number(node, found, scope))
+            scope.report(say.no_number(node, result, scope))
             return None
 
 
@@ -142,7 +142,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         return Object(scope.variables[name].actual)
     if isinstance(relation, Anything):
         scope.used.add(name)
-        scope.used |= {one.text for one in node.arguments}
+        scope.used |= {argument.text for argument in node.arguments}
         return relation
     if relation is not None:
         scope.used.add(name)
@@ -158,13 +158,13 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         return parameter(node, scope, number)
     if kind == "definition":
         return put_in(node, scope, meaning)
-    found = scope.reference(node)
-    if isinstance(found, Quantity):
-        unit = scope.declared.unit_of(found.name)
+    result = scope.reference(node)
+    if isinstance(result, Quantity):
+        unit = scope.declared.unit_of(result.name)
         if unit is None:
             return None
-        return measured(found, unit.factor, unit.dimension, term_in_words(found))
-    return found
+        return measured(result, unit.factor, unit.dimension, term_in_words(result))
+    return result
 
 
 def _prefix(node: tree.Prefix, scope: Scope) -> Formula | None:
@@ -212,7 +212,7 @@ def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
 def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
     for side, other in ((node.left, node.right), (node.right, node.left)):
         if isinstance(side, tree.AtomUse) and (item := scope.enumeration(side)) is not None:
-            scope.used |= {one.text for one in side.arguments}
+            scope.used |= {argument.text for argument in side.arguments}
             scope.report(say.values_compared(node, side, item, other, scope))
             return None
     left, right = meaning(node.left, scope), meaning(node.right, scope)

@@ -48,8 +48,8 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
         BoundedPhaseError: for ``throughout`` if a phase's length is bounded.
         TooManyExceptionsError: if too many hold throughout.
     """
-    inside = [one for one in exemptions if one.scope != "initially"]
-    initially = [one.formula for one in exemptions if one.scope == "initially"]
+    inside = [exemption for exemption in exemptions if exemption.scope != "initially"]
+    initially = [exemption.formula for exemption in exemptions if exemption.scope == "initially"]
     if inside:
         formula = _with_stretch(formula, inside)
     return any_of(iter([*initially, formula]))
@@ -58,7 +58,7 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
 def _with_stretch(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     match formula:
         case Unary(UnaryOperator.ALWAYS, operand):
-            exempt = any_of(one.formula for one in exemptions)
+            exempt = any_of(exemption.formula for exemption in exemptions)
             return replace(formula, operand=any_of(iter([exempt, operand])))
         case Unary(UnaryOperator.NEVER, operand):
             return replace(formula, operand=_counted(_phases(operand), exemptions))
@@ -75,20 +75,22 @@ class _Phase:
 
 
 def _phases(formula: Formula) -> list[_Phase]:
-    found: list[_Phase] = []
+    phases: list[_Phase] = []
     while isinstance(formula, Binary) and formula.operator is _THEN:
-        found.append(_Phase(formula.left, formula.bound))
+        phases.append(_Phase(formula.left, formula.bound))
         formula = formula.right
-    return [*found, _Phase(formula)]
+    return [*phases, _Phase(formula)]
 
 
 def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
     """The sequence of these phases as far as no exemption exempts it."""
     denied: dict[ExemptionScope, list[Formula]] = {}
-    for one in exemptions:
-        denied.setdefault(one.scope, []).append(negated(one.formula))
+    for exemption in exemptions:
+        denied.setdefault(exemption.scope, []).append(negated(exemption.formula))
     if len(phases) == 1:
-        return all_of([phases[0].formula, *(negated(one.formula) for one in exemptions)])
+        return all_of(
+            [phases[0].formula, *(negated(exemption.formula) for exemption in exemptions)]
+        )
     throughout = denied.get("throughout", [])
     if len(throughout) > MOST_THROUGHOUT:
         raise TooManyExceptionsError

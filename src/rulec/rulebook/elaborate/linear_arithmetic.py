@@ -75,8 +75,8 @@ class Number:
     @property
     def dimension(self) -> Dimension | None:
         """The dimension of all cases; None if all of them are a bare 0."""
-        found = (linear.dimension for _, linear in self.cases)
-        return next((one for one in found if one is not None), None)
+        generator = (linear.dimension for _, linear in self.cases)
+        return next((dimension for dimension in generator if dimension is not None), None)
 
     @property
     def is_constant(self) -> bool:
@@ -123,10 +123,10 @@ def _pairs(
 
 
 def _in_cases(cases: Iterable[Case]) -> Number:
-    found = Number(tuple(islice(cases, MOST_CASES + 1)))
-    if len(found.cases) > MOST_CASES:
+    number = Number(tuple(islice(cases, MOST_CASES + 1)))
+    if len(number.cases) > MOST_CASES:
         raise TooManyCasesError
-    return found
+    return number
 
 
 def either(condition: Formula, value: Number, otherwise: Number) -> Number:
@@ -229,9 +229,9 @@ def any_of(formulas: Iterator[Formula]) -> Formula:
 
 def _joined(operator: BinaryOperator, neutral: bool, formulas: Iterator[Formula]) -> Formula:
     whole: Formula | None = None
-    for one in formulas:
-        if one == Constant(not neutral):
-            return one
-        if one != Constant(neutral):
-            whole = one if whole is None else Binary(operator, whole, one)
+    for formula in formulas:
+        if formula == Constant(not neutral):
+            return formula
+        if formula != Constant(neutral):
+            whole = formula if whole is None else Binary(operator, whole, formula)
     return Constant(neutral) if whole is None else whole

@@ -24,7 +24,7 @@ def put_in(
         scope.provisions.broken |= {call.name for call in scope.calls}
         return None
     if len(use.arguments) != len(item.parameters):
-        scope.used |= {one.text for one in use.arguments}
+        scope.used |= {argument.text for argument in use.arguments}
         scope.report(say.wrong_number_of_arguments(use, item))
         return None
     variables: dict[str, BoundVariable] = {}

@@ -60,9 +60,9 @@ def aggregate(
     if node.kind == "count":
         return count
     relation: Relation = "<" if node.kind == "every" else ">="
-    found = compared(count, relation, constant(_ONE, DIMENSIONS["number"], "1"))
-    assert isinstance(found, Comparison), "a count varies"
-    return replace(found, text=f"{node.kind} {term.variable}: {kind.text} ({in_words(body)})")
+    comparison = compared(count, relation, constant(_ONE, DIMENSIONS["number"], "1"))
+    assert isinstance(comparison, Comparison), "a count varies"
+    return replace(comparison, text=f"{node.kind} {term.variable}: {kind.text} ({in_words(body)})")
 
 
 def _with_counted(node: tree.Aggregate, scope: Scope, kind: str | None) -> Scope:

@@ -59,24 +59,30 @@ def translate_rule(
         scope.report(rule_messages.weightless(item.weight))
     sound = len(mistakes)
     examples = [example_of(example, formula, scope) for example in item.examples]
-    misfit = next((one for one in mistakes[sound:] if one.severity == "error"), None)
+    misfit = next((mistake for mistake in mistakes[sound:] if mistake.severity == "error"), None)
     if misfit is not None and entry.changed is not None and entry.examples_from is not entry.book:
         # What is wrong with the rest of the rule may be why.
-        clean = formula is not None and not any(one.severity == "error" for one in mistakes[:sound])
+        clean = formula is not None and not any(
+            mistake.severity == "error" for mistake in mistakes[:sound]
+        )
         mistakes[sound:] = [rule_messages.misfit(entry.changed, misfit)] if clean else []
     step = _step_of(entry.examples_from, scope)
     if (
         parts is None
         or formula is None
         or weight is None
-        or any(one.severity == "error" for one in mistakes)
+        or any(mistake.severity == "error" for mistake in mistakes)
     ):
-        return None, [_with_change(one, entry) for one in mistakes]
+        return None, [_with_change(mistake, entry) for mistake in mistakes]
     dates = item.in_force or tree.InForce()
     rule = Rule(
         item.name.text,
         item.strength or "hard",
-        tuple(Variable(one.name.text, one.type.text) for one in item.variables if one.type),
+        tuple(
+            Variable(variable.name.text, variable.type.text)
+            for variable in item.variables
+            if variable.type
+        ),
         formula,
         item.cite.value if item.cite else "",
         item.says.value if item.says else "",
@@ -106,11 +112,11 @@ def _step_of(file: tree.File, scope: Scope) -> Fraction:
     """How far the states of a rulebook's examples are apart, in seconds."""
     if file.step is None:
         return Fraction(1)
-    found = number(file.step.amount, scope)
-    if found is None:
+    result = number(file.step.amount, scope)
+    if result is None:
         return Fraction(1)
-    step = found.cases[0][1].constant
-    if found.dimension != DIMENSIONS["time"] or step <= 0:
+    step = result.cases[0][1].constant
+    if result.dimension != DIMENSIONS["time"] or step <= 0:
         scope.report(rule_messages.no_step(file.step))
         return Fraction(1)
     return step
@@ -137,7 +143,9 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
     """The parts of a rule's formula; None if one has a mistake, which is then reported."""
     try:
         required = None if item.require is None else truth(item.require, scope)
-        found = [(truth(one.formula, scope), one.scope or "throughout") for one in item.unless]
+        result = [
+            (truth(unless.formula, scope), unless.scope or "throughout") for unless in item.unless
+        ]
         condition = None if item.when is None else truth(item.when, scope)
     except TooDeepError:
         scope.report(rule_messages.too_deep("formula", item.name))
@@ -145,10 +153,12 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
     except TooLargeError:
         scope.report(rule_messages.too_large("formula", item.name))
         return None
-    exemptions = tuple(Exemption(formula, when) for formula, when in found if formula is not None)
-    whole = len(exemptions) == len(found) and (condition is not None or item.when is None)
+    exemptions = tuple(Exemption(formula, when) for formula, when in result if formula is not None)
+    whole = len(exemptions) == len(result) and (condition is not None or item.when is None)
     # What depends on an option alone says nothing once that is known.
-    exemptions = tuple(one for one in exemptions if one.formula != Constant(False))
+    exemptions = tuple(
+        exemption for exemption in exemptions if exemption.formula != Constant(False)
+    )
     condition = None if condition == Constant(True) else condition
     return None if required is None or not whole else _Parts(required, exemptions, condition)
 
@@ -176,7 +186,7 @@ def _with_exceptions(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formul
     try:
         return exempted(formula, exemptions)
     except NoStretchError:
-        wrong = next(one for one in item.unless if one.scope != "initially")
+        wrong = next(unless for unless in item.unless if unless.scope != "initially")
         require = None if item.require is None else item.require.span
         scope.report(say.no_stretch(wrong, wrong.scope or "", require))
     except BoundedPhaseError:
@@ -187,7 +197,7 @@ def _with_exceptions(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formul
 
 
 def _throughout(item: tree.RuleItem) -> tree.Unless:
-    return [one for one in item.unless if one.scope in (None, "throughout")][-1]
+    return [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
 
 
 def _guards_a_stretch(formula: Formula) -> bool:
@@ -196,11 +206,11 @@ def _guards_a_stretch(formula: Formula) -> bool:
 
 
 def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
-    for one in item.variables:
-        if one.name.text not in scope.used:
+    for variable in item.variables:
+        if variable.name.text not in scope.used:
             yield UNUSED_VARIABLE.at(
-                one.span,
-                f"the formula of `{item.name.text}` says nothing about `{one.name.text}`",
+                variable.span,
+                f"the formula of `{item.name.text}` says nothing about `{variable.name.text}`",
                 expected="not used in `require`",
                 help="leave the variable out, or speak of it",
                 severity="warning",

@@ -32,16 +32,16 @@ class Told:
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
         """The value of a signal or an enumeration."""
-        found = self.said.get((name, items))
-        if found is None and (name, items) in self.read:
-            found = self.vocabulary.declarations[name].default
-        return Unknown(name, items) if found is None else found
+        result = self.said.get((name, items))
+        if result is None and (name, items) in self.read:
+            result = self.vocabulary.declarations[name].default
+        return Unknown(name, items) if result is None else result
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
         """The value of a quantity."""
-        found = self.value(name, items)
+        unknown = self.value(name, items)
         # A number's decimals are what is written.
-        return found if isinstance(found, Unknown) else Fraction(repr(found))
+        return unknown if isinstance(unknown, Unknown) else Fraction(repr(unknown))
 
 
 def contradicted(

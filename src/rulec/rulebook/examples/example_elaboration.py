@@ -26,17 +26,19 @@ Key = tuple[str, tuple[str, ...]]
 def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> Example:
     """The example; what is wrong with it is reported."""
     variables = dict(scope.variables)
-    for one in example.objects:
-        name, kind = one.name, one.type
+    for object_ in example.objects:
+        name, kind = object_.name, object_.type
         assert kind is not None, "the grammar asks for a type"
         known = kind.text in scope.declared.types
         if not known and not scope.declared.may_know_type(kind.text):
             scope.report(unknown_type(kind, list(scope.declared.types)))
         if name.text in variables:
             scope.report(twice("object", name, variables[name.text].span))
-        variables[name.text] = BoundVariable(kind.text if known else None, one.span, name.text)
+        variables[name.text] = BoundVariable(kind.text if known else None, object_.span, name.text)
     inside = replace(scope, variables=variables, used=set())
-    kinds = {name: one.type for name, one in variables.items() if one.type is not None}
+    kinds = {
+        name: variable.type for name, variable in variables.items() if variable.type is not None
+    }
     needed: dict[Key, Atom | Quantity] = {}
     if formula is not None:
         for what in asked(formula, kinds, scope.declared.fits):
@@ -46,7 +48,11 @@ def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> 
         example.accepts,
         tuple(_state(state, needed, inside) for state in example.states),
         example.label,
-        tuple(Variable(one.name.text, one.type.text) for one in example.objects if one.type),
+        tuple(
+            Variable(object_.name.text, object_.type.text)
+            for object_ in example.objects
+            if object_.type
+        ),
         example.span,
         tuple(state.span for state in example.states),
     )
@@ -59,14 +65,14 @@ def _state(
     places: dict[Key, Span] = {}
     unclear = False
     for fact in state.literals:
-        found = _named(fact.atom, scope)
-        value = None if found is None else _value(fact, found, scope)
-        if found is None or value is None:
+        result = _named(fact.atom, scope)
+        value = None if result is None else _value(fact, result, scope)
+        if result is None or value is None:
             unclear = True
             continue
-        key = (found.name, found.arguments)
+        key = (result.name, result.arguments)
         if said.setdefault(key, value) != value:
-            scope.report(say.contradiction(fact, found, places[key]))
+            scope.report(say.contradiction(fact, result, places[key]))
         places.setdefault(key, fact.span)
     missing = [what for key, what in needed.items() if key not in said]
     if missing and not unclear:

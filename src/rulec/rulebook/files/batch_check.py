@@ -66,8 +66,8 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
-        for one in _findings(path, data, search_path, at, recalls=recalls):
-            findings.setdefault(_identity(one), one)
+        for finding in _findings(path, data, search_path, at, recalls=recalls):
+            findings.setdefault(_identity(finding), finding)
     return Checked(tuple(files.values()), tuple(findings.values()), tuple(unread))
 
 
@@ -102,11 +102,11 @@ def _meant(
             unread += error.diagnostics
 
 
-def _identity(one: Diagnostic) -> tuple[object, ...]:
+def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
     """A vocabulary's mistakes are found again by every rulebook that uses it, by another path."""
-    place = one.place
+    place = diagnostic.place
     where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
-    return one.code, one.message, where
+    return diagnostic.code, diagnostic.message, where
 
 
 def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]:
@@ -134,15 +134,15 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]
 
 
 def _in_folder(folder: str) -> list[Path]:
-    found: list[Path] = []
+    paths: list[Path] = []
     for here, inner, names in os.walk(folder, onerror=_locked):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
-        found += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
-    if not found:
+        paths += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
+    if not paths:
         message = "there is no rulebook and no vocabulary in this folder"
         way_out = "give a folder with files whose names end in `.rules`"
         raise UNREADABLE_FILE.error(SourceLocation(folder), message, help=way_out)
-    return found
+    return paths
 
 
 def _locked(problem: OSError) -> NoReturn:

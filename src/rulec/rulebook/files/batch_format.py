@@ -77,10 +77,10 @@ def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
 
 def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
     try:
-        (found,) = find_sources(reference, search_path)
+        (path,) = find_sources(reference, search_path)
     except RulecError:
         return None
-    return None if found == Path(reference) else found
+    return None if path == Path(reference) else path
 
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:

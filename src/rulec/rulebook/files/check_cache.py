@@ -87,12 +87,12 @@ def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
         search_path = [Path(each) for each in question.search_path]
         if not all(_as_it_was(Dependency(**one), search_path) for one in data["dependencies"]):
             return None
-        found = tuple(_diagnostic(one) for one in data["findings"])
+        diagnostics = tuple(_diagnostic(one) for one in data["findings"])
     except (OSError, ValueError, TypeError, LookupError):
         return None
     with suppress(OSError):
         os.utime(kept)
-    return found
+    return diagnostics
 
 
 def remember(
@@ -104,8 +104,8 @@ def remember(
         return
     data = {
         "stamp": question.stamp(),
-        "dependencies": [asdict(one) for one in dependencies],
-        "findings": [asdict(one) for one in findings],
+        "dependencies": [asdict(dependency) for dependency in dependencies],
+        "findings": [asdict(finding) for finding in findings],
     }
     with suppress(OSError, RulecError, ValueError):
         folder.mkdir(parents=True, exist_ok=True)
@@ -116,18 +116,22 @@ def remember(
 
 def _size(findings: Sequence[Diagnostic]) -> int:
     """How many characters of sources the findings quote, with some for their own words."""
-    places = [place for one in findings for place in (one.place, *[x.place for x in one.labels])]
+    places = [
+        place
+        for finding in findings
+        for place in (finding.place, *[x.place for x in finding.labels])
+    ]
     return sum(_WORDS + len(place.excerpt) for place in places if place is not None)
 
 
-def _as_it_was(one: Dependency, search_path: Sequence[Path]) -> bool:
-    user = Path(one.user) if one.user else None
-    locate = locate_base if one.kind == "base" else locate_vocabulary
-    path = locate(one.name, user, search_path)
-    if path is None or str(path) != one.path:
+def _as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
+    user = Path(dependency.user) if dependency.user else None
+    locate = locate_base if dependency.kind == "base" else locate_vocabulary
+    path = locate(dependency.name, user, search_path)
+    if path is None or str(path) != dependency.path:
         return False
     try:
-        return sha256(read_bytes(path)).hexdigest() == one.sha256
+        return sha256(read_bytes(path)).hexdigest() == dependency.sha256
     except RulecError:
         return False
 

@@ -42,40 +42,40 @@ class Bases:
 
 def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) -> Bases:
     """Follow the ``extends`` lines up to a rulebook that extends no other."""
-    found = Bases()
+    bases = Bases()
     here = Book(file, path)
     way = [here]
     while here.file.extends is not None:
         line = here.file.extends
         try:
             above = find_base(line.name.text, line.name.span, here.path, search_path)
-            first = next((one for one in way if _is(one, above)), None)
+            first = next((book for book in way if _is(book, above)), None)
             if first is not None or len(way) > MOST_BASES:
                 wrong = _too_many(line) if first is None else _circle(line, way)
-                found.mistakes.append(wrong)
-                found.failed = True
+                bases.mistakes.append(wrong)
+                bases.failed = True
                 break
             data = read_bytes(above, line.name.span)
             source = decode(str(above), data)
         except RulecError as error:
-            found.mistakes += error.diagnostics
-            found.failed = True
+            bases.mistakes += error.diagnostics
+            bases.failed = True
             break
         parsed, mistakes = parse(source)
         if parsed.kind == "vocabulary" and parsed.name is not None:
-            found.mistakes.append(_is_a_vocabulary(line))
-            found.failed = True
+            bases.mistakes.append(_is_a_vocabulary(line))
+            bases.failed = True
             break
-        found.mistakes += mistakes
+        bases.mistakes += mistakes
         record = source_file(above.name, data)
-        found.sources.append(record)
+        bases.sources.append(record)
         user = str(here.path or "")
         needed = Dependency("base", line.name.text, user, str(above), record.sha256)
-        found.dependencies.append(needed)
+        bases.dependencies.append(needed)
         here = Book(parsed, above)
         way.append(here)
-        found.books.insert(0, here)
-    return found
+        bases.books.insert(0, here)
+    return bases
 
 
 def _is(book: Book, path: Path) -> bool:
@@ -90,16 +90,18 @@ def source_file(name: str, data: bytes) -> SourceFile:
 
 
 def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
-    names = [f"`{one.file.name.text}`" if one.file.name else "a rulebook" for one in way]
+    names = [f"`{book.file.name.text}`" if book.file.name else "a rulebook" for book in way]
     chain = " extends ".join([*names, f"`{line.name.text}`"])
-    others = [one.file.extends for one in way if one.file.extends not in (None, line)]
+    others = [book.file.extends for book in way if book.file.extends not in (None, line)]
     return EXTENDS_CIRCLE.at(
         line.name.span,
         f"the rulebooks go round in a circle: {chain}",
         expected="this closes the circle",
         help="the most general of them extends no other: leave its `extends` line out",
         labels=tuple(
-            Label(one.span.place, f"`{one.name.text}` is extended here") for one in others if one
+            Label(extends_line.span.place, f"`{extends_line.name.text}` is extended here")
+            for extends_line in others
+            if extends_line
         ),
     )
 

@@ -45,9 +45,9 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
         path = Path(text)
         inside = path / f"{path.name}{_SUFFIX}"
         return inside if _is_file(inside) else path
-    found = _by_name(text, search_path)
-    if found is not None:
-        return found
+    result = _by_name(text, search_path)
+    if result is not None:
+        return result
     known = available_rulebooks(search_path)
     missing = _no_rulebook(text, known)
     raise RulecError(replace(missing, help=suggest(text, known), notes=(BY_PATH,)))
@@ -63,13 +63,13 @@ def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
 
 def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
     """The names that ``find_rulebook`` knows, in alphabetical order."""
-    found: set[str] = set()
+    names: set[str] = set()
     for folder in _folders(search_path):
         for path in _rules_files(folder):
             named_like_folder = path.parent != folder and path.stem == path.parent.name
             if (path.parent == folder or named_like_folder) and _lead(path) == "rulebook":
-                found.add(path.stem)
-    return tuple(sorted(found))
+                names.add(path.stem)
+    return tuple(sorted(names))
 
 
 def available_vocabularies(search_path: Sequence[Path] = ()) -> tuple[Path, ...]:
@@ -83,9 +83,9 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     Raises:
         RulecError: R0703 at the ``use`` line.
     """
-    found = locate_vocabulary(name, user, search_path)
-    if found is not None:
-        return found
+    result = locate_vocabulary(name, user, search_path)
+    if result is not None:
+        return result
     known = [path.stem for path in _vocabularies_in(_vocabulary_folders(user, search_path))]
     raise NAME_NOT_FOUND.error(
         use.place,
@@ -110,9 +110,9 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
     Raises:
         RulecError: R0703 at the ``extends`` line.
     """
-    found = locate_base(name, user, search_path)
-    if found is not None:
-        return found
+    path = locate_base(name, user, search_path)
+    if path is not None:
+        return path
     missing = _no_rulebook(name, available_rulebooks([*_around(user), *search_path]))
     expected = "expected the name of a rulebook"
     looked = f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
@@ -191,8 +191,8 @@ def _lead(path: Path) -> str:
             text = stream.read(_LEAD_BYTES).decode("utf-8-sig", "replace")
     except OSError:
         return ""
-    found = _LEAD.match(text)
-    return found[1] if found else ""
+    match_ = _LEAD.match(text)
+    return match_[1] if match_ else ""
 
 
 def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:

@@ -123,7 +123,7 @@ def _settings(loaded: Loaded) -> list[str]:
 
 
 def _rule(rule: Rule) -> Iterator[str]:
-    about = ", ".join(f"{one.name}: {one.type}" for one in rule.variables)
+    about = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     if rule.says or rule.cite:
         yield f"# {' '.join(part for part in (rule.cite, rule.says) if part)}"
     head = f"{rule.name} ({about})" if about else rule.name

@@ -17,10 +17,10 @@ def description(span: Span) -> str:
     if sign:
         return behind.strip()
     first, _ = source.position(span.start)
-    found: list[str] = []
+    names: list[str] = []
     for number in range(first - 1, 0, -1):
         line = source.line(number).strip()
         if not line.startswith("#"):
             break
-        found.insert(0, line.lstrip("#").strip())
-    return " ".join(filter(None, found))
+        names.insert(0, line.lstrip("#").strip())
+    return " ".join(filter(None, names))

@@ -62,7 +62,7 @@ def names_in(formula: tree.Formula) -> Iterator[str]:
     """Every name in a formula, those in bounds included, with repetitions."""
     for use in atoms_in(formula):
         yield use.name.text
-        yield from (one.text for one in use.arguments)
+        yield from (argument.text for argument in use.arguments)
     for bound in _bounds(formula):
         for side in (bound.low, bound.high):
             if isinstance(side, tree.AtomUse):

@@ -13,15 +13,17 @@ def variables_of(
     parameters: tuple[tree.Parameter, ...], declared: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     """Variables with their types; what is wrong with them is added to ``mistakes``."""
-    found: dict[str, BoundVariable] = {}
-    for one in parameters:
-        name, type_ = one.name, one.type
+    bound_variables: dict[str, BoundVariable] = {}
+    for parameter in parameters:
+        name, type_ = parameter.name, parameter.type
         assert type_ is not None, "the grammar asks for a variable's type"
         known = type_.text in declared.types
         if not known and not declared.may_know_type(type_.text):
             mistakes.append(unknown_type(type_, list(declared.types)))
-        if name.text in found:
-            mistakes.append(twice("variable", name, found[name.text].span))
+        if name.text in bound_variables:
+            mistakes.append(twice("variable", name, bound_variables[name.text].span))
         else:
-            found[name.text] = BoundVariable(type_.text if known else None, one.span, name.text)
-    return found
+            bound_variables[name.text] = BoundVariable(
+                type_.text if known else None, parameter.span, name.text
+            )
+    return bound_variables

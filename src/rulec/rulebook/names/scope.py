@@ -97,9 +97,9 @@ class Scope:
 
     def behind(self, name: str) -> Declared_ | None:
         """The signal or quantity of that name, or the enumeration that has such a value."""
-        found = self.declared.items.get(name)
-        if isinstance(found, QuantityDeclaration):
-            return found
+        quantity = self.declared.items.get(name)
+        if isinstance(quantity, QuantityDeclaration):
+            return quantity
         return self.declared.behind_atom(name)
 
     def relation_names(self) -> list[str]:
@@ -151,13 +151,13 @@ class Scope:
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
         """The ways to read ``b_v`` as ``b(v)``."""
-        found: list[tuple[str, str]] = []
+        result: list[tuple[str, str]] = []
         for position in (at for at, letter in enumerate(name) if letter == "_"):
             head, variable = name[:position], name[position + 1 :]
             item = self.behind(head)
             if item is not None and len(item.parameters) == 1 and variable in self.variables:
-                found.append((head, variable))
-        return found
+                result.append((head, variable))
+        return result
 
     def _checked(
         self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
@@ -165,7 +165,7 @@ class Scope:
         item = self.behind(name)
         assert item is not None, "only called for known names"
         if len(arguments) != len(item.parameters):
-            self.used |= {one.text for one in arguments}
+            self.used |= {argument.text for argument in arguments}
             self.report(
                 atom_messages.wrong_number(use, item, self.declared, self.variables, name=name)
             )
@@ -174,12 +174,12 @@ class Scope:
             self.object(one, wanted, (item.name, position))
             for position, (one, wanted) in enumerate(zip(arguments, item.parameters, strict=True))
         ]
-        found = tuple(one for one in actual if one is not None)
-        if len(found) < len(actual):
+        names = tuple(one for one in actual if one is not None)
+        if len(names) < len(actual):
             return None
         if isinstance(item, QuantityDeclaration):
-            return Quantity(item.name, found)
-        return Atom(item.name, found, name if isinstance(item, Enumeration) else None)
+            return Quantity(item.name, names)
+        return Atom(item.name, names, name if isinstance(item, Enumeration) else None)
 
     def object(
         self,

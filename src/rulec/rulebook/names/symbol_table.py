@@ -83,13 +83,13 @@ class SymbolTable:
 
     def about_one(self) -> list[str]:
         """The atoms about one object."""
-        found = ((name, self.behind_atom(name)) for name in self.atoms())
-        return [name for name, item in found if item is not None and len(item.parameters) == 1]
+        generator = ((name, self.behind_atom(name)) for name in self.atoms())
+        return [name for name, item in generator if item is not None and len(item.parameters) == 1]
 
     def behind_atom(self, name: str) -> Signal | Enumeration | None:
         """The signal of that name, or the enumeration that has such a value."""
-        found = self.items.get(name)
-        return found if isinstance(found, Signal) else self.value_of.get(name)
+        signal = self.items.get(name)
+        return signal if isinstance(signal, Signal) else self.value_of.get(name)
 
     def may_know(self, name: str) -> bool:
         """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
@@ -102,12 +102,12 @@ class SymbolTable:
 
     def ancestors(self, type_name: str) -> list[str]:
         """The type and those above it; stops where they close a circle."""
-        found: list[str] = []
+        names: list[str] = []
         current: str | None = type_name
-        while current is not None and current in self.types and current not in found:
-            found.append(current)
+        while current is not None and current in self.types and current not in names:
+            names.append(current)
             current = self.types[current].parent
-        return found
+        return names
 
     def fits(self, type_name: str, wanted: str) -> bool:
         """Is every ``type_name`` a ``wanted``, as far as can be told?"""
@@ -118,7 +118,7 @@ class SymbolTable:
 
 def declare(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
     """The declarations of used vocabularies and of the file that uses them, in this order."""
-    vocabularies = {one.span.source for one in files if one.name and one.kind == "vocabulary"}
+    vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
     declared = SymbolTable(
         of_vocabularies=vocabularies,
         opaque=opaque or not all(file.complete for file in files),
@@ -139,8 +139,8 @@ def declare(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
 
 def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
     """The last line that uses a vocabulary."""
-    (name,) = (one.name.text for one in files if one.name and one.span.source == vocabulary)
-    return [use for one in files for use in one.uses if use.name.text == name][-1]
+    (name,) = (file.name.text for file in files if file.name and file.span.source == vocabulary)
+    return [use for file in files for use in file.uses if use.name.text == name][-1]
 
 
 def _note_clashes(declared: SymbolTable, files: Sequence[tree.File]) -> None:
@@ -210,9 +210,9 @@ def _roots(declared: SymbolTable, file: tree.File) -> list[str]:
     """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
-        one.name
-        for one in declared.types.values()
-        if one.parent is None and (file.kind == "rulebook" or one.name in own)
+        type_.name
+        for type_ in declared.types.values()
+        if type_.parent is None and (file.kind == "rulebook" or type_.name in own)
     ]
 
 
@@ -267,22 +267,22 @@ def _parameter_types(
 ) -> tuple[str, ...]:
     types: list[str] = []
     seen: dict[str, Span] = {}
-    for position, one in enumerate(parameters):
-        first = seen.setdefault(one.name.text, one.name.span)
-        if first is not one.name.span:
-            declared.mistakes.append(twice("parameter", one.name, first))
+    for position, parameter in enumerate(parameters):
+        first = seen.setdefault(parameter.name.text, parameter.name.span)
+        if first is not parameter.name.span:
+            declared.mistakes.append(twice("parameter", parameter.name, first))
         if name.text not in declared.spans:
-            declared.parameter_spans[name.text, position] = one.span
-        if one.type is not None:
-            types.append(one.type.text)
-            if one.type.text not in declared.types:
-                _unknown_type(declared, one.type)
+            declared.parameter_spans[name.text, position] = parameter.span
+        if parameter.type is not None:
+            types.append(parameter.type.text)
+            if parameter.type.text not in declared.types:
+                _unknown_type(declared, parameter.type)
         elif len(roots) == 1:
             types.append(roots[0])
         else:
             types.append("")
             if not (declared.opaque or declared.opaque_types or declared.suspects):
-                declared.mistakes.append(which_type(one, roots))
+                declared.mistakes.append(which_type(parameter, roots))
     return tuple(types)
 
 

@@ -84,38 +84,42 @@ def _check_definition(
     item: tree.DefineItem, declared: SymbolTable, provisions: ConstantsAndMacros
 ) -> list[Diagnostic]:
     mistakes: list[Diagnostic] = []
-    typed = tuple(one for one in item.parameters if one.type is not None)
+    typed = tuple(parameter_ for parameter_ in item.parameters if parameter_.type is not None)
     variables = variables_of(typed, declared, mistakes)
     seen: dict[str, tree.Parameter] = {}
-    for one in item.parameters:
-        first = seen.setdefault(one.name.text, one)
+    for parameter_ in item.parameters:
+        first = seen.setdefault(parameter_.name.text, parameter_)
         # Two with types have been found already.
-        if first is not one and (first.type is None or one.type is None):
-            mistakes.append(twice("parameter", one.name, first.span))
+        if first is not parameter_ and (first.type is None or parameter_.type is None):
+            mistakes.append(twice("parameter", parameter_.name, first.span))
     scope = Scope(
         declared,
         provisions,
         variables,
         mistakes,
-        relations={one.name.text: Anything() for one in item.parameters if one.type is None},
+        relations={
+            parameter_.name.text: Anything()
+            for parameter_ in item.parameters
+            if parameter_.type is None
+        },
         calls=(Call(item.name.text, None),),
-        taken=frozenset(one.name.text for one in item.parameters),
+        taken=frozenset(parameter_.name.text for parameter_ in item.parameters),
         of_definition=True,
     )
-    found = None
+    result = None
     try:
-        found = meaning(item.body, scope)
+        result = meaning(item.body, scope)
     except TooDeepError:
         scope.report(rule_messages.too_deep("definition", item.name))
     except TooLargeError:
         scope.report(rule_messages.too_large("definition", item.name))
-    wrong = any(one.severity == "error" for one in mistakes)
+    wrong = any(mistake.severity == "error" for mistake in mistakes)
     if wrong or not provisions.broken.isdisjoint(names_used(item)):
         provisions.broken.add(item.name.text)
-    elif found is not None:
+    elif result is not None:
         mistakes += (
-            rule_messages.unused_parameter(item, one)
-            for one in item.parameters
-            if one.name.text not in scope.used
+            rule_messages.unused_parameter(item, parameter_)
+            for parameter_ in item.parameters
+            if parameter_.name.text not in scope.used
         )
     return mistakes

@@ -61,8 +61,8 @@ class ConstantsAndMacros:
 
     def names(self) -> list[str]:
         """All of them."""
-        found = self.overlay
-        return [*found.options, *found.parameters, *found.definitions]
+        overlay = self.overlay
+        return [*overlay.options, *overlay.parameters, *overlay.definitions]
 
     def may_know(self, name: str) -> bool:
         """Could the name be given by what could not be read?"""

@@ -34,11 +34,11 @@ def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
     """The value in force: of the rulebook nearest to the one in question that has any."""
     name, provisions = use.name.text, scope.provisions
     values = provisions.overlay.parameters[name]
-    good = [one for one in values if in_force(one.item.in_force, provisions.at)]
-    nearest = max((one.level for one in good), default=0)
-    candidates = [one for one in good if one.level == nearest]
+    good = [value for value in values if in_force(value.item.in_force, provisions.at)]
+    nearest = max((value.level for value in good), default=0)
+    candidates = [value for value in good if value.level == nearest]
     if not candidates:
-        if not any(never_in_force(one.item.in_force) for one in values):
+        if not any(never_in_force(value.item.in_force) for value in values):
             scope.report(say.no_value_in_force(use, values, provisions.at))
         return None
     if len(candidates) > 1:
@@ -60,21 +60,21 @@ def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
         used=set(),
     )
     with scope.provisions.one_deeper():
-        found = evaluate(item.value, inner)
-    if found is None:
+        number = evaluate(item.value, inner)
+    if number is None:
         return None
     wanted = _dimension(name, scope)
     if wanted is None:
         wanted = _first_value(name, value, inner, evaluate)
-    if wanted is not None and found.dimension not in (None, wanted):
+    if wanted is not None and number.dimension not in (None, wanted):
         first = scope.provisions.overlay.declared_at[name]
-        scope.report(say.parameter_of_another_kind(item, found, wanted, first))
+        scope.report(say.parameter_of_another_kind(item, number, wanted, first))
         return None
-    if found.dimension is not None:
-        return found
+    if number.dimension is not None:
+        return number
     # A bare 0 has the dimension that is asked for.
     dimension = wanted or DIMENSIONS["number"]
-    zeros = ((when, replace(linear, dimension=dimension)) for when, linear in found.cases)
+    zeros = ((when, replace(linear, dimension=dimension)) for when, linear in number.cases)
     return Number(tuple(zeros))
 
 
@@ -92,5 +92,5 @@ def _first_value(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> D
     first = scope.provisions.overlay.parameters[name][0]
     if first is value or isinstance(first.item.value, bool):
         return None
-    found = evaluate(first.item.value, replace(scope, mistakes=[]))
-    return None if found is None else found.dimension
+    number = evaluate(first.item.value, replace(scope, mistakes=[]))
+    return None if number is None else number.dimension

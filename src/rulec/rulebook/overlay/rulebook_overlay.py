@@ -284,12 +284,15 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
         examples=() if over.examples else base.examples,
     )
     spoken_of = {*names_used(inherited), *names_in_examples(inherited)}
-    kept = {one.name.text for one in over.variables}
+    kept = {variable.name.text for variable in over.variables}
     return [
-        one
-        for one in base.variables
-        if one.name.text not in kept
-        and any(name == one.name.text or name.endswith(f"_{one.name.text}") for name in spoken_of)
+        variable
+        for variable in base.variables
+        if variable.name.text not in kept
+        and any(
+            name == variable.name.text or name.endswith(f"_{variable.name.text}")
+            for name in spoken_of
+        )
     ]
 
 

@@ -132,7 +132,10 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
 
 
 def _light(cycle: Any) -> Light:
-    phases = tuple((one.state.value, int(one.duration)) for one in cycle.cycle_elements)
+    phases = tuple(
+        (cycle_element.state.value, int(cycle_element.duration))
+        for cycle_element in cycle.cycle_elements
+    )
     if not phases or min(duration for _, duration in phases) <= 0:
         raise ValueError("a traffic light has a phase that does not last")
     return Light(int(cycle.time_offset), phases)

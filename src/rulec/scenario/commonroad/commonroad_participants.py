@@ -24,10 +24,10 @@ from rulec.scenario.recorded.track import rectangles
 
 def commonroad_participants(scenario: Any) -> Iterator[Participant]:
     """All obstacles of a scenario of the library's, in its order."""
-    for one in scenario.static_obstacles:
-        yield _participant(one, [one.initial_state], standing=True)
-    for one in scenario.dynamic_obstacles:
-        yield _participant(one, _states_of(one), standing=False)
+    for static_obstacle in scenario.static_obstacles:
+        yield _participant(static_obstacle, [static_obstacle.initial_state], standing=True)
+    for dynamic_obstacle in scenario.dynamic_obstacles:
+        yield _participant(dynamic_obstacle, _states_of(dynamic_obstacle), standing=False)
     for one in scenario.environment_obstacle:
         outline = _corners(one.occupancy_at_time(0))
         yield Participant(str(one.obstacle_id), one.obstacle_type.value, True, {}, {0: outline})

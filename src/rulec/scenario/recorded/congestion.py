@@ -25,8 +25,9 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
     """Is it, and how was that found?"""
     speeds = [
         speed * _KMH
-        for one in obstacles
-        if "vehicle" in (one.type, *one.broader) and (speed := _speed(one, road)) is not None
+        for obstacle in obstacles
+        if "vehicle" in (obstacle.type, *obstacle.broader)
+        and (speed := _speed(obstacle, road)) is not None
     ]
     if len(speeds) < FEWEST:
         return (

@@ -14,7 +14,7 @@ _EVERY_M = 0.5
 
 def road_crossings(view: TrafficView) -> tuple[Stretch, ...]:
     """The stretches of the road that crosswalks take up; each reaches across the whole road."""
-    found = []
+    stretches = []
     road = view.road
     for lanelet in view.recording.lanelets.values():
         if "crosswalk" not in lanelet.types:
@@ -25,5 +25,5 @@ def road_crossings(view: TrafficView) -> tuple[Stretch, ...]:
         if len(on_road):
             low, high = max(float(on_road.min()), road.s_min), min(float(on_road.max()), road.s_max)
             if high - low >= _NARROWEST_M:
-                found.append(Stretch("crossing", (low, high)))
-    return tuple(found)
+                stretches.append(Stretch("crossing", (low, high)))
+    return tuple(stretches)

@@ -40,7 +40,9 @@ def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
     """Where the chosen ego is. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
-        one.id: one.states for one in recording.participants if one.states and not one.standing
+        participant.id: participant.states
+        for participant in recording.participants
+        if participant.states and not participant.standing
     }
     if not problems and not moving:
         message = "nobody moves in the file, and it has no planning problem"
@@ -77,13 +79,15 @@ def _of_problem(
             + (f", or choose a vehicle with --ego: {others}" if others else ""),
             file,
         )
-    own = (one.id for one in recording.participants if _is_ego(one, problem))
+    own = (
+        participant.id for participant in recording.participants if _is_ego(participant, problem)
+    )
     return EgoStart(next(own, None), problem.step, problem.start, problem.goals)
 
 
-def _is_ego(one: Participant, problem: PlanningProblem) -> bool:
+def _is_ego(participant: Participant, problem: PlanningProblem) -> bool:
     """Some files have ego's own recorded drive among the obstacles, starting in its place."""
-    state = one.states.get(problem.step)
+    state = participant.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
@@ -91,12 +95,14 @@ def _is_ego(one: Participant, problem: PlanningProblem) -> bool:
 def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
     """Ego's length and width (m): as chosen, and as recorded; 0 where that is not known."""
     length, width = 0.0, 0.0
-    for one in recording.participants:
-        if one.id == start.participant:
-            heading = one.states[start.step].heading
+    for participant in recording.participants:
+        if participant.id == start.participant:
+            heading = participant.states[start.step].heading
             ahead = np.array([cos(heading), sin(heading)])
             left = np.array([-ahead[1], ahead[0]])
-            length, width = (float(np.ptp(one.outlines[start.step] @ way)) for way in (ahead, left))
+            length, width = (
+                float(np.ptp(participant.outlines[start.step] @ way)) for way in (ahead, left)
+            )
     return length, width if choice.ego_width_m is None else choice.ego_width_m
 
 

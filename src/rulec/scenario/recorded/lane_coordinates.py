@@ -167,7 +167,7 @@ def _usual_widths(
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
     """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
-    found = []
+    result = []
     for k in range(max(map(len, rows))):
         present = np.array([len(row) > k for row in rows])
         own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
@@ -177,21 +177,21 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
         if known.any():
             width = np.interp(strip.grid, strip.grid[known], width[known])
         inner = inner + width if left else inner - width
-        found.append((width, present))
-    return found
+        result.append((width, present))
+    return result
 
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
     """The offset of the lanelets' left or right bound at the places of the grid."""
-    found = [np.empty((0, 2))]
+    result = [np.empty((0, 2))]
     for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:
             continue
         bound = densified(lanelet.left if left else lanelet.right, _EVERY_M)
         places = strip.line.coordinates(bound)
         near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
-        found.append(places[near])
-    places = np.concatenate(found)
+        result.append(places[near])
+    places = np.concatenate(result)
     if not len(places):
         raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]

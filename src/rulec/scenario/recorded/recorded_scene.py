@@ -51,24 +51,24 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
     road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
     view = TrafficView(recording, line, lanes, ego_s, at_s, road.outline)
-    found = tuple(traffic_obstacles(view, start.participant, choice.prediction))
+    obstacles = tuple(traffic_obstacles(view, start.participant, choice.prediction))
     told = {
-        **_traffic_signals(view, found, choice),
+        **_traffic_signals(view, obstacles, choice),
         **_map_signals(view, way, own, start.step),
     }
-    others = sum(one.id != start.participant for one in recording.participants)
+    others = sum(participant.id != start.participant for participant in recording.participants)
     return Scenario(
         recording.name,
         replace(road, surfaces=road_crossings(view)),
         Ego(0.0, d, *ego_size(recording, start, choice)),
-        found,
+        obstacles,
         {name: value for name, (value, _) in told.items()},
         step_s=STEP_S,
         about=f"{recording.form} {recording.name}",
         account=Account(
             own,
             others,
-            others - len(found),
+            others - len(obstacles),
             view.until_s,
             {name: how for name, (_, how) in told.items()},
             recording.remarks,

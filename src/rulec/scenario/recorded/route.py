@@ -65,14 +65,14 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
 def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
     """The lanes that hold one of the places, and those beside them that lead the same way."""
     points = shapely.points(places)
-    found = {
+    names = {
         lanelet.id
         for lanelet in recording.lanelets.values()
         if is_lane(lanelet) and bool(shapely.intersects(lanelet_area(lanelet), points).any())
     }
     return frozenset(
         y
-        for x in found
+        for x in names
         for y in (
             x,
             *lanes_beside(recording, x, left=True),
@@ -83,16 +83,16 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
 
 def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
     """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
-    found: list[str] = []
+    names: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
         number = lanelet.left_of if left else lanelet.right_of
-        if number is None or number in (start, *found) or number not in recording.lanelets:
-            return tuple(found)
+        if number is None or number in (start, *names) or number not in recording.lanelets:
+            return tuple(names)
         lanelet = recording.lanelets[number]
         if not is_lane(lanelet):
-            return tuple(found)
-        found.append(number)
+            return tuple(names)
+        names.append(number)
 
 
 def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[str, ...]:
@@ -198,5 +198,5 @@ def _direction(one: Iterable[float], other: Iterable[float]) -> float:
     return atan2(y1 - y0, x1 - x0)
 
 
-def _turn(one: float, other: float) -> float:
-    return (other - one + pi) % (2 * pi) - pi
+def _turn(left: float, right: float) -> float:
+    return (right - left + pi) % (2 * pi) - pi

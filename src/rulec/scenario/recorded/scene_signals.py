@@ -37,21 +37,21 @@ def map_signals(
     each other, ``step`` the one at which time 0 is.
     """
     own = ahead[0]
-    found: dict[str, tuple[SignalValue, str]] = {}
+    result: dict[str, tuple[SignalValue, str]] = {}
     here = f"lanelet {own.id}"
     if own.limit_mps is not None:
-        found["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
+        result["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
     for sign, signal in _SIGNS.items():
         if sign in own.signs:
-            found[signal] = True, f"the sign of {here}"
+            result[signal] = True, f"the sign of {here}"
     if own.types & _MOTORWAYS:
-        found["road_class"] = "motorway", f"the type of {here}"
+        result["road_class"] = "motorway", f"the type of {here}"
     count = _COUNTS.get(lanes, "three_or_more_lanes")
-    found["lanes"] = count, f"{lanes} at ego's place that lead its way"
-    lit = next((one for one in ahead[:LANELETS_TO_A_LIGHT] if one.lights), None)
+    result["lanes"] = count, f"{lanes} at ego's place that lead its way"
+    lit = next((lanelet for lanelet in ahead[:LANELETS_TO_A_LIGHT] if lanelet.lights), None)
     if lit is not None:
         steps = range(step, step + round(LIGHT_FOR_S / step_s) + 1)
         shown = {light.colour_at(k) for light in lit.lights for k in steps}
         if len(shown) == 1 and (colour := shown.pop()) in _COLOURS:
-            found["light"] = _COLOURS[colour], f"the traffic lights of lanelet {lit.id}"
-    return found
+            result["light"] = _COLOURS[colour], f"the traffic lights of lanelet {lit.id}"
+    return result

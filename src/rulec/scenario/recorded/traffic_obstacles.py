@@ -52,7 +52,11 @@ class TrafficView:
     @property
     def until_s(self) -> float:
         """The scenario's time (s) at which the recording ends."""
-        steps = (max(one.outlines) for one in self.recording.participants if not one.standing)
+        steps = (
+            max(participant.outlines)
+            for participant in self.recording.participants
+            if not participant.standing
+        )
         return self.time(max(steps, default=0))
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
@@ -77,7 +81,7 @@ def traffic_obstacles(
 ) -> Iterator[Obstacle]:
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
-    others = [one for one in view.recording.participants if one.id != ego]
+    others = [participant for participant in view.recording.participants if participant.id != ego]
     for one, steps, own in _laid_out(view, others):
         motions = [
             (weight, motion)
@@ -109,9 +113,11 @@ def _laid_out(
     """Everybody's steps from time 0 on, and the bounds in them: many at once, but not all."""
     waiting: list[tuple[Participant, list[int]]] = []
     count = 0
-    for number, one in enumerate(others, 1):
-        steps = [k for k in sorted(one.outlines) if one.standing or view.time(k) >= 0]
-        waiting.append((one, steps))
+    for number, participant in enumerate(others, 1):
+        steps = [
+            k for k in sorted(participant.outlines) if participant.standing or view.time(k) >= 0
+        ]
+        waiting.append((participant, steps))
         count += len(steps)
         if count >= _AT_ONCE or number == len(others):
             boxes = iter(view.boxes([x.outlines[k] for x, known in waiting for k in known]))
@@ -122,18 +128,22 @@ def _laid_out(
 
 def _motion(
     view: TrafficView,
-    one: Participant,
+    participant: Participant,
     steps: Sequence[int],
     boxes: Sequence[Box | None],
     prediction: Prediction,
 ) -> Motion | None:
     """None if it is never on the road, or not there at time 0 where that decides."""
-    now = boxes[0] if steps and (one.standing or view.time(steps[0]) == 0) else None
-    if one.standing or prediction == "constant" or (now and len(one.outlines) == 1):
+    now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
+    if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
             return None
-        motion = _constant(view, one, steps[0], now)
-        return motion if (one.standing and now.overlaps(view.road)) or not one.standing else None
+        motion = _constant(view, participant, steps[0], now)
+        return (
+            motion
+            if (participant.standing and now.overlaps(view.road)) or not participant.standing
+            else None
+        )
     if not any(box is not None and box.overlaps(view.road) for box in boxes):
         return None
     times = [view.time(step) for step in steps]
@@ -144,10 +154,12 @@ def _motion(
     return Footprints(tuple(times), tuple(known))
 
 
-def _constant(view: TrafficView, one: Participant, step: int, box: Box) -> ConstantAcceleration:
+def _constant(
+    view: TrafficView, participant: Participant, step: int, box: Box
+) -> ConstantAcceleration:
     s, d = (box.s_min + box.s_max) / 2, (box.d_min + box.d_max) / 2
-    state = one.states.get(step)
-    if one.standing or state is None:
+    state = participant.states.get(step)
+    if participant.standing or state is None:
         return ConstantAcceleration(s, d)
     along = cos(state.heading - view.line.heading_at(s + view.ego_s))
     return ConstantAcceleration(s, d, state.speed * along, state.acceleration * along)
@@ -170,19 +182,19 @@ def _moved(box: Box, along: float) -> Box:
     return Box(box.s_min + along, box.s_max + along, box.d_min, box.d_max)
 
 
-def _walking_direction(view: TrafficView, one: Participant) -> float | None:
+def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
     """Where a pedestrian looks who never moves; nothing if motion tells."""
-    state = next(iter(one.states.values()), None)
-    if state is None or len({(x.x, x.y) for x in one.states.values()}) > 1:
+    state = next(iter(participant.states.values()), None)
+    if state is None or len({(x.x, x.y) for x in participant.states.values()}) > 1:
         return None
     place = view.line.coordinates(np.array([[state.x, state.y]]))
     turn = state.heading - view.line.heading_at(float(np.nan_to_num(place[0, 0])))
     return degrees((turn + pi) % (2 * pi) - pi)
 
 
-def _signals(one: Participant) -> dict[str, SignalValue]:
+def _signals(participant: Participant) -> dict[str, SignalValue]:
     """What the file says about a participant for good; what changes is left to the rulebook."""
-    signals: dict[str, SignalValue] = {"two_wheeled": one.type in ("motorcycle", "bicycle")}
-    if one.type == "parkedVehicle":
+    signals: dict[str, SignalValue] = {"two_wheeled": participant.type in ("motorcycle", "bicycle")}
+    if participant.type == "parkedVehicle":
         signals["parked"] = True
     return signals

@@ -50,16 +50,16 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     lights = lane_lights(net, step_s)
     links: dict[str, list[NetConnection]] = defaultdict(list)
     entries: dict[str, list[NetConnection]] = defaultdict(list)
-    for one in net.connections:
-        links[one.start].append(one)
-        entries[one.end].append(one)
-    found = {}
+    for connection in net.connections:
+        links[connection.start].append(connection)
+        entries[connection.end].append(connection)
+    result = {}
     for lane in net.lanes.values():
         if lane.id not in there:
             continue
         left, right, centre = _lines(lane, shapes[lane.id])
         towards_left = 1 if net.side == "right" else -1
-        found[lane.id] = Lanelet(
+        result[lane.id] = Lanelet(
             lane.id,
             left,
             right,
@@ -73,7 +73,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             limits.get(lane.id),
             tuple(lights.get(lane.id, ())),
         )
-    return found
+    return result
 
 
 def _shape(lane: NetLane) -> Points:
@@ -103,8 +103,10 @@ def _successors(
 ) -> dict[str, list[str]]:
     """Lane -> next lanes; a lane that is shorter than anything is passed over."""
     direct: dict[str, list[str]] = defaultdict(list)
-    for one in connections:
-        direct[one.start].append(one.via if one.via in known else one.end)
+    for connection in connections:
+        direct[connection.start].append(
+            connection.via if connection.via in known else connection.end
+        )
 
     def reached(start: str, passed: tuple[str, ...] = ()) -> Iterator[str]:
         for end in direct.get(start, ()):

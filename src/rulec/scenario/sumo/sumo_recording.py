@@ -104,14 +104,14 @@ def _check_near(
     """Is everybody near the roads? Raises RulecError R0615."""
     roads = np.concatenate([lanelet.centre for lanelet in lanelets])
     low, high = roads.min(axis=0) - NEAR_M, roads.max(axis=0) + NEAR_M
-    for one in participants:
-        state = one.states[next(iter(one.states))]
+    for participant in participants:
+        state = participant.states[next(iter(participant.states))]
         place = np.array([state.x, state.y])
         if (place < low).any() or (place > high).any():
             raise OTHER_NET.error(
                 SourceLocation(str(path)),
-                f"`{short(one.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all roads "
-                "of the net",
+                f"`{short(participant.id)}` is at x = {state.x:g}, y = {state.y:g}, "
+                "far from all roads of the net",
                 help="have SUMO write places in the net's own metres, without "
                 "--fcd-output.geo and --fcd-output.utm",
             )

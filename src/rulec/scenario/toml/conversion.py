@@ -84,12 +84,12 @@ def _stretches(raw: object, findings: Findings) -> tuple[Stretch, ...]:
         table = read_table(RawSurface, item, place, findings)
         if table is None or not check_interval(table.s, place, "s", findings):
             continue
-        for other in stretches:
-            apart = table.s[1] <= other.s[0] or other.s[1] <= table.s[0]
-            if not apart and table.type != other.surface:
+        for stretch in stretches:
+            apart = table.s[1] <= stretch.s[0] or stretch.s[1] <= table.s[0]
+            if not apart and table.type != stretch.surface:
                 findings.add(
                     INCONSISTENT_SCENARIO,
-                    f"{place.words} is {table.type} where another one is {other.surface}",
+                    f"{place.words} is {table.type} where another one is {stretch.surface}",
                     place,
                     "s",
                     expected="one surface in one place",

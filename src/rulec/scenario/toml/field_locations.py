@@ -52,7 +52,7 @@ class TomlText:
 
     @cached_property
     def _lines(self) -> dict[tuple[str, int, str | None], int]:
-        found: dict[tuple[str, int, str | None], int] = {}
+        result: dict[tuple[str, int, str | None], int] = {}
         counts: dict[str, int] = {}
         heading, number = "", 0
         for line, text in enumerate(self.source.text.split("\n"), start=1):
@@ -62,7 +62,7 @@ class TomlText:
                     counts[heading] = counts.get(heading, 0) + 1
                 owner = heading if heading in counts else heading.rpartition(".")[0]
                 number = counts.get(owner, 0)
-                found.setdefault((heading, number, None), line)
+                result.setdefault((heading, number, None), line)
             elif match := _KEY.match(text):
-                found.setdefault((heading, number, match.group(2)), line)
-        return found
+                result.setdefault((heading, number, match.group(2)), line)
+        return result

@@ -80,7 +80,7 @@ def _check_unique(
 
 
 def _check_direction(obstacle: Obstacle, place: TomlTable, findings: Findings) -> None:
-    motions = (obstacle.motion, *(one.motion for one in obstacle.alternatives))
+    motions = (obstacle.motion, *(alternative.motion for alternative in obstacle.alternatives))
     standing = obstacle.walking_direction is None and any(map(stands_forever, motions))
     if obstacle.type == PEDESTRIAN and standing:
         findings.add(

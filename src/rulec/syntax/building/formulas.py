@@ -78,9 +78,9 @@ def _bound(values: Values, nodes: Sequence[Branch | Leaf]) -> tree.Bound | None:
     (node,) = nodes
     assert isinstance(node, Branch), "a bound is no token"
     first, *others = (
-        atom(values, one) if one.kind == "atom" else amount(values, one)
-        for one in node.children
-        if isinstance(one, Branch)
+        atom(values, child) if child.kind == "atom" else amount(values, child)
+        for child in node.children
+        if isinstance(child, Branch)
     )
     span = values.span(node)
     if leaves(node, "AT_MOST"):
@@ -105,9 +105,9 @@ def parameter(values: Values, node: Branch) -> tree.Parameter:
 def parameters(values: Values, node: Branch) -> tuple[tree.Parameter, ...]:
     """A declaration's or definition's parameters, or a rule's variables."""
     return tuple(
-        parameter(values, one)
+        parameter(values, branch)
         for group in (*branches(node, "parameters"), *branches(node, "variables"))
-        for one in (*branches(group, "parameter"), *branches(group, "variable"))
+        for branch in (*branches(group, "parameter"), *branches(group, "variable"))
     )
 
 

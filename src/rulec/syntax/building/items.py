@@ -93,8 +93,8 @@ def value_of(values: Values, node: Branch) -> tree.Formula:
 
 
 def _dates(values: Values, node: Branch) -> tree.InForce | None:
-    found = branches(node, "in_force")
-    return in_force(values, found[0]) if found else None
+    result = branches(node, "in_force")
+    return in_force(values, result[0]) if result else None
 
 
 def in_force(values: Values, node: Branch) -> tree.InForce:

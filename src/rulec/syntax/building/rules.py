@@ -86,7 +86,7 @@ def example_head(values: Values, node: Branch) -> ExampleHead:
 
 def state(values: Values, node: Branch) -> tree.ExampleState:
     """A state of an example."""
-    literals = tuple(_literal(values, one) for one in branches(node, "literal"))
+    literals = tuple(_literal(values, branch) for branch in branches(node, "literal"))
     return tree.ExampleState(literals, values.span(node))
 
 

@@ -31,10 +31,10 @@ def comments_of(source: Source, tokens: Sequence[Token]) -> list[Comment]:
     starts = [*(token.start for token in tokens), len(text)]
     ends = [0, *(token.end for token in tokens)]
     return [
-        _comment(source, found)
+        _comment(source, match_)
         for end, start in zip(ends, starts, strict=True)
         if start > end + 1 or (start > end and text[end] == "#")
-        for found in _COMMENT.finditer(text, end, start)
+        for match_ in _COMMENT.finditer(text, end, start)
     ]
 
 

@@ -58,7 +58,7 @@ class _Block:
             comments = self._take(start)
             mine = self._rows(part, column)
             rule = isinstance(part, RulePieces) and len(mine) > 1
-            blanks = self._blanks([*(one.start for one in comments), start], behind)
+            blanks = self._blanks([*(comment.start for comment in comments), start], behind)
             blanks[0] = blanks[0] or after_rule
             # The comments directly above a rule belong to it.
             blanks[0] = blanks[0] or (rule and not any(blanks))
@@ -69,7 +69,7 @@ class _Block:
             behind, after_rule = self.pieces.end(part), rule
         align_marks(marks)
         comments = self._take(end)
-        blanks = self._blanks([one.start for one in comments], behind)
+        blanks = self._blanks([comment.start for comment in comments], behind)
         self._add_comments(comments, [after_rule or blanks[0], *blanks[1:]] if blanks else [])
 
     def in_braces(self, parts: Sequence[Part], begin: int, end: int) -> None:
@@ -114,8 +114,8 @@ class _Block:
         return [start >= behind and blank_line_before(self.text, start) for start in starts]
 
     def _add_comments(self, comments: Sequence[Comment], blanks: Sequence[bool]) -> None:
-        for one, blank in zip(comments, blanks):  # noqa: B905 - what follows may have one more
-            self._add_row(Row(" " * self.indent + one.text), blank=blank)
+        for comment, blank in zip(comments, blanks):  # noqa: B905 - what follows may have one more
+            self._add_row(Row(" " * self.indent + comment.text), blank=blank)
 
     def _add_row(self, row: Row, *, blank: bool) -> None:
         if blank and self.rows and not self.rows[-1].opens:

@@ -47,11 +47,11 @@ class Speller:
 
     def take(self, until: int) -> tuple[Comment | None, tuple[Comment, ...]]:
         """The comments before a position: the one that trails what is before it, and the others."""
-        found: list[Comment] = []
+        comments: list[Comment] = []
         while self.holds_comment(until):
-            found.append(self.comments.popleft())
-        trailing = next((one for one in found if one.trails), None)
-        return trailing, tuple(one for one in found if one is not trailing)
+            comments.append(self.comments.popleft())
+        trailing = next((comment for comment in comments if comment.trails), None)
+        return trailing, tuple(comment for comment in comments if comment is not trailing)
 
     def holds_comment(self, until: int) -> bool:
         """Is there a comment before a position that has not been taken yet?"""
@@ -122,7 +122,7 @@ class Speller:
 
         The value is on lines of its own if it is ``broken`` off, or too long.
         """
-        at = next(index for index, one in enumerate(node.children) if _is_equals(one)) + 1
+        at = next(index for index, child in enumerate(node.children) if _is_equals(child)) + 1
         word = self.spell(node.children[0])
         assert isinstance(word, str), "a word is a leaf"
         head = run(word.ljust(column), self.plain(node.children[1:at], node.kind))

@@ -48,4 +48,4 @@ def _signs(source: Source) -> str:
 
 
 def _comments(source: Source) -> Counter[str]:
-    return Counter(one.text for one in comments_of(source, scan(source)))
+    return Counter(comment.text for comment in comments_of(source, scan(source)))
