@@ -28,63 +28,60 @@ from rulec.witnesses.undecided import UndecidedError
 
 
 def counterexample(
-    side: AnalyzedRule, others: Sequence[AnalyzedRule], given: Sequence[Axiom] = ()
+    forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom] = ()
 ) -> Trace | None:
     """A shortest trace that a rule forbids and all others allow; None if there is none.
 
     ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
     """
-    scene = _scene(side, others, given)
-    own = {variable.name: variable.name for variable in side.rule.variables}
-    machines, wanted = [side.rule.machine], [False]
-    columns = [monitor_function(side.rule.machine, own, scene)]
-    for analyzed_rule in others:
-        for binding in scene.bindings(analyzed_rule.rule.variables):
-            machines.append(analyzed_rule.rule.machine)
-            columns.append(monitor_function(analyzed_rule.rule.machine, binding, scene))
-            wanted.append(True)
-    alphabet = JointAlphabet(scene, columns)
-    word = shortest_word(machines, wanted, alphabet.symbols)
+    universe = _universe(forbidding, allowing, given)
+    own = {variable.name: variable.name for variable in forbidding.rule.variables}
+    monitors, verdicts = [forbidding.rule.machine], [False]
+    functions = [monitor_function(forbidding.rule.machine, own, universe)]
+    for allowed in allowing:
+        for binding in universe.bindings(allowed.rule.variables):
+            monitors.append(allowed.rule.machine)
+            functions.append(monitor_function(allowed.rule.machine, binding, universe))
+            verdicts.append(True)
+    alphabet = JointAlphabet(universe, functions)
+    word = shortest_word(monitors, verdicts, alphabet.letters)
     if word is None:
         return None
-    forbidding = single_rule_rulebook(side.rulebook, side.rule, scene)
-    allowing = [
-        single_rule_rulebook(analyzed_rule.rulebook, analyzed_rule.rule, scene)
-        for analyzed_rule in others
+    forbidding_book = single_rule_rulebook(forbidding.rulebook, forbidding.rule, universe)
+    allowing_books = [
+        single_rule_rulebook(allowed.rulebook, allowed.rule, universe) for allowed in allowing
     ]
 
     def shows(trace: Trace) -> bool:
-        forbids = bool(verify(trace, forbidding).violations)
-        return forbids and not any(
-            verify(trace, compiled_rulebook).violations for compiled_rulebook in allowing
-        )
+        forbids = bool(verify(trace, forbidding_book).violations)
+        return forbids and not any(verify(trace, book).violations for book in allowing_books)
 
-    situations = [alphabet.situations[symbol] for symbol in word]
-    steps = [
-        analyzed_rule.rule.step_s
-        for analyzed_rule in (side, *others)
-        if analyzed_rule.rule.step_s is not None
-    ]
-    return synthesize_trace(situations, scene, (*steps, Fraction(1))[0], shows)
+    states = [alphabet.states[letter] for letter in word]
+    steps = [rule.rule.step_s for rule in (forbidding, *allowing) if rule.rule.step_s is not None]
+    return synthesize_trace(states, universe, (*steps, Fraction(1))[0], shows)
 
 
-def _scene(
-    side: AnalyzedRule, others: Sequence[AnalyzedRule], given: Sequence[Axiom]
+def _universe(
+    forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom]
 ) -> ObjectUniverse:
-    """The objects that a rule speaks of, in the words of all the rulebooks."""
-    sides = (side, *others)
-    read = {name for side in sides for name in declarations_read(side.rule)}
-    axioms = tuple(dict.fromkeys((*(fact for side in sides for fact in side.axioms), *given)))
-    asked = read | {name for fact in axioms for name in names_in(fact.formula)}
-    vocabulary, unsaid = side.rulebook.vocabulary, frozenset[str]()
-    for analyzed_rule in others:
-        if analyzed_rule.rulebook.vocabulary == vocabulary:
+    """The objects that a rule speaks of, in the vocabulary of all the rulebooks."""
+    analyzed_rules = (forbidding, *allowing)
+    read = {name for analyzed in analyzed_rules for name in declarations_read(analyzed.rule)}
+    axioms = tuple(
+        dict.fromkeys(
+            (*(axiom for analyzed in analyzed_rules for axiom in analyzed.axioms), *given)
+        )
+    )
+    names = read | {name for axiom in axioms for name in names_in(axiom.formula)}
+    vocabulary, unsaid = forbidding.rulebook.vocabulary, frozenset[str]()
+    for allowed in allowing:
+        if allowed.rulebook.vocabulary == vocabulary:
             continue
-        words = shared_vocabulary(vocabulary, analyzed_rule.rulebook.vocabulary)
-        for name in sorted(words.unlike & asked):
+        words = shared_vocabulary(vocabulary, allowed.rulebook.vocabulary)
+        for name in sorted(words.unlike & names):
             raise UndecidedError(f"`{name}` is not declared alike in both")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
-    objects = {variable.name: variable.type for variable in side.rule.variables}
+    objects = {variable.name: variable.type for variable in forbidding.rule.variables}
     return ObjectUniverse(objects, vocabulary, axioms, unsaid - read)
 
 

@@ -1,4 +1,4 @@
-"""The rules of several rulebooks, compiled so that what is the same law is compiled once."""
+"""Compile the rules of several rulebooks, each law once."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from rulec.rulebook.model import Axiom, Rule, Rulebook
 
 @dataclass(frozen=True, slots=True)
 class AnalyzedRule:
-    """A compiled rule, the rulebook that it is part of and the facts known there.
+    """A compiled rule, the rulebook that it is part of and the axioms known there.
 
-    Sides with the same ``law`` have rules that mean the same by their very words.
+    Those with the same ``law`` have rules that mean the same by their very words.
     """
 
     rulebook: CompiledRulebook
@@ -39,21 +39,21 @@ class SharedCompiler:
         self._laws: dict[CompilationKey, int] = {}
         self._headers: dict[int, CompiledRulebook] = {}
 
-    def sides(
+    def compile(
         self, rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
     ) -> list[dict[str, AnalyzedRule]]:
         """For each rulebook the chosen ones of its rules by name, each for the step it names.
 
         Raises RulecError if one cannot be compiled.
         """
-        result = []
+        compiled_rules = []
         for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True)):
             keys = {name: _key(rule, book) for name, rule in chosen.items()}
             missing = {key: chosen[name] for name, key in keys.items() if key not in self._machines}
             header = compile_rulebook(replace(book, rules=tuple(missing.values())))
             self._machines.update(zip(missing, header.rules, strict=True))
             self._tell(number + 1)
-            result.append(
+            compiled_rules.append(
                 {
                     name: AnalyzedRule(
                         replace(header, rules=()),
@@ -64,11 +64,11 @@ class SharedCompiler:
                     for name, key in keys.items()
                 }
             )
-        return result
+        return compiled_rules
 
 
 def _key(rule: Rule, book: Rulebook) -> CompilationKey:
-    """What a rule's machine depends on."""
+    """All that a rule's monitor depends on."""
     read = dict.fromkeys(names_in(rule.formula))
     return (
         rule.formula,

@@ -1,4 +1,4 @@
-"""A trace as an example writes it, as far as rules read it."""
+"""Traces as examples write them, as far as rules read them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def trace_literal(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocab
 
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
-    axioms = []
+    literals = []
     for (name, items), declaration in keys_of(vocabulary, trace.objects):
         value = value_in(state, name, items, declaration)
         if name not in names or value is None or value == declaration.default:
@@ -31,10 +31,10 @@ def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabu
         if len(set(items)) < len(items):
             continue
         if isinstance(declaration, Enumeration):
-            axioms.append(str(Atom(name, items, str(value))))
+            literals.append(str(Atom(name, items, str(value))))
         elif isinstance(declaration, Quantity):
             number = number_in_words(Fraction(str(value)))
-            axioms.append(f"{Atom(name, items)} = {number} {declaration.unit}")
+            literals.append(f"{Atom(name, items)} = {number} {declaration.unit}")
         else:
-            axioms.append(f"{'' if value else 'not '}{Atom(name, items)}")
-    return " and ".join(axioms) or "true"
+            literals.append(f"{'' if value else 'not '}{Atom(name, items)}")
+    return " and ".join(literals) or "true"

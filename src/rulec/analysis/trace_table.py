@@ -14,9 +14,9 @@ from rulec.witnesses.state_synthesis import keys_of
 
 @dataclass(frozen=True, slots=True)
 class SignalRow:
-    """What is the case in each column: ``title`` names it, ``unit`` is empty if it has none.
+    """The values of one subject by column: ``title`` names it, ``unit`` is empty if it has none.
 
-    ``usual``: it is the default in all of them.
+    ``usual``: the value is the default in all of them.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""The words of a vocabulary that the rules of a rulebook speak of."""
+"""The declarations that the rules of a rulebook speak of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of a rule its examples show: which edges they take, which atoms they see both ways."""
+"""Coverage of a rule by its examples: edges of its monitor, and values of its atoms."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class UncoveredEdge:
 
 @dataclass(frozen=True, slots=True)
 class RuleCoverage:
-    """What a rule's examples take and see.
+    """The edges that a rule's examples take, and the values that they see.
 
     An edge is a state of its machine and a class of letters; the edges of the two states in which
     the verdict is settled for good do not count, nor does what no state of the world can be. The
@@ -74,14 +74,14 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
 
     Where a pattern chose among the examples, rules without a chosen one are left out.
     """
-    rule_coverages = []
+    covered = []
     for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
         outcomes = [outcome for outcome in run.outcomes if outcome.rule is rule]
         if outcomes or run.pattern is None:
             known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
-            axioms = [axiom_instance.formula for axiom_instance in known]
-            rule_coverages.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
-    return tuple(rule_coverages)
+            axioms = [outcome.formula for outcome in known]
+            covered.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
+    return tuple(covered)
 
 
 def _coverage(
@@ -95,7 +95,7 @@ def _coverage(
     letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
-    taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
+    taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
     states = {
         symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
         for symbol, letter in letters.items()
@@ -104,7 +104,7 @@ def _coverage(
         UncoveredEdge(
             source,
             machine.successors[source][symbol],
-            tuple(states[path] for path in (*paths[source], symbol)),
+            tuple(states[one] for one in (*paths[source], symbol)),
             machine.outputs[source][symbol],
         )
         for source, symbol in edges

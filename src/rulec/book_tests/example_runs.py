@@ -1,4 +1,4 @@
-"""A rulebook's own examples, judged by its machines."""
+"""Run the examples of a rulebook on its monitors."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.trace import Trace
 
 @dataclass(frozen=True, slots=True)
 class ExampleOutcome:
-    """How an example came out.
+    """The result of running one example.
 
     ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
     the rule's machine. ``lost_after`` is the first state, from 0, after which no continuation could
@@ -39,7 +39,7 @@ class ExampleOutcome:
 
     @property
     def passed(self) -> bool:
-        """Does the rule do what the example says?"""
+        """Whether the rule does what the example says."""
         return self.accepted == self.example.accepts
 
     @property
@@ -155,7 +155,7 @@ def example_warnings(
         [rule for rule in rulebook.rules if rule.examples or not speaks_of_seconds(rule.formula)]
     )
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [example_warning(outcome) for outcome in outcomes if not outcome.passed]
+    return [example_warning(rule) for rule in outcomes if not rule.passed]
 
 
 def example_warning(outcome: ExampleOutcome) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""Do the examples of a rule exercise it: is it seen to be kept, and seen to be broken?"""
+"""Coverage of verdicts: whether examples show a rule both kept and broken."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
 def verdicts(machine: MealyMonitor) -> set[bool]:
     """The verdicts that a rule has for some trace: accepted (True), rejected (False), or both."""
     symbols = sorted(possible_letters(machine))
-    result: set[bool] = set()
+    reached_verdicts: set[bool] = set()
     waiting = [0]
     seen = {0}
     for state in waiting:
-        result.update(machine.outputs[state][symbol] for symbol in symbols)
-        if len(result) == 2:
+        reached_verdicts.update(machine.outputs[state][symbol] for symbol in symbols)
+        if len(reached_verdicts) == 2:
             break
         new = {machine.successors[state][symbol] for symbol in symbols} - seen
         seen |= new
         waiting += sorted(new)
-    return result
+    return reached_verdicts
 
 
 def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:

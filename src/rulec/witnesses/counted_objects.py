@@ -1,4 +1,7 @@
-"""Further objects, that are there so that a rule's counts come out as wanted."""
+"""Further objects of a state, so that the counts of rules come out.
+
+The search is breadth first over how many objects each count has reached.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from rulec.witnesses.state_synthesis import JointState, Subject, Value, solve_nu
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_COUNTED_OBJECTS = 40
-"""So many objects can be there besides those that rules speak of."""
+"""No more objects are added to those that rules speak of."""
 
 MOST_TRIED = 20_000
 
@@ -35,7 +38,7 @@ CountedObjects = tuple[CountedObject, ...]
 
 
 def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> CountedObjects | None:
-    """As few further objects as make the counts come out; None if none do."""
+    """Find as few further objects as make the counts come out; None if none do."""
     counts = _counts_of(state)
     if not counts:
         return ()
@@ -44,10 +47,10 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
     start = tuple(dict(state.counted)[count] for count in counts)
     waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(start, ())]
     seen = {start}
-    for sums, company in waiting:
+    for sums, further in waiting:
         if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
-            return company
-        if len(company) == MOST_COUNTED_OBJECTS:
+            return further
+        if len(further) == MOST_COUNTED_OBJECTS:
             raise UndecidedError(f"it takes more than {MOST_COUNTED_OBJECTS} objects to be counted")
         for kind in kinds:
             after = tuple(
@@ -55,7 +58,7 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
             )
             if after not in seen:
                 seen.add(after)
-                waiting.append((after, (*company, kind)))
+                waiting.append((after, (*further, kind)))
         if len(seen) > MOST_TRIED:
             raise UndecidedError("too many ways to count objects have to be told apart")
     return None
@@ -64,27 +67,27 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
 def counted_objects_of_types(
     state: JointState, universe: ObjectUniverse, types: Sequence[str]
 ) -> CountedObjects | None:
-    """One companion of each of these types, so that the counts come out; None if they cannot."""
+    """Find one further object of each type, so that the counts come out; None if there are none."""
     counts = _counts_of(state)
     kinds = object_kinds(state, universe, types) if types else []
     start = tuple(dict(state.counted)[count] for count in counts)
     reached: dict[tuple[int, ...], CountedObjects] = {start: ()}
-    for wanted in types:
+    for type_name in types:
         following: dict[tuple[int, ...], CountedObjects] = {}
-        for sums, company in reached.items():
+        for sums, further in reached.items():
             for kind in kinds:
-                if kind.type == wanted:
+                if kind.type == type_name:
                     after = tuple(a + b for a, b in zip(sums, kind.adds, strict=True))
-                    following.setdefault(after, (*company, kind))
+                    following.setdefault(after, (*further, kind))
         reached = following
-    for sums, company in reached.items():
+    for sums, further in reached.items():
         if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
-            return company
+            return further
     return None
 
 
 def _enough(count: Count, state: JointState) -> int:
-    """From where on it makes no difference how many more are counted, if there is such a number."""
+    """The number from which on further counted objects make no difference, if there is one."""
     most = 0
     for read, _ in state.number_digits:
         if any(term == count for _, term in read.terms):
@@ -114,32 +117,32 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
 def object_kinds(
     state: JointState, universe: ObjectUniverse, types: Sequence[str] = ()
 ) -> list[CountedObject]:
-    """What a further object could be, as far as the counts tell; the most general types first.
+    """The further objects that the counts tell apart; the most general types first.
 
     That is of any type that is counted, or one of ``types``, which may be there to be counted in
     another state.
     """
     vocabulary = universe.vocabulary
     counts = _counts_of(state)
-    counted_objects: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
+    kinds: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
     fitting = [
         kind
         for kind in vocabulary.types
         if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
     ]
-    for kind in sorted(fitting, key=lambda one: len(list(vocabulary.ancestors(one)))):
-        for counted_object in _of_type(kind, counts, state, universe):
-            counted_objects.setdefault((kind, counted_object.adds), counted_object)
-    return list(counted_objects.values())
+    for kind in sorted(fitting, key=lambda candidate: len(list(vocabulary.ancestors(candidate)))):
+        for candidate in _of_type(kind, counts, state, universe):
+            kinds.setdefault((kind, candidate.adds), candidate)
+    return list(kinds.values())
 
 
 def _of_type(
     kind: str, counts: Sequence[Count], state: JointState, universe: ObjectUniverse
 ) -> Iterator[CountedObject]:
     vocabulary = universe.vocabulary
-    asked = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
-    bodies = [body_of(count, EXTRA) for count in asked]
-    known = [*_facts_about(kind, universe)]
+    own_counts = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
+    bodies = [body_of(count, EXTRA) for count in own_counts]
+    known = [*_axioms_about(kind, universe)]
     reads, truths = truths_of([*bodies, *known], vocabulary)
     choices: list[Sequence[int]] = [
         range(read.size) if speaks_of_extra(read) else (_digit(read, state, universe),)
@@ -150,20 +153,20 @@ def _of_type(
         for read, digit in zip(reads, digits, strict=True):
             letter += stride * digit
             stride *= read.size
-        values = [bool(truth >> letter & 1) for truth in truths]
+        values = [bool(letters >> letter & 1) for letters in truths]
         if not all(values[len(bodies) :]):
             continue
         said = _said(list(zip(reads, digits, strict=True)), state, universe)
         if said is not None:
-            holds = dict(zip(asked, values, strict=False))
+            holds = dict(zip(own_counts, values, strict=False))
             yield CountedObject(kind, tuple(int(holds.get(count, False)) for count in counts), said)
 
 
-def _facts_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
+def _axioms_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
     with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
-    for fact_formula in with_it.fact_formulas():
-        if not any(True for _ in counts_in(fact_formula)) and EXTRA in variables_of(fact_formula):
-            yield fact_formula
+    for formula in with_it.axiom_formulas():
+        if not any(True for _ in counts_in(formula)) and EXTRA in variables_of(formula):
+            yield formula
 
 
 def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:

@@ -1,7 +1,8 @@
-"""Decision diagrams: functions of joint letters, each test once on a way, equal parts shared.
+"""Reduced ordered decision diagrams of functions of joint letters.
 
 A multiple-valued variant of Bryant, "Graph-based algorithms for Boolean function manipulation"
-(1986). A node is a number; nodes are equal if and only if their functions are.
+(1986): each read is tested once on a path, and equal subdiagrams are shared. A node is a number;
+nodes are equal if and only if their functions are.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ Children = tuple[int, ...]
 
 
 class _Nodes:
-    """A table of nodes, each there once."""
+    """The unique table: every node once."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[float, Children], int] = {}
@@ -28,15 +29,15 @@ class _Nodes:
         if level != inf and children.count(children[0]) == len(children):
             return children[0]
         key = (level, children)
-        result = self._known.get(key)
-        if result is None:
-            result = self._known[key] = len(self.all)
+        node = self._known.get(key)
+        if node is None:
+            node = self._known[key] = len(self.all)
             self.all.append(key)
-        return result
+        return node
 
 
 class _Own:
-    """A column in the order of its own reads, the last one tested first."""
+    """A function in the order of its own reads, the last one tested first."""
 
     def __init__(self, letters: Sequence[int], sizes: Sequence[int]) -> None:
         self._nodes = _Nodes()
@@ -78,9 +79,9 @@ class DecisionDiagrams:
     def __init__(self) -> None:
         self._nodes = _Nodes()
 
-    def of(self, column: LetterFunction, views: Sequence[JointDigits]) -> int:
-        """The diagram of a column: its class as a function of the joint digits."""
-        own = _own(column.letters, tuple(read.size for read in column.reads))
+    def of(self, function: LetterFunction, views: Sequence[JointDigits]) -> int:
+        """The diagram of a function: its class, given the joint digits."""
+        own = _own(function.letters, tuple(read.size for read in function.reads))
         by_level: dict[int, list[tuple[int, JointDigits]]] = {}
         for place, view in enumerate(views):
             by_level.setdefault(view.joint, []).append((place, view))

@@ -1,4 +1,8 @@
-"""The joint letters of several machines: what they can read in one and the same state."""
+"""The joint letters of several monitors: what they can read in one and the same state.
+
+The product of their decision diagrams is walked level by level, sums of numbers first, for these
+depend on each other.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +29,9 @@ from rulec.witnesses.state_synthesis import (
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
-"""For each machine the class of the letter that it reads."""
+"""For each monitor the class of the letter that it reads."""
 
-MOST_SYMBOLS = 20_000
+MOST_LETTERS = 20_000
 MOST_NODES = 200_000
 
 Steps = tuple["tuple[int, int]", "Steps"] | None
@@ -35,74 +39,74 @@ Steps = tuple["tuple[int, int]", "Steps"] | None
 
 
 class JointAlphabet:
-    """The symbols that machines can read together, each with a plain state in which they do.
+    """The joint letters of monitors, each with a state in which they are read, as plain as can be.
 
-    States are those that the scene's facts allow; numbers fit together, and there can be as many
-    further objects as counts ask for. Raises UndecidedError where that is too much to tell.
+    States are those that the universe's axioms allow; numbers fit together, and there can be as
+    many further objects as counts ask for. Raises UndecidedError where that is too much to tell.
     """
 
-    def __init__(self, scene: ObjectUniverse, machines: Sequence[LetterFunction]) -> None:
-        self._scene = scene
+    def __init__(self, universe: ObjectUniverse, monitors: Sequence[LetterFunction]) -> None:
+        self._universe = universe
         axioms = [
-            axiom_function(fact_formula, scene.vocabulary) for fact_formula in scene.fact_formulas()
+            axiom_function(formula, universe.vocabulary) for formula in universe.axiom_formulas()
         ]
         self._counts = [
-            count_function(count, scene)
+            count_function(count, universe)
             for count in counts_read(
-                read for function in (*machines, *axioms) for read in function.reads
+                read for function in (*monitors, *axioms) for read in function.reads
             )
         ]
-        columns = [*machines, *(count.column for count in self._counts), *axioms]
-        self._joint = joint_reads(columns, scene.vocabulary)
-        self._n_machines = len(machines)
-        self._n_keys = len(machines) + len(self._counts)
+        functions = [*monitors, *(count.function for count in self._counts), *axioms]
+        self._joint = joint_reads(functions, universe.vocabulary)
+        self._n_monitors = len(monitors)
+        self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
         roots = [
-            self._diagrams.of(column, views)
-            for column, views in zip(columns, self._joint.views, strict=True)
+            self._diagrams.of(function, views)
+            for function, views in zip(functions, self._joint.views, strict=True)
         ]
-        self._usual = [default_digit(read, scene.vocabulary) for read in self._joint.reads]
+        self._defaults = [default_digit(read, universe.vocabulary) for read in self._joint.reads]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
-        result: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
+        ways_to: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
         number = 0
-        for sides, ways in self._numbered(self._cleared(roots), ()):
-            cost = sum(self._cost(level, digit) for level, digit in sides)
+        for number_digits, ways in self._numbered(self._cleared(roots), ()):
+            cost = sum(self._cost(level, digit) for level, digit in number_digits)
             for key, (more, steps) in ways.items():
-                for side in reversed(sides):
-                    steps = (side, steps)
+                for number_digit in reversed(number_digits):
+                    steps = (number_digit, steps)
                 number += 1
                 heappush(
-                    result.setdefault(key[: self._n_machines], []),
-                    (cost + more, number, steps, key[self._n_machines :]),
+                    ways_to.setdefault(key[: self._n_monitors], []),
+                    (cost + more, number, steps, key[self._n_monitors :]),
                 )
-            if len(result) > MOST_SYMBOLS:
+            if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
-        self.situations: Mapping[JointLetter, JointState] = {
-            symbol: best
-            for symbol, candidates in result.items()
+        self.states: Mapping[JointLetter, JointState] = {
+            letter: best
+            for letter, candidates in ways_to.items()
             if (best := self._best(candidates)) is not None
         }
 
     @property
-    def symbols(self) -> list[JointLetter]:
+    def letters(self) -> list[JointLetter]:
         """All that can be read."""
-        return list(self.situations)
+        return list(self.states)
 
     def _cost(self, level: int, digit: int) -> int:
-        usual = self._usual[level]
-        return int(usual is not None and digit != usual)
+        default = self._defaults[level]
+        return int(default is not None and digit != default)
 
     def _cleared(self, nodes: Sequence[int]) -> tuple[int, ...]:
-        """The nodes without the facts that hold; empty if one does not."""
+        """The nodes without the axioms that hold; empty if one does not."""
         keys, axioms = nodes[: self._n_keys], nodes[self._n_keys :]
-        open_facts = []
-        for fact in axioms:
-            if self._diagrams.level(fact) < len(self._joint.reads):
-                open_facts.append(fact)
-            elif not self._diagrams.value(fact):
+        open_axioms = []
+        for axiom in axioms:
+            if self._diagrams.level(axiom) < len(self._joint.reads):
+                open_axioms.append(axiom)
+            elif not self._diagrams.value(axiom):
                 return ()
-        return (*keys, *dict.fromkeys(open_facts))
+        return (*keys, *dict.fromkeys(open_axioms))
 
     def _level(self, nodes: Sequence[int]) -> int | None:
         level = min(map(self._diagrams.level, nodes), default=len(self._joint.reads))
@@ -112,40 +116,40 @@ class JointAlphabet:
         return self._cleared([self._diagrams.child(node, level, digit) for node in nodes])
 
     def _numbered(
-        self, nodes: tuple[int, ...], sides: tuple[tuple[int, int], ...]
+        self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
     ) -> Iterator[tuple[tuple[tuple[int, int], ...], Mapping[JointLetter, tuple[int, Steps]]]]:
-        """All ways for sums to come out, and what is then left to be read."""
+        """The digits that sums can have, and the joint letters for each of them."""
         if not nodes:
             return
         level = self._level(nodes)
         if level is None or level >= self._n_numbers:
-            yield sides, self._ways(nodes)
+            yield number_digits, self._ways(nodes)
             return
         for digit in range(self._joint.reads[level].size):
-            chosen = (*sides, (level, digit))
+            chosen = (*number_digits, (level, digit))
             if self._fits(chosen):
                 yield from self._numbered(self._after(nodes, level, digit), chosen)
 
-    def _fits(self, sides: Sequence[tuple[int, int]]) -> bool:
+    def _fits(self, number_digits: Sequence[tuple[int, int]]) -> bool:
         """Can the sums come out so? The last one is new, the others can."""
-        reads = [(self._joint.reads[level], digit) for level, digit in sides]
+        reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
         numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
-        *others, (last, _) = numbers
-        known = {term for read, _ in others for _, term in read.terms}
+        *earlier, (last, _) = numbers
+        known = {term for read, _ in earlier for _, term in read.terms}
         if known.isdisjoint(term for _, term in last.terms):
             return True
-        return solve_numbers(numbers, self._scene.vocabulary, {}) is not None
+        return solve_numbers(numbers, self._universe.vocabulary, {}) is not None
 
     def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
-        """For all that can be read the plainest way to get there."""
+        """For each joint letter the digits with most defaults, and how many are not."""
         if nodes in self._plain:
             return self._plain[nodes]
         if len(self._plain) > MOST_NODES:
             raise UndecidedError("too many different states of the world have to be told apart")
         level = self._level(nodes)
-        result: dict[JointLetter, tuple[int, Steps]] = {}
+        ways: dict[JointLetter, tuple[int, Steps]] = {}
         if level is None:
-            result[tuple(map(self._diagrams.value, nodes))] = 0, None
+            ways[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
             for digit in range(self._joint.reads[level].size):
                 following = self._after(nodes, level, digit)
@@ -153,10 +157,10 @@ class JointAlphabet:
                     continue
                 own = self._cost(level, digit)
                 for key, (cost, steps) in self._ways(following).items():
-                    if key not in result or own + cost < result[key][0]:
-                        result[key] = own + cost, ((level, digit), steps)
-        self._plain[nodes] = result
-        return result
+                    if key not in ways or own + cost < ways[key][0]:
+                        ways[key] = own + cost, ((level, digit), steps)
+        self._plain[nodes] = ways
+        return ways
 
     def _best(self, candidates: list[tuple[int, int, Steps, JointLetter]]) -> JointState | None:
         while candidates:
@@ -166,13 +170,10 @@ class JointAlphabet:
                 (level, digit), steps = steps
                 digits.append((self._joint.reads[level], digit))
             counted = tuple(
-                (count.count, count.counted[which])
-                for count, which in zip(self._counts, classes, strict=True)
+                (function.count, function.counted[letter_class])
+                for function, letter_class in zip(self._counts, classes, strict=True)
             )
-            joint_state = synthesize_state(self._scene, digits, counted)
-            if (
-                joint_state is not None
-                and fewest_counted_objects(joint_state, self._scene) is not None
-            ):
-                return joint_state
+            state = synthesize_state(self._universe, digits, counted)
+            if state is not None and fewest_counted_objects(state, self._universe) is not None:
+                return state
         return None

@@ -1,4 +1,4 @@
-"""What several columns read together, each thing once, and what of it each of them sees."""
+"""Joint reads of several letter functions: each subject once, with all thresholds and values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Terms = tuple[tuple[Fraction, Term], ...]
 
 @dataclass(frozen=True, slots=True)
 class JointDigits:
-    """What a column's read sees of a joint one: ``digits[joint digit]`` is its own digit."""
+    """A function's own view of a joint read: ``digits[joint digit]`` is its own digit."""
 
     joint: int
     digits: tuple[int, ...]
@@ -25,7 +25,7 @@ class JointDigits:
 
 @dataclass(frozen=True, slots=True)
 class JointReads:
-    """The joint reads, numbers first, and for each column what its reads see of them."""
+    """The joint reads, numbers first, and for each function the views that its reads have."""
 
     reads: tuple[Read | NumberRead, ...]
     views: tuple[tuple[JointDigits, ...], ...]
@@ -35,18 +35,18 @@ class JointReads:
         return tuple(view.digits[joint_digits[view.joint]] for view in self.views[index])
 
 
-def joint_reads(columns: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
-    """Merge what the columns read.
+def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
+    """Merge what letter functions read.
 
     A number is told apart by all their thresholds, an enumeration by all the values that any of
     them tells apart.
     """
     together: dict[object, list[Read | NumberRead]] = {}
-    for column in columns:
-        for read in column.reads:
+    for function in functions:
+        for read in function.reads:
             together.setdefault(_subject(read), []).append(read)
-    # What depends on several numbers at once is settled first, see ``alphabet``.
-    subjects = sorted(together, key=lambda one: not isinstance(together[one][0], NumberRead))
+    # What depends on several numbers at once is settled first, see ``JointAlphabet``.
+    subjects = sorted(together, key=lambda joint: not isinstance(together[joint][0], NumberRead))
     position = {subject: number for number, subject in enumerate(subjects)}
     reads = tuple(_merged(together[subject], vocabulary) for subject in subjects)
     views = tuple(
@@ -54,9 +54,9 @@ def joint_reads(columns: Sequence[LetterFunction], vocabulary: Vocabulary) -> Jo
             JointDigits(
                 position[_subject(read)], _seen(read, reads[position[_subject(read)]], vocabulary)
             )
-            for read in column.reads
+            for read in function.reads
         )
-        for column in columns
+        for function in functions
     )
     return JointReads(reads, views)
 
@@ -93,8 +93,8 @@ def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read 
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
         return first
-    told = {value for read in reads if isinstance(read, Read) for value in read.values}
-    values = tuple(value for value in declaration.values if value in told)
+    distinguished = {value for read in reads if isinstance(read, Read) for value in read.values}
+    values = tuple(value for value in declaration.values if value in distinguished)
     return Read(first.name, first.variables, values, len(values) < len(declaration.values))
 
 
@@ -123,6 +123,6 @@ def _seen(
         return 0, 1
     declaration = vocabulary.declarations[read.name]
     assert isinstance(declaration, Enumeration)
-    other = next((value for value in declaration.values if value not in joint.values), "")
-    values = (*joint.values, other) if joint.others else joint.values
+    rest = next((value for value in declaration.values if value not in joint.values), "")
+    values = (*joint.values, rest) if joint.others else joint.values
     return tuple(read.digit(value) for value in values)

@@ -1,6 +1,6 @@
-"""What looks at a state: machines, facts and counts, each as what it reads and what it makes of it.
+"""Monitors, axioms and counts as functions from letters to classes.
 
-A column is a function from letters to classes, the letters in mixed radix as those of a machine.
+Letters are numbers in mixed radix, as those of a monitor.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_LETTERS = 1 << 14
-"""A fact or a count that reads more than these is not looked at."""
+"""An axiom or a count that reads more than these is left undecided."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +50,9 @@ class LetterFunction:
 
 
 def monitor_function(
-    machine: MealyMonitor, names: Mapping[str, str], scene: ObjectUniverse
+    machine: MealyMonitor, names: Mapping[str, str], universe: ObjectUniverse
 ) -> LetterFunction:
-    """A rule's machine for a binding of its variables."""
+    """A rule's monitor for a binding of its variables, as a function of what it reads."""
     reads: list[Read | NumberRead] = []
     for read in machine.reads:
         if isinstance(read, Read):
@@ -60,7 +60,7 @@ def monitor_function(
             reads.append(Read(read.name, variables, read.values, read.others))
         else:
             terms = tuple(
-                (factor, _renamed_term(scene.canonical_term(term), names))
+                (factor, _renamed_term(universe.canonical_term(term), names))
                 for factor, term in read.terms
             )
             reads.append(NumberRead(terms, read.thresholds))
@@ -83,33 +83,36 @@ def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
 
 @dataclass(frozen=True, slots=True)
 class CountFunction:
-    """How many of the scene's own objects count: ``counted[class]``.
+    """How many of the universe's own objects count: ``counted[class]``.
 
     Its class also tells apart all else that the count depends on, besides further objects.
     """
 
     count: Count
-    column: LetterFunction
+    function: LetterFunction
     counted: tuple[int, ...]
 
     def counted_in(self, digits: Sequence[int]) -> int:
         """How many objects count in the letter with these digits."""
-        return self.counted[self.column.value(digits)]
+        return self.counted[self.function.value(digits)]
 
 
-def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
-    """The column of a count. Raises UndecidedError for a count in which others stand."""
+def count_function(count: Count, universe: ObjectUniverse) -> CountFunction:
+    """A count as a function of what it reads of its universe.
+
+    Raises UndecidedError for a count in which others stand.
+    """
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")
     fitting = [
         name
-        for name, kind in scene.objects.items()
-        if scene.vocabulary.is_subtype(kind, count.type)
+        for name, kind in universe.objects.items()
+        if universe.vocabulary.is_subtype(kind, count.type)
     ]
     bodies = [body_of(count, name) for name in fitting]
-    extra = reads_of(body_of(count, EXTRA), scene.vocabulary)
+    extra = reads_of(body_of(count, EXTRA), universe.vocabulary)
     around = [read for read in extra if not speaks_of_extra(read)]
-    own = reads_of(_all_of(bodies), scene.vocabulary)
+    own = reads_of(_all_of(bodies), universe.vocabulary)
     reads = own + tuple(read for read in around if _key(read) not in map(_key, own))
     total = count_letters(reads)
     truths = _truths(bodies, reads)
@@ -119,7 +122,7 @@ def count_function(count: Count, scene: ObjectUniverse) -> CountFunction:
     letters = []
     for letter in range(total):
         own_digits = digits[letter][::-1]
-        number = sum(truth >> letter & 1 for truth in truths)
+        number = sum(letters_of_body >> letter & 1 for letters_of_body in truths)
         key = (number, *(own_digits[n] for n in beside))
         letters.append(classes.setdefault(key, len(classes)))
     return CountFunction(
@@ -135,12 +138,12 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[Count]:
 
 
 def body_of(count: Count, name: str) -> Formula:
-    """What is asked of an object that a count goes over."""
+    """The formula that is asked of an object that a count goes over."""
     return _settled(renamed(count.body, {count.variable: name}))
 
 
 def speaks_of_extra(read: Read | NumberRead) -> bool:
-    """Does it read something of an object that is there only to be counted?"""
+    """Whether an object that is there only to be counted is read."""
     if isinstance(read, Read):
         return EXTRA in read.variables
     return any(EXTRA in variables_of(term) for _, term in read.terms)
@@ -158,7 +161,7 @@ def _all_of(formulas: Sequence[Formula]) -> Formula:
 
 
 def _settled(formula: Formula) -> Formula:
-    """Whether two names are the same object is known here."""
+    """The formula with each equality of two names replaced by its truth value."""
     match formula:
         case Same(left, right):
             return Constant(left == right)
@@ -172,7 +175,7 @@ def _settled(formula: Formula) -> Formula:
 def truths_of(
     formulas: Sequence[Formula], vocabulary: Vocabulary
 ) -> tuple[tuple[Read | NumberRead, ...], list[int]]:
-    """What formulas of one state read together, and for each the letters in which it holds.
+    """The joint reads of formulas of one state, and for each the letters in which it holds.
 
     A set of letters is the bits of an integer. Raises UndecidedError if there are too many.
     """

@@ -153,7 +153,7 @@ class _ObjectChoices:
         self._universe = universe
         self._functions = [count_function(count, universe) for count in counts]
         own = LetterFunction(monitor.reads, monitor.letters)
-        functions = [own, *(function.column for function in self._functions)]
+        functions = [own, *(function.function for function in self._functions)]
         self._joint = joint_reads(functions, universe.vocabulary)
 
     def state(self, digits: Sequence[int]) -> JointState | None:

@@ -28,21 +28,21 @@ class ObjectUniverse:
         """Every way to bind variables to distinct objects of their types."""
         names = [variable.name for variable in variables]
         types = [variable.type for variable in variables]
-        result = choices(types, self.objects, self.vocabulary)
-        return [dict(zip(names, chosen, strict=True)) for chosen in result]
+        bound_objects = choices(types, self.objects, self.vocabulary)
+        return [dict(zip(names, chosen, strict=True)) for chosen in bound_objects]
 
-    def fact_formulas(self) -> Iterator[Formula]:
-        """What the facts say of the objects."""
-        for fact in self.axioms:
-            for names in self.bindings(fact.variables):
-                yield self.renamed(fact.formula, names)
+    def axiom_formulas(self) -> Iterator[Formula]:
+        """The axioms, said of the objects."""
+        for axiom in self.axioms:
+            for names in self.bindings(axiom.variables):
+                yield self.renamed(axiom.formula, names)
 
     def renamed(self, formula: Formula, names: Mapping[str, str]) -> Formula:
         """The formula of one state, with objects in the place of variables."""
         return renamed(self.canonical(formula), names)
 
     def canonical(self, formula: Formula) -> Formula:
-        """The formula with the scene's own name for what its counts go over."""
+        """The formula with the universe's own name for what its counts go over."""
         match formula:
             case Comparison(terms, relation, limit, text):
                 own = tuple((factor, self.canonical_term(term)) for factor, term in terms)
@@ -64,7 +64,7 @@ class ObjectUniverse:
 
 
 COUNTED = "?"
-"""The variable of every count in a scene; that of one with counts inside is longer."""
+"""The variable of every count in a universe; that of one with counts inside is longer."""
 
 EXTRA = "+"
 """An object that is there only to be counted, before it has a name."""
@@ -77,6 +77,6 @@ def _depth(formula: Formula) -> int:
 
 def counts_in(formula: Formula) -> Iterator[Count]:
     """The counts that a formula compares, not those inside of others."""
-    for atom in atoms_of(formula):
-        if isinstance(atom, Comparison):
-            yield from (term for _, term in atom.terms if isinstance(term, Count))
+    for proposition in atoms_of(formula):
+        if isinstance(proposition, Comparison):
+            yield from (term for _, term in proposition.terms if isinstance(term, Count))

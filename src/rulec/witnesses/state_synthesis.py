@@ -193,7 +193,7 @@ def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
 
 
 def default_value(declaration: Declaration) -> Value:
-    """The value of what nobody asks about."""
+    """The value of a declaration that nobody asks about."""
     if declaration.default is not None:
         return declaration.default
     if isinstance(declaration, Enumeration):
@@ -202,7 +202,7 @@ def default_value(declaration: Declaration) -> Value:
 
 
 def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
-    """The digit of what a state need not mention; None if there is none."""
+    """The digit of a read by defaults alone; None if a default is missing."""
     if isinstance(read, Read):
         default = vocabulary.declarations[read.name].default
         return None if default is None else read.digit(default)
@@ -219,7 +219,7 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
 def keys_of(
     vocabulary: Vocabulary, objects: Mapping[str, str]
 ) -> Iterator[tuple[Subject, Declaration]]:
-    """All that a state could say of these objects, an object and itself included."""
+    """The subjects of all that a state could say of these objects, and their declarations."""
     for name, declaration in vocabulary.declarations.items():
         candidates = [
             [item for item, kind in objects.items() if vocabulary.is_subtype(kind, parameter)]

@@ -1,4 +1,4 @@
-"""A word of symbols as a trace, with names for all objects."""
+"""Synthesised states as a trace, with names for all objects."""
 
 from __future__ import annotations
 
@@ -50,21 +50,21 @@ def place_objects(
 
 
 def synthesize_trace(
-    situations: Sequence[JointState],
-    scene: ObjectUniverse,
+    states: Sequence[JointState],
+    universe: ObjectUniverse,
     step_s: Fraction,
     shows: Callable[[Trace], bool],
 ) -> Trace:
-    """A trace through these situations that shows what it is to show.
+    """Synthesise a trace through these states that shows what it is to show.
 
     Raises UndecidedError if the objects that are there to be counted are in the way.
     """
-    objects, states = place_objects(situations, scene, str)
-    everyone = {**scene.objects, **objects}
+    objects, placed = place_objects(states, universe, str)
+    all_objects = {**universe.objects, **objects}
     types = list(objects.values())
-    for fill in _fills(scene, types):
-        written = tuple(_written(values, scene, everyone, fill) for values in states)
-        trace = Trace("witness", float(step_s), everyone, written)
+    for fill in _fills(universe, types):
+        written = tuple(_written(values, universe, all_objects, fill) for values in placed)
+        trace = Trace("witness", float(step_s), all_objects, written)
         if _does_show(trace, shows, certain=not types):
             return trace
     if types:
@@ -82,11 +82,11 @@ def _does_show(trace: Trace, shows: Callable[[Trace], bool], *, certain: bool) -
         return False
 
 
-def _types(companies: Iterable[Sequence[Any]]) -> list[str]:
+def _types(groups: Iterable[Sequence[Any]]) -> list[str]:
     """The types of the companions that are there in all states, so that each has enough."""
     most: Counter[str] = Counter()
-    for company in companies:
-        most |= Counter(one.type for one in company)
+    for group in groups:
+        most |= Counter(companion.type for companion in group)
     return sorted(most.elements())
 
 
@@ -100,12 +100,12 @@ def _names(stems: Sequence[str], taken: Mapping[str, str]) -> list[str]:
     return names
 
 
-def _fills(scene: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
-    """Values of what nobody asks about further objects: the usual ones, then others of each."""
+def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
+    """Values of what nobody asks about further objects: the defaults, then others of each."""
     yield {}
     if not types:
         return
-    for name, declaration in scene.vocabulary.declarations.items():
+    for name, declaration in universe.vocabulary.declarations.items():
         if declaration.parameters:
             for value in getattr(declaration, "values", ()):
                 yield {name: value}
@@ -113,15 +113,15 @@ def _fills(scene: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str,
 
 def _written(
     values: Mapping[Subject, Value],
-    scene: ObjectUniverse,
-    everyone: Mapping[str, str],
+    universe: ObjectUniverse,
+    all_objects: Mapping[str, str],
     fill: Mapping[str, Value],
 ) -> dict[str, Any]:
     """A state as a trace has it: what is not the default, and what has none."""
     state: dict[str, Any] = {}
-    for (name, items), declaration in keys_of(scene.vocabulary, everyone):
+    for (name, items), declaration in keys_of(universe.vocabulary, all_objects):
         value = values.get((name, items))
-        if value is None and name in scene.unsaid:
+        if value is None and name in universe.unsaid:
             continue
         if value is None:
             value = fill.get(name, default_value(declaration))
@@ -136,7 +136,7 @@ def _written(
 
 
 def single_rule_rulebook(
-    rulebook: CompiledRulebook, rule: CompiledRule, scene: ObjectUniverse
+    rulebook: CompiledRulebook, rule: CompiledRule, universe: ObjectUniverse
 ) -> CompiledRulebook:
-    """A rulebook of one rule, for traces in the words of a scene."""
-    return replace(rulebook, vocabulary=scene.vocabulary, rules=(rule,))
+    """The rulebook with one rule only, for traces in the vocabulary of a universe."""
+    return replace(rulebook, vocabulary=universe.vocabulary, rules=(rule,))

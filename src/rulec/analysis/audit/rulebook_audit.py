@@ -1,4 +1,4 @@
-"""What a rulebook rests on: rules without a source or examples, what was left out, what is covered.
+"""Audit a rulebook: rules without a source or examples, what was left out, what is covered.
 
 Nothing of this is a mistake. It is what a lawyer or a safety engineer wants to know before they
 rely on a rulebook.
@@ -22,7 +22,7 @@ from rulec.syntax.tree_printer import print_in_force
 
 @dataclass(frozen=True, slots=True)
 class AuditFinding:
-    """Something to know about a rule, an article, a topic, a parameter or a word, by its name."""
+    """A finding about a rule, an article, a topic, a parameter or a word, by its name."""
 
     kind: str
     name: str
@@ -43,7 +43,7 @@ class CitedArticle:
 
 @dataclass(frozen=True, slots=True)
 class AuditCounts:
-    """How much there is of everything; rules are those in force."""
+    """Numbers of everything; rules are those in force."""
 
     rules: int = 0
     hard: int = 0
@@ -73,7 +73,7 @@ class Audit:
 
 @dataclass(frozen=True, slots=True)
 class AuditChanges:
-    """What an audit finds that an older one did not, and the other way around."""
+    """The findings of an audit that an older one did not have, and the other way around."""
 
     appeared: tuple[AuditFinding, ...] = ()
     vanished: tuple[AuditFinding, ...] = ()
@@ -93,11 +93,11 @@ def audit(
     used = used_declarations(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
     findings = [
-        *(audit_finding for rule in rulebook.rules for audit_finding in _of_rule(rule)),
+        *(finding for rule in rulebook.rules for finding in _of_rule(rule)),
         *(AuditFinding("failing", rule, f"example {name}") for rule, name in failing),
         *_soft_only(articles, rulebook),
         *_history(inherited, rulebook.at),
-        *(audit_finding for item in inherited.provisions for audit_finding in _of_provision(item)),
+        *(finding for item in inherited.provisions for finding in _of_provision(item)),
         *(AuditFinding("unused", name) for name in words if name not in used),
     ]
     order = list(KINDS)
@@ -114,7 +114,7 @@ def audit(
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
-    """What has come and gone between two audits; notes do not count."""
+    """The findings that have come and gone between two audits; notes do not count."""
     known = {(finding.kind, finding.name) for finding in before.findings}
     still = {(finding.kind, finding.name) for finding in now.findings}
     return AuditChanges(
@@ -128,9 +128,9 @@ def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str,
 
     To a rulebook that has no older audit everything is new.
     """
-    by_name = {audit_.rulebook: audit_ for audit_ in older}
+    by_name = {saved.rulebook: saved for saved in older}
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
-    pairs = ((audit_, by_name.get(audit_.rulebook, only)) for audit_ in audits)
+    pairs = ((saved, by_name.get(saved.rulebook, only)) for saved in audits)
     return {
         now.rulebook: AuditChanges(now.findings) if before is None else audit_changes(now, before)
         for now, before in pairs
@@ -142,14 +142,17 @@ def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArt
 
     Numbers in them are in the order of numbers.
     """
-    citing = {rule.name: rule.cited_by for rule in inherited.rules}
-    nearest = [book.name for book in reversed(inherited.books)]
-    result: dict[tuple[str, str], list[str]] = {}
+    citing = {article.name: article.cited_by for article in inherited.rules}
+    nearest = [article.name for article in reversed(inherited.books)]
+    citing_rules: dict[tuple[str, str], list[str]] = {}
     for rule in rules:
         if rule.cite:
-            result.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
-    ordered = sorted(result, key=lambda one: (nearest.index(one[0]), _natural(one[1]), one[1]))
-    return tuple(CitedArticle(*one, tuple(result[one])) for one in ordered)
+            citing_rules.setdefault((citing[rule.name], rule.cite), []).append(rule.name)
+    ordered = sorted(
+        citing_rules,
+        key=lambda article: (nearest.index(article[0]), _natural(article[1]), article[1]),
+    )
+    return tuple(CitedArticle(*article, tuple(citing_rules[article])) for article in ordered)
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
@@ -178,7 +181,7 @@ def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -
 
 
 def _lacks(rule: Rule) -> str:
-    """Which examples a rule lacks."""
+    """The kinds of examples that a rule lacks, in words."""
     missing = [
         word
         for word, accepts in (("accepts", True), ("rejects", False))
@@ -207,24 +210,24 @@ def _soft_only(articles: Sequence[CitedArticle], rulebook: Rulebook) -> Iterator
 
 
 def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
-    for rule in inherited.rules:
-        last = rule.last
+    for history in inherited.rules:
+        last = history.last
         if last.deed in ("dropped", "silent"):
-            yield AuditFinding(last.deed, rule.name, last.because)
-        if rule.rule is None:
+            yield AuditFinding(last.deed, history.name, last.because)
+        if history.rule is None:
             continue
         softened = [
-            step for step in rule.steps if step.deed == "softened" and HARDNESS in step.clauses
+            step for step in history.steps if step.deed == "softened" and HARDNESS in step.clauses
         ]
-        if softened and rule.rule.strength == "soft":
-            yield AuditFinding("softened", rule.name, softened[-1].because)
-        if rule.rule.in_force is not None and not in_force(rule.rule.in_force, at):
-            yield AuditFinding("out-of-force", rule.name, print_in_force(rule.rule.in_force))
+        if softened and history.rule.strength == "soft":
+            yield AuditFinding("softened", history.name, softened[-1].because)
+        if history.rule.in_force is not None and not in_force(history.rule.in_force, at):
+            yield AuditFinding("out-of-force", history.name, print_in_force(history.rule.in_force))
 
 
 def _of_provision(item: ConstantHistory) -> Iterator[AuditFinding]:
     """Of a parameter the value that counts, if it counts for a time only."""
-    for setting in item.settings:
-        if setting.current and (setting.since or setting.until):
-            dates = print_in_force(tree.InForce(setting.since, setting.until))
-            yield AuditFinding("dated", item.name, f"{setting.text} {dates}")
+    for value in item.settings:
+        if value.current and (value.since or value.until):
+            dates = print_in_force(tree.InForce(value.since, value.until))
+            yield AuditFinding("dated", item.name, f"{value.text} {dates}")

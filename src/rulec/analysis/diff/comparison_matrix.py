@@ -1,4 +1,4 @@
-"""Many rulebooks side by side: for every rule, who has the same law, and who is stricter."""
+"""Compare many rulebooks: for every rule the rulebooks of the same law, and the stricter ones."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CONVERSE: Mapping[RuleRelation, RuleRelation] = {
     "incomparable": "incomparable",
     "undecided": "undecided",
 }
-"""What the second rule is to the first one."""
+"""The relation of the second rule to the first, given that of the first to the second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,24 +72,24 @@ class ComparisonMatrix:
         ``only`` are those that the second one does not have, ``silent`` those of them of which it
         says why.
         """
-        counter: Counter[str] = Counter()
+        numbers: Counter[str] = Counter()
         for rule in self.rules:
             relation = rule.relation(first, second)
             if relation is not None:
-                counter[relation] += 1
+                numbers[relation] += 1
             elif first in rule.laws:
-                counter["only"] += 1
-                counter["silent"] += second in rule.remarks
-        return counter
+                numbers["only"] += 1
+                numbers["silent"] += second in rule.remarks
+        return numbers
 
     @property
     def is_complete(self) -> bool:
-        """Has every question been answered?"""
+        """Whether every question has been answered."""
         return all("undecided" not in rule.relations.values() for rule in self.rules)
 
     @property
     def is_uniform(self) -> bool:
-        """Do all rulebooks that have a rule have the same one?"""
+        """Whether all rulebooks that have a rule have the same one."""
         return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
 
 
@@ -113,7 +113,7 @@ def comparison_matrix(
         for number, rule in zip(having, rules, strict=True):
             if has[name] > 1:
                 stepped[number][name] = rule
-    sides = SharedCompiler(tell).sides(books, stepped)
+    sides = SharedCompiler(tell).compile(books, stepped)
     shared_rules = []
     for number, name in enumerate(names, 1):
         of_each = {
@@ -121,15 +121,19 @@ def comparison_matrix(
         }
         laws, relations = _classified(of_each)
         # What only one of them has is its own law, whatever it is.
-        laws = laws or {book.name: 0 for book, our in zip(books, ours, strict=True) if name in our}
+        laws = laws or {
+            book.name: 0
+            for book, rules_of_book in zip(books, ours, strict=True)
+            if name in rules_of_book
+        }
         shared_rules.append(
             SharedRule(
                 name,
                 laws,
                 {
-                    book.name: our[name]
-                    for book, our in zip(books, ours, strict=True)
-                    if name in our
+                    book.name: rules_of_book[name]
+                    for book, rules_of_book in zip(books, ours, strict=True)
+                    if name in rules_of_book
                 },
                 relations,
                 {
@@ -145,7 +149,7 @@ def comparison_matrix(
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
-    """How much there is to do, at most."""
+    """The number of steps, at most."""
     return len(books) + len({name for book in books for name in rules_matching(book, patterns)})
 
 
@@ -170,15 +174,15 @@ def _law(
     relations: dict[tuple[int, int], RuleRelation],
 ) -> int:
     """The law among those known that is the same, or a new one, compared to all of them."""
-    result = {}
+    found_relations = {}
     for number, representative in enumerate(representatives):
-        result[number] = compare(side, representative).relation
-        if result[number] == "equal":
+        found_relations[number] = compare(side, representative).relation
+        if found_relations[number] == "equal":
             return number
     own = len(representatives)
     representatives.append(side)
     relations[own, own] = "equal"
-    for number, relation in result.items():
+    for number, relation in found_relations.items():
         relations[own, number] = relation
         relations[number, own] = CONVERSE[relation]
     return own
@@ -186,4 +190,4 @@ def _law(
 
 def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:
     """Every two rulebooks, in both orders."""
-    return [(one.name, other.name) for one, other in permutations(books, 2)]
+    return [(first.name, second.name) for first, second in permutations(books, 2)]

@@ -1,4 +1,4 @@
-"""Why one rule forbids what another allows: not one trace, but one for every reason.
+"""Find several traces that one rule forbids and another allows, one for every reason.
 
 A trace says of most things that they are as usual; what it says otherwise is its reason. A further
 trace shows another reason if it does without something that each of those before it needs, so it is
@@ -24,39 +24,39 @@ from rulec.witnesses.state_synthesis import keys_of
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_SEARCHES = 12
-"""So many times it is looked for another reason."""
+"""No more searches for another reason are made."""
 
 
 def diverse_witnesses(
-    one: AnalyzedRule, other: AnalyzedRule, first: Trace, most: int
+    forbidding: AnalyzedRule, allowing: AnalyzedRule, first: Trace, most: int
 ) -> tuple[Trace, ...]:
     """Traces that the first rule forbids and the second one allows, each for another reason.
 
     Args:
-        one: the rule that forbids them.
-        other: the rule that allows them.
+        forbidding: the rule that forbids them.
+        allowing: the rule that allows them.
         first: one of them, the first of the answer.
         most: how many to look for.
     """
-    vocabulary = one.rulebook.vocabulary
+    vocabulary = forbidding.rulebook.vocabulary
     traces = [first]
     shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
     asked: set[frozenset[str]] = set()
     while waiting and len(traces) < most and len(asked) < MOST_SEARCHES:
-        usual = waiting.popleft()
-        if usual in asked:
+        defaulted = waiting.popleft()
+        if defaulted in asked:
             continue
-        known = next((names for names in shown if not names & usual), None)
+        known = next((names for names in shown if not names & defaulted), None)
         if known is None:
-            asked.add(usual)
-            trace = _without(usual, one, other)
+            asked.add(defaulted)
+            trace = _without(defaulted, forbidding, allowing)
             if trace is None:
                 continue
             known = non_default_names(trace, vocabulary)
             traces.append(trace)
             shown.append(known)
-        waiting.extend(usual | {name} for name in sorted(known))
+        waiting.extend(defaulted | {name} for name in sorted(known))
     return tuple(traces)
 
 
@@ -73,9 +73,13 @@ def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     )
 
 
-def _without(names: frozenset[str], left: AnalyzedRule, right: AnalyzedRule) -> Trace | None:
+def _without(
+    names: frozenset[str], forbidding: AnalyzedRule, allowing: AnalyzedRule
+) -> Trace | None:
     try:
-        return counterexample(left, [right], tuple(_as_usual(names, left.rulebook.vocabulary)))
+        return counterexample(
+            forbidding, [allowing], tuple(_as_usual(names, forbidding.rulebook.vocabulary))
+        )
     except UndecidedError:
         return None
 

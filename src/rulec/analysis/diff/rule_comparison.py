@@ -1,4 +1,4 @@
-"""Two rules side by side: which traces does one of them forbid, and the other allow?"""
+"""Compare two rules by the traces that one of them forbids and the other allows."""
 
 from __future__ import annotations
 
@@ -38,30 +38,30 @@ class RuleComparison:
     on_common: RuleRelation | None = None
 
 
-def compare(one: AnalyzedRule, other: AnalyzedRule, most: int = 1) -> RuleComparison:
+def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleComparison:
     """Compare two rules, both compiled for the same step if they have bounds in seconds.
 
     Either way ``most`` traces are looked for, each for a reason of its own.
     """
-    if one.law == other.law:
+    if first.law == second.law:
         return RuleComparison("equal")
-    rule_comparison = _compare(one, other, most)
-    common = common_types(one.rule.variables, other.rule.variables, one.rulebook.vocabulary)
-    if common is None or rule_comparison.undecided:
-        return rule_comparison
-    narrow, narrower = (_narrowed(side, common) for side in (one, other))
-    return replace(rule_comparison, common=common, on_common=_compare(narrow, narrower, 1).relation)
+    comparison = _compare(first, second, most)
+    common = common_types(first.rule.variables, second.rule.variables, first.rulebook.vocabulary)
+    if common is None or comparison.undecided:
+        return comparison
+    narrow, narrower = (_narrowed(side, common) for side in (first, second))
+    return replace(comparison, common=common, on_common=_compare(narrow, narrower, 1).relation)
 
 
-def _compare(left: AnalyzedRule, right: AnalyzedRule, most: int) -> RuleComparison:
+def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleComparison:
     try:
-        first, second = counterexample(left, [right]), counterexample(right, [left])
+        first_trace, second_trace = counterexample(first, [second]), counterexample(second, [first])
     except UndecidedError as problem:
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
-        relation_of(first, second),
-        () if first is None else diverse_witnesses(left, right, first, most),
-        () if second is None else diverse_witnesses(right, left, second, most),
+        relation_of(first_trace, second_trace),
+        () if first_trace is None else diverse_witnesses(first, second, first_trace, most),
+        () if second_trace is None else diverse_witnesses(second, first, second_trace, most),
     )
 
 
@@ -73,17 +73,17 @@ def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
 
 
 def common_types(
-    one: Sequence[Variable], other: Sequence[Variable], vocabulary: Vocabulary
+    first: Sequence[Variable], second: Sequence[Variable], vocabulary: Vocabulary
 ) -> tuple[str, ...] | None:
     """The types of objects that both rules speak of, in the order of the first one's variables.
 
     None if the two speak of the same types, or share no objects at all.
     """
-    types = [variable.type for variable in one]
-    others = [variable.type for variable in other]
-    if len(types) != len(others) or sorted(types) == sorted(others):
+    types = [variable.type for variable in first]
+    second_types = [variable.type for variable in second]
+    if len(types) != len(second_types) or sorted(types) == sorted(second_types):
         return None
-    for order in permutations(others):
+    for order in permutations(second_types):
         pairs = list(zip(types, order, strict=True))
         narrow = tuple(
             a if vocabulary.is_subtype(a, b) else b if vocabulary.is_subtype(b, a) else ""
@@ -94,17 +94,17 @@ def common_types(
     return None
 
 
-def _narrowed(side: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
+def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
     """The rule for objects of these types alone."""
-    variables = side.rule.variables
+    variables = analyzed.rule.variables
     for order in permutations(common):
         if all(
-            side.rulebook.vocabulary.is_subtype(kind, variable.type)
+            analyzed.rulebook.vocabulary.is_subtype(kind, variable.type)
             for kind, variable in zip(order, variables, strict=True)
         ):
             own = tuple(
                 Variable(variable.name, kind)
                 for kind, variable in zip(order, variables, strict=True)
             )
-            return replace(side, rule=replace(side.rule, variables=own))
+            return replace(analyzed, rule=replace(analyzed.rule, variables=own))
     raise AssertionError("the common types are those of both rules")

@@ -1,4 +1,4 @@
-"""Two rulebooks side by side."""
+"""Compare two rulebooks rule by rule."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class RulePair:
 
     @property
     def relation(self) -> RuleRelation:
-        """What the first one is to the second one."""
+        """The relation of the first rule to the second."""
         return self.comparison.relation
 
     @property
@@ -84,7 +84,7 @@ class RulebookDiff:
 
     @property
     def is_none(self) -> bool:
-        """Do the two forbid the same, as strictly?"""
+        """Whether the two forbid the same, as strictly."""
         alike = all(
             pair.relation == "equal" and pair.first.strength == pair.second.strength
             for pair in self.pairs
@@ -93,7 +93,7 @@ class RulebookDiff:
 
     @property
     def is_complete(self) -> bool:
-        """Has every question been answered?"""
+        """Whether every question has been answered."""
         return not any(pair.comparison.undecided for pair in self.pairs)
 
     @property
@@ -107,33 +107,31 @@ class RulebookDiff:
         """What one rulebook's rule forbids and the other's allows: both names, and the states."""
         words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
         names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
-        one, other = self.first.name, self.second.name
-        for traces, forbids, allows in (
-            (pair.comparison.first_forbids, one, other),
-            (pair.comparison.second_forbids, other, one),
+        books = self.first.name, self.second.name
+        for traces, (forbids, allows) in (
+            (pair.comparison.first_forbids, books),
+            (pair.comparison.second_forbids, books[::-1]),
         ):
             for trace in traces:
                 yield forbids, allows, trace_table(trace, names, words.vocabulary)
 
 
-def setting_pairs(one: BookLineage, other: BookLineage) -> tuple[SettingPair, ...]:
+def setting_pairs(first: BookLineage, second: BookLineage) -> tuple[SettingPair, ...]:
     """The options and parameters that both have with different values."""
     theirs = {
-        provision.name: provision
-        for provision in other.provisions
-        if provision.kind != "definition"
+        constant.name: constant for constant in second.provisions if constant.kind != "definition"
     }
-    result = []
-    for ours in one.provisions:
+    pairs = []
+    for ours in first.provisions:
         if ours.name in theirs and theirs[ours.name].kind == ours.kind:
             values = [_value(ours), _value(theirs[ours.name])]
             if values[0] != values[1]:
-                result.append(SettingPair(ours.kind, ours.name, *values))
-    return tuple(result)
+                pairs.append(SettingPair(ours.kind, ours.name, *values))
+    return tuple(pairs)
 
 
 def _value(provision: ConstantHistory) -> str:
-    return next((setting.text for setting in provision.settings if setting.current), "")
+    return next((value.text for value in provision.settings if value.current), "")
 
 
 def diff_rulebooks(
@@ -162,19 +160,19 @@ def diff_rulebooks(
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     shared = [name for name in ours if name in theirs]
     pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
-    sides = SharedCompiler().sides(
+    sides = SharedCompiler().compile(
         (first, second),
         [{name: pairs[name][which] for name in shared} for which in (0, 1)],
     )
     compared = []
     for number, name in enumerate(shared, 1):
-        one, other = sides[0][name], sides[1][name]
+        left, right = sides[0][name], sides[1][name]
         compared.append(
             RulePair(
                 ours[name],
                 theirs[name],
-                (one.rule, other.rule),
-                _labelled(compare(one, other, most), first.name, second.name, name),
+                (left.rule, right.rule),
+                _labelled(compare(left, right, most), first.name, second.name, name),
             )
         )
         tell(number)
@@ -199,13 +197,13 @@ def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
 def _only(
     ours: dict[str, Rule], theirs: dict[str, Rule], remarks: Sequence[Remark]
 ) -> tuple[OneSided, ...]:
-    said = {remark.name: remark for remark in remarks if remark.kind != "softened"}
+    remark_on = {remark.name: remark for remark in remarks if remark.kind != "softened"}
     return tuple(
-        OneSided(rule, said.get(name)) for name, rule in ours.items() if name not in theirs
+        OneSided(rule, remark_on.get(name)) for name, rule in ours.items() if name not in theirs
     )
 
 
-def _labelled(found: RuleComparison, first: str, second: str, rule: str) -> RuleComparison:
+def _labelled(comparison: RuleComparison, first: str, second: str, rule: str) -> RuleComparison:
     """The comparison with traces that are named for what they show."""
 
     def named(traces: Sequence[Trace], forbids: str, allows: str) -> tuple[Trace, ...]:
@@ -216,7 +214,7 @@ def _labelled(found: RuleComparison, first: str, second: str, rule: str) -> Rule
         )
 
     return replace(
-        found,
-        first_forbids=named(found.first_forbids, first, second),
-        second_forbids=named(found.second_forbids, second, first),
+        comparison,
+        first_forbids=named(comparison.first_forbids, first, second),
+        second_forbids=named(comparison.second_forbids, second, first),
     )

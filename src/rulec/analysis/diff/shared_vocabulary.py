@@ -1,4 +1,4 @@
-"""The words that two rulebooks share, and those that only one of them knows."""
+"""The joint vocabulary of two rulebooks."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ class SharedVocabulary:
     unlike: frozenset[str]
 
 
-def shared_vocabulary(one: Vocabulary, other: Vocabulary) -> SharedVocabulary:
+def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
     """The words of two vocabularies together.
 
     Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
     type is not the same in both.
     """
-    types: dict[str, ObjectType] = dict(one.types)
-    for name, kind in other.types.items():
+    types: dict[str, ObjectType] = dict(first.types)
+    for name, kind in second.types.items():
         if types.setdefault(name, kind).parent != kind.parent:
             raise UndecidedError(f"`{name}` is not the same type in both")
-    declarations: dict[str, Declaration] = dict(one.declarations)
+    declarations: dict[str, Declaration] = dict(first.declarations)
     unlike = set()
-    for name, item in other.declarations.items():
+    for name, item in second.declarations.items():
         known = declarations.setdefault(name, item)
         if replace(known, default=None) != replace(item, default=None):
             unlike.add(name)
         elif known.default != item.default:
             declarations[name] = replace(known, default=None)
-    not_shared = frozenset(one.declarations.keys() ^ other.declarations.keys())
-    words = Vocabulary(one.name, types, declarations)
-    return SharedVocabulary(words, not_shared, frozenset(unlike))
+    not_shared = frozenset(first.declarations.keys() ^ second.declarations.keys())
+    vocabulary = Vocabulary(first.name, types, declarations)
+    return SharedVocabulary(vocabulary, not_shared, frozenset(unlike))

@@ -1,4 +1,4 @@
-"""Where everything in a rulebook comes from: which book of its chain said, changed or dropped it.
+"""Trace all items of a rulebook to the books of its chain that said, changed or dropped them.
 
 ``rulebook.overlay`` says what a chain comes to; here is the way there. Both read the same trees,
 and this one expects that the overlay has found no mistake in them.
@@ -44,8 +44,8 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
         tuple(map(book_header, chain)),
         tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
         tuple(
-            replace(_provision(name, provision, at), used=name in used)
-            for name, provision in told.provisions.items()
+            replace(_provision(name, one, at), used=name in used)
+            for name, one in told.provisions.items()
         ),
     )
 
@@ -60,13 +60,13 @@ def read_with_lineage(
 
 def _used(told: _Tale) -> set[str]:
     """The provisions that the rules speak of, those included that provisions speak of in turn."""
-    result: set[str] = set()
+    used: set[str] = set()
     open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
     while open_:
         names = set(names_used(open_.pop())) & told.provisions.keys()
-        open_ += [item for name in names - result for item, _, _ in told.provisions[name]]
-        result |= names
-    return result
+        open_ += [item for name in names - used for item, _, _ in told.provisions[name]]
+        used |= names
+    return used
 
 
 def book_header(file: tree.File) -> BookHeader:

@@ -21,7 +21,7 @@ def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]
 
     Rulebooks that go round in a circle hang below the first of them by name.
     """
-    by_name = {member.name: member for member in members}
+    by_name = {header.name: header for header in members}
     children: dict[str, list[str]] = {}
     roots = []
     for name in sorted(by_name):
@@ -31,11 +31,11 @@ def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]
         else:
             roots.append(name)
     placed: set[str] = set()
-    extension_trees = [_branch(name, by_name, children, placed) for name in roots]
-    extension_trees += [
+    trees = [_branch(name, by_name, children, placed) for name in roots]
+    trees += [
         _branch(name, by_name, children, placed) for name in sorted(by_name) if name not in placed
     ]
-    return tuple(sorted(extension_trees, key=lambda extension_tree: extension_tree.book.name))
+    return tuple(sorted(trees, key=lambda header: header.book.name))
 
 
 def _branch(
@@ -46,8 +46,8 @@ def _branch(
 ) -> ExtensionTree:
     placed.add(name)
     below = [
-        _branch(one, by_name, children, placed)
-        for one in children.get(name, ())
-        if one not in placed
+        _branch(child, by_name, children, placed)
+        for child in children.get(name, ())
+        if child not in placed
     ]
     return ExtensionTree(by_name[name], tuple(below))

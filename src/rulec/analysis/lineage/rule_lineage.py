@@ -1,4 +1,4 @@
-"""What became of the rules and provisions in a chain of rulebooks, as data."""
+"""The history of rules and constants in a chain of rulebooks, as data."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class BookHeader:
 
 @dataclass(frozen=True, slots=True)
 class LineageStep:
-    """What one book did with a rule.
+    """A change that one book made to a rule.
 
     ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
     what the rule was from then on, None where it is gone.
@@ -48,7 +48,7 @@ class RuleHistory:
 
     @property
     def last(self) -> LineageStep:
-        """What was done with it last."""
+        """The last change."""
         return self.steps[-1]
 
     @property
@@ -64,8 +64,8 @@ class RuleHistory:
 
     def before(self, book: str) -> tree.RuleItem | None:
         """The rule that a book has inherited; None if it has inherited none."""
-        lineage_steps = [step for step in self.steps if step.book != book]
-        return lineage_steps[-1].rule if lineage_steps else None
+        earlier = [step for step in self.steps if step.book != book]
+        return earlier[-1].rule if earlier else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,8 @@
-"""What has to happen before a rule asks for anything."""
+"""Antecedents: the conditions under which a rule asks for anything.
+
+A rule whose antecedent never holds is vacuous (Beer, Ben-David, Eisner, Rodeh, "Efficient detection
+of vacuity in temporal model checking", 2001).
+"""
 
 from __future__ import annotations
 
@@ -31,7 +35,7 @@ def antecedents(rule: Rule) -> Iterator[Antecedent]:
 
 
 def has_constant(formula: Formula) -> bool:
-    """Has it a part that is true or false for good, as options are?"""
+    """Whether a part is true or false for good, as options are."""
     match formula:
         case Constant():
             return True

@@ -20,7 +20,7 @@ def conflicts(
     names: Sequence[str], sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
-    result: list[frozenset[str]] = []
+    conflicting: list[frozenset[str]] = []
     for pair in combinations(names, 2):
         if not are_related(sides[pair[0]], sides[pair[1]]):
             continue
@@ -31,23 +31,29 @@ def conflicts(
             yield undecided_diagnostic(rules[pair[1]], what, problem)
             continue
         if clash is not None:
-            result.append(frozenset(pair))
+            conflicting.append(frozenset(pair))
             yield _cannot_be_kept(pair, clash, sides, rules)
     for name in names:
-        related = [sides[one] for one in names if are_related(sides[name], sides[one])]
-        others = [analyzed_rule for analyzed_rule in related if analyzed_rule.rule.name != name]
-        group = [sides[name], *small_premises(sides[name], others)]
-        clash = None if _holds_one(result, group) else _clash(group)
+        related = [
+            sides[other_name] for other_name in names if are_related(sides[name], sides[other_name])
+        ]
+        premises = [other_name for other_name in related if other_name.rule.name != name]
+        group = [sides[name], *small_premises(sides[name], premises)]
+        clash = None if _holds_one(conflicting, group) else _clash(group)
         if clash is not None:
             smaller = _smallest(group)
-            chosen = tuple(name for name in names if name in {side.rule.name for side in smaller})
-            result.append(frozenset(chosen))
+            chosen = tuple(
+                other_name
+                for other_name in names
+                if other_name in {side.rule.name for side in smaller}
+            )
+            conflicting.append(frozenset(chosen))
             yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
 
 
-def _holds_one(found: Sequence[frozenset[str]], group: Sequence[AnalyzedRule]) -> bool:
-    names = {analyzed_rule.rule.name for analyzed_rule in group}
-    return any(one <= names for one in found)
+def _holds_one(conflicting: Sequence[frozenset[str]], group: Sequence[AnalyzedRule]) -> bool:
+    names = {rule_names.rule.name for rule_names in group}
+    return any(rule_names <= names for rule_names in conflicting)
 
 
 def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
@@ -62,8 +68,8 @@ def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
 
 def _smallest(group: Sequence[AnalyzedRule]) -> Sequence[AnalyzedRule]:
     """The group without those that its conflict does not need."""
-    for analyzed_rule in group:
-        fewer = [rule for rule in group if rule is not analyzed_rule]
+    for analyzed in group:
+        fewer = [kept for kept in group if kept is not analyzed]
         if _clash(fewer) is not None:
             return _smallest(fewer)
     return group

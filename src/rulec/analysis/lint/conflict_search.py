@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.analysis.counterexample import declarations_read
@@ -38,66 +38,67 @@ class _Step:
     symbol: JointLetter
 
 
-def conflict(sides: Sequence[AnalyzedRule]) -> Conflict | None:
+def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     """A shortest trace after which the rules cannot all be kept any more, if there is one.
 
     Its objects are as few as the rules can speak of, each of one for its variables. The rules are
     of one rulebook. Raises UndecidedError where there is too much to search.
     """
-    vocabulary = sides[0].rulebook.vocabulary
-    scene = ObjectUniverse(
-        common_objects([side.rule.variables for side in sides], vocabulary), vocabulary
-    )
-    scene = replace(scene, axioms=sides[0].axioms)
+    vocabulary = analyzed_rules[0].rulebook.vocabulary
+    objects = common_objects([rule.rule.variables for rule in analyzed_rules], vocabulary)
+    universe = ObjectUniverse(objects, vocabulary, analyzed_rules[0].axioms)
     bound = [
-        (number, side.rule.machine, binding)
-        for number, side in enumerate(sides)
-        for binding in scene.bindings(side.rule.variables)
+        (number, analyzed.rule.machine, binding)
+        for number, analyzed in enumerate(analyzed_rules)
+        for binding in universe.bindings(analyzed.rule.variables)
     ]
-    columns = [monitor_function(machine, binding, scene) for _, machine, binding in bound]
-    alphabet = JointAlphabet(scene, columns)
-    if not alphabet.symbols:
+    functions = [monitor_function(monitor, binding, universe) for _, monitor, binding in bound]
+    alphabet = JointAlphabet(universe, functions)
+    if not alphabet.letters:
         return None
     owners = [number for number, _, _ in bound]
-    machines = [machine for _, machine, _ in bound]
+    monitors = [monitor for _, monitor, _ in bound]
     alone_ok = [
         _alone(
-            [machine for owner, machine in zip(owners, machines, strict=True) if owner == number],
+            [monitor for owner, monitor in zip(owners, monitors, strict=True) if owner == number],
             [place for place, owner in enumerate(owners) if owner == number],
-            alphabet.symbols,
+            alphabet.letters,
         )
-        for number in range(len(sides))
+        for number in range(len(analyzed_rules))
     ]
-    graph = _explored(machines, owners, alphabet.symbols)
-    everyone = frozenset(range(len(sides)))
-    together = _hopeful(graph, everyone)
+    graph = _explored(monitors, owners, alphabet.letters)
+    all_rules = frozenset(range(len(analyzed_rules)))
+    together = _hopeful(graph, all_rules)
     places = [
         [place for place, owner in enumerate(owners) if owner == number]
-        for number in range(len(sides))
+        for number in range(len(analyzed_rules))
     ]
-    word = _shortest(graph, together, alone_ok, places, everyone)
+    word = _shortest(graph, together, alone_ok, places, all_rules)
     if word is None:
         return None
     if not word:
         return Conflict(None)
-    steps = [side.rule.step_s for side in sides if side.rule.step_s is not None]
-    judged = [single_rule_rulebook(side.rulebook, side.rule, scene) for side in sides]
+    steps = [rule.rule.step_s for rule in analyzed_rules if rule.rule.step_s is not None]
+    books = [
+        single_rule_rulebook(analyzed.rulebook, analyzed.rule, universe)
+        for analyzed in analyzed_rules
+    ]
 
     def is_open(trace: Trace) -> bool:
-        violations = [violation for book in judged for violation in verify(trace, book).violations]
+        violations = [violation for book in books for violation in verify(trace, book).violations]
         return all(violation.step is None for violation in violations)
 
-    situations = [alphabet.situations[symbol] for symbol in word]
-    return Conflict(synthesize_trace(situations, scene, (*steps, Fraction(1))[0], is_open))
+    states = [alphabet.states[letter] for letter in word]
+    return Conflict(synthesize_trace(states, universe, (*steps, Fraction(1))[0], is_open))
 
 
-def are_related(one: AnalyzedRule, other: AnalyzedRule) -> bool:
-    """Do two rules read something in common, or something that facts connect?"""
-    reached = set(declarations_read(one.rule))
-    groups = [set(names_in(fact.formula)) for fact in one.axioms]
+def are_related(first: AnalyzedRule, second: AnalyzedRule) -> bool:
+    """Whether two rules read something in common, or something that axioms connect."""
+    reached = set(declarations_read(first.rule))
+    groups = [set(names_in(axiom.formula)) for axiom in first.axioms]
     while joined := [group for group in groups if group & reached and not group <= reached]:
         reached.update(*joined)
-    return bool(reached & declarations_read(other.rule))
+    return bool(reached & declarations_read(second.rule))
 
 
 def common_objects(
@@ -108,18 +109,18 @@ def common_objects(
     for variables in heads:
         free = list(objects)
         for variable in variables:
-            result = next(
+            chosen = next(
                 (name for name in free if _fits(objects[name], variable, vocabulary)), None
             )
-            if result is None:
-                result = variable.name
-                while result in objects:
-                    result += "_"
-                objects[result] = variable.type
+            if chosen is None:
+                chosen = variable.name
+                while chosen in objects:
+                    chosen += "_"
+                objects[chosen] = variable.type
             else:
-                free.remove(result)
-                if vocabulary.is_subtype(variable.type, objects[result]):
-                    objects[result] = variable.type
+                free.remove(chosen)
+                if vocabulary.is_subtype(variable.type, objects[chosen]):
+                    objects[chosen] = variable.type
     return objects
 
 
@@ -131,43 +132,47 @@ Graph = Mapping[ProductState, Sequence[_Step]]
 
 
 def _explored(
-    machines: Sequence[MealyMonitor], owners: Sequence[int], symbols: Sequence[JointLetter]
+    monitors: Sequence[MealyMonitor], owners: Sequence[int], letters: Sequence[JointLetter]
 ) -> Graph:
     """The joint states that can be reached, in breadth-first order; a rejecting sink ends it."""
-    start: ProductState = (0,) * len(machines)
+    start: ProductState = (0,) * len(monitors)
     graph: dict[ProductState, list[_Step]] = {}
     waiting = [start]
     seen = {start}
     for node in waiting:
         steps: dict[tuple[ProductState, frozenset[int]], _Step] = {}
-        lost = any(a == machine.rejecting_sink for a, machine in zip(node, machines, strict=True))
-        for symbol in () if lost else symbols:
+        is_lost = any(
+            a == monitor.rejecting_sink for a, monitor in zip(node, monitors, strict=True)
+        )
+        for letter in () if is_lost else letters:
             unsatisfied = {
                 owner
-                for owner, machine, state, which in zip(owners, machines, node, symbol, strict=True)
-                if not machine.outputs[state][which]
+                for owner, monitor, state, letter_class in zip(
+                    owners, monitors, node, letter, strict=True
+                )
+                if not monitor.outputs[state][letter_class]
             }
             target = tuple(
-                machine.successors[state][which]
-                for machine, state, which in zip(machines, node, symbol, strict=True)
+                monitor.successors[state][letter_class]
+                for monitor, state, letter_class in zip(monitors, node, letter, strict=True)
             )
             key = (target, frozenset(owners) - unsatisfied)
-            steps.setdefault(key, _Step(*key, symbol))
+            steps.setdefault(key, _Step(*key, letter))
             if target not in seen:
                 seen.add(target)
                 waiting.append(target)
         graph[node] = list(steps.values())
-        if len(seen) > MOST_STATES or len(graph) * len(symbols) > MOST_STEPS:
+        if len(seen) > MOST_STATES or len(graph) * len(letters) > MOST_STEPS:
             raise UndecidedError("their automata together are too large")
     return graph
 
 
 def _alone(
-    machines: Sequence[MealyMonitor], places: Sequence[int], symbols: Sequence[JointLetter]
+    monitors: Sequence[MealyMonitor], places: Sequence[int], letters: Sequence[JointLetter]
 ) -> frozenset[ProductState]:
     """The states of one rule's machines from which it can still be kept."""
-    own = list(dict.fromkeys(tuple(symbol[place] for place in places) for symbol in symbols))
-    graph = _explored(machines, [0] * len(machines), own)
+    own = list(dict.fromkeys(tuple(letter[place] for place in places) for letter in letters))
+    graph = _explored(monitors, [0] * len(monitors), own)
     return _hopeful(graph, frozenset([0]))
 
 
@@ -180,13 +185,13 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
     waiting = [
         node for node, steps in graph.items() if any(step.satisfied >= everyone for step in steps)
     ]
-    result = set(waiting)
+    found = set(waiting)
     for node in waiting:
         for earlier in before.get(node, ()):
-            if earlier not in result:
-                result.add(earlier)
+            if earlier not in found:
+                found.add(earlier)
                 waiting.append(earlier)
-    return frozenset(result)
+    return frozenset(found)
 
 
 def _shortest(

@@ -1,4 +1,4 @@
-"""What findings say of traces, and of questions that were left open."""
+"""Notes of findings on traces, and on questions that were left open."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
 
 
-def trace_note(what: str, trace: Trace, sides: Sequence[AnalyzedRule]) -> tuple[str, ...]:
+def trace_note(what: str, trace: Trace, analyzed_rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
     """The note on a trace, in the words of these rules."""
-    rules = [side.rule for side in sides]
-    return (f"{what}: {trace_literal(trace, rules, sides[0].rulebook.vocabulary)}",)
+    rules = [analyzed.rule for analyzed in analyzed_rules]
+    return (f"{what}: {trace_literal(trace, rules, analyzed_rules[0].rulebook.vocabulary)}",)
 
 
 def undecided_diagnostic(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""What a rule adds to others: can it be violated, can it be kept, do others imply it?"""
+"""Decide whether a rule can be violated, can be kept, and is implied by others."""
 
 from __future__ import annotations
 
@@ -18,53 +18,53 @@ MOST_JOINT_STATES = 5_000
 """Others are taken together as long as their automata have no more states than these."""
 
 
-def can_be_violated(side: AnalyzedRule) -> bool:
-    """Is there a trace that violates the rule? Raises UndecidedError."""
-    return counterexample(side, []) is not None
+def can_be_violated(analyzed: AnalyzedRule) -> bool:
+    """Whether some trace violates the rule. Raises UndecidedError."""
+    return counterexample(analyzed, []) is not None
 
 
-def can_be_kept(side: AnalyzedRule) -> bool:
-    """Is there a trace, with objects for the rule to speak of, that keeps it?
+def can_be_kept(analyzed: AnalyzedRule) -> bool:
+    """Whether some trace, with objects for the rule to speak of, keeps it.
 
     Raises UndecidedError.
     """
-    objects = {variable.name: variable.type for variable in side.rule.variables}
-    scene = ObjectUniverse(objects, side.rulebook.vocabulary, side.axioms)
-    bindings = scene.bindings(side.rule.variables)
-    columns = [monitor_function(side.rule.machine, binding, scene) for binding in bindings]
-    machines = [side.rule.machine] * len(bindings)
-    symbols = JointAlphabet(scene, columns).symbols
-    return shortest_word(machines, [True] * len(bindings), symbols) is not None
+    objects = {variable.name: variable.type for variable in analyzed.rule.variables}
+    universe = ObjectUniverse(objects, analyzed.rulebook.vocabulary, analyzed.axioms)
+    bindings = universe.bindings(analyzed.rule.variables)
+    functions = [monitor_function(analyzed.rule.machine, binding, universe) for binding in bindings]
+    monitors = [analyzed.rule.machine] * len(bindings)
+    letters = JointAlphabet(universe, functions).letters
+    return shortest_word(monitors, [True] * len(bindings), letters) is not None
 
 
-def implied_by(side: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
+def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
     """One of the others, or few of them together, that forbid all that a rule forbids; else none.
 
     The others are taken together as far as their automata stay small; so more of them together may
     imply it without being found. Raises UndecidedError.
     """
-    related = [analyzed_rule for analyzed_rule in others if are_related(side, analyzed_rule)]
-    for analyzed_rule in related:
-        if counterexample(side, [analyzed_rule]) is None:
-            return (analyzed_rule,)
-    premises = small_premises(side, related)
-    if len(premises) < 2 or counterexample(side, premises) is not None:
+    related = [premise for premise in others if are_related(analyzed, premise)]
+    for premise in related:
+        if counterexample(analyzed, [premise]) is None:
+            return (premise,)
+    premises = small_premises(analyzed, related)
+    if len(premises) < 2 or counterexample(analyzed, premises) is not None:
         return ()
     for premise in premises:
-        fewer = [analyzed_rule for analyzed_rule in premises if analyzed_rule is not premise]
-        if counterexample(side, fewer) is None:
+        fewer = [kept for kept in premises if kept is not premise]
+        if counterexample(analyzed, fewer) is None:
             premises = fewer
     return tuple(premises)
 
 
-def small_premises(side: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:
+def small_premises(analyzed: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:
     """Those of the others whose automata stay small together with that of the rule."""
-    types = sorted(variable.type for variable in side.rule.variables)
+    types = sorted(variable.type for variable in analyzed.rule.variables)
     chosen: list[AnalyzedRule] = []
-    for analyzed_rule in sorted(related, key=lambda rule: len(rule.rule.machine.successors)):
-        if sorted(variable.type for variable in analyzed_rule.rule.variables) not in (types, []):
+    for premise in sorted(related, key=lambda rule: len(rule.rule.machine.successors)):
+        if sorted(variable.type for variable in premise.rule.variables) not in (types, []):
             continue
-        sizes = [len(rule.rule.machine.successors) for rule in (side, *chosen, analyzed_rule)]
+        sizes = [len(rule.rule.machine.successors) for rule in (analyzed, *chosen, premise)]
         if prod(sizes) <= MOST_JOINT_STATES and len(chosen) < MOST_PREMISES:
-            chosen.append(analyzed_rule)
+            chosen.append(premise)
     return chosen

@@ -1,4 +1,4 @@
-"""What is odd in a rulebook, found out by its rules' automata: diagnostics with traces."""
+"""Diagnostics, with traces, of rules that are vacuous, redundant, in conflict, or weaker."""
 
 from __future__ import annotations
 
@@ -48,15 +48,19 @@ def rulebook_findings(
         for rule in book.rules
         for number, trigger in enumerate(antecedents(rule))
     }
-    asked = {name: occurrence(*when, name) for name, when in whens.items()}
+    asked = {name: occurrence(*diagnostic, name) for name, diagnostic in whens.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
-    result = SharedCompiler().sides([book, *bases], [{**by_name, **asked}, *inherited])
-    own = {name: result[0][name] for name in by_name}
-    occurring = {name: (*when, result[0][name]) for name, when in whens.items()}
+    compiled = SharedCompiler().compile([book, *bases], [{**by_name, **asked}, *inherited])
+    own = {name: compiled[0][name] for name in by_name}
+    occurring = {name: (*diagnostic, compiled[0][name]) for name, diagnostic in whens.items()}
     diagnostics: list[Diagnostic] = []
     hopeless: set[str] = set()
     for number, (name, rule) in enumerate(by_name.items(), 1):
-        alone = [*_idle(rule, [one[1:] for one in occurring.values() if one[0] is rule])]
+        alone = [
+            *_idle(
+                rule, [diagnostic[1:] for diagnostic in occurring.values() if diagnostic[0] is rule]
+            )
+        ]
         alone = alone or [*_alone(rule, own[name])]
         if alone:
             hopeless.add(name)
@@ -66,7 +70,7 @@ def rulebook_findings(
     diagnostics += _needless(good, by_name, own)
     hard = [name for name in good if by_name[name].strength == "hard"]
     diagnostics += conflicts(hard, own, by_name)
-    for base, sides in zip(bases, result[1:], strict=True):
+    for base, sides in zip(bases, compiled[1:], strict=True):
         for name, side in sides.items():
             for diagnostic in _weaker(by_name[name], own[name], side, base):
                 diagnostics.append(
@@ -126,7 +130,7 @@ def _needless(
     left = list(names)
     diagnostics: list[Diagnostic] = []
     for name in reversed(names):
-        diagnostics += _implied(rules[name], [one for one in left if one != name], rules, sides)
+        diagnostics += _implied(rules[name], [kept for kept in left if kept != name], rules, sides)
         if (
             diagnostics
             and diagnostics[-1].code == ADDS_NOTHING.code
@@ -141,7 +145,7 @@ def _implied(
 ) -> Iterator[Diagnostic]:
     """A rule that adds nothing to others that are as hard."""
     others = [
-        sides[name] for name in names if rules[name].strength == "hard" or rule.strength == "soft"
+        sides[one] for one in names if rules[one].strength == "hard" or rule.strength == "soft"
     ]
     try:
         premises = implied_by(sides[rule.name], others)
@@ -149,7 +153,7 @@ def _implied(
         yield undecided_diagnostic(rule, "others imply it", problem)
         return
     if premises:
-        listed = [premise.rule.name for premise in premises]
+        listed = [one.rule.name for one in premises]
         verb = "forbids" if len(listed) == 1 else "together forbid"
         who = " and ".join(f"`{one}`" for one in listed)
         yield ADDS_NOTHING.at(
@@ -165,31 +169,31 @@ def _implied(
         )
 
 
-def _ours(found: Diagnostic, extends: Span | None) -> Diagnostic:
-    """What is found of an inherited rule, at the line by which a rulebook inherits it."""
-    if extends is None or found.place is None:
-        return found
-    rule = Label(found.place, "the rule is inherited from here")
-    return replace(found, place=extends.place, labels=(rule, *found.labels))
+def _ours(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
+    """The finding about an inherited rule, at the line by which a rulebook inherits it."""
+    if extends is None or diagnostic.place is None:
+        return diagnostic
+    rule = Label(diagnostic.place, "the rule is inherited from here")
+    return replace(diagnostic, place=extends.place, labels=(rule, *diagnostic.labels))
 
 
 def _weaker(
     rule: Rule, own: AnalyzedRule, inherited: AnalyzedRule, base: Rulebook
 ) -> Iterator[Diagnostic]:
-    rule_comparison = compare(own, inherited)
-    if rule_comparison.undecided:
-        problem = UndecidedError(rule_comparison.undecided)
+    comparison = compare(own, inherited)
+    if comparison.undecided:
+        problem = UndecidedError(comparison.undecided)
         yield undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
         return
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
-    if not rule_comparison.second_forbids and not softer:
+    if not comparison.second_forbids and not softer:
         return
-    how = "laxer" if rule_comparison.second_forbids else "softer"
-    if rule_comparison.relation == "incomparable":
+    how = "laxer" if comparison.second_forbids else "softer"
+    if comparison.relation == "incomparable":
         how = "neither stricter nor laxer"
     notes = [
         note
-        for trace in rule_comparison.second_forbids
+        for trace in comparison.second_forbids
         for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
     yield WEAKER_THAN_BASE.at(
