@@ -1,4 +1,4 @@
-"""The kinds of findings of an audit. A file of its own, so that a shell completes these words at once."""
+"""The kinds of findings of an audit, in a small file so that a shell completes them at once."""
 
 from __future__ import annotations
 
