@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
+from pathlib import Path
+
+from rulec.diagnostics import Diagnostic, Source, SourceLocation
 from rulec.diagnostics.code import Code
 
 NOT_UTF8 = Code(
@@ -44,3 +48,34 @@ WRONG_SETTINGS = Code(
     "rulec compile esterle2019 -o out",
     kind="command",
 )
+
+
+def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
+    """A file in another encoding, or none at all."""
+    way_out = "save the file as UTF-8"
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        place = SourceLocation(name, 1, 1, 1, 1)
+        return NOT_UTF8.at(place, "the file is in UTF-16, not in UTF-8", help=way_out)
+    before = Source(name, data[:position].decode("utf-8"))
+    line, column = before.position(len(before.text))
+    excerpt = data.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r\0")
+    return NOT_UTF8.at(
+        SourceLocation(name, line, column, line, column + 1, excerpt),
+        f"the byte 0x{data[position]:02x} is not UTF-8",
+        help=way_out,
+    )
+
+
+def reason_in_words(problem: OSError | ValueError) -> str:
+    """Why the system refuses a file."""
+    if isinstance(problem, IsADirectoryError):
+        return "it is a folder"
+    known = problem.strerror if isinstance(problem, OSError) else None
+    return (known or str(problem)).lower()
+
+
+def unwritable(path: Path, problem: OSError) -> Diagnostic:
+    """A file that the system does not let be written."""
+    return UNWRITABLE_FILE.at(
+        SourceLocation(str(path)), f"the file cannot be written: {reason_in_words(problem)}"
+    )

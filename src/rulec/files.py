@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import os
 import stat
 from collections.abc import Iterator
@@ -12,8 +11,14 @@ from pathlib import Path
 from typing import IO, Final
 from unicodedata import normalize
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, Source, SourceLocation, Span
-from rulec.file_messages import NOT_UTF8, UNREADABLE_FILE, UNWRITABLE_FILE
+from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span
+from rulec.file_messages import (
+    NOT_UTF8,
+    UNREADABLE_FILE,
+    not_utf8,
+    reason_in_words,
+    unwritable,
+)
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
@@ -41,7 +46,7 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
         with _beside(path) as stream:
             yield stream
     except OSError as problem:
-        raise RulecError(_unwritable(path, problem)) from None
+        raise RulecError(unwritable(path, problem)) from None
 
 
 @contextmanager
@@ -77,7 +82,7 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
-        raise RulecError(_unwritable(path, problem)) from None
+        raise RulecError(unwritable(path, problem)) from None
 
 
 @contextmanager
@@ -95,24 +100,11 @@ def opened(
         stream = path.open("rb")
         stream.peek(1)
     except (OSError, ValueError) as problem:  # ValueError: a null character in the name
-        message = f"the file cannot be read: {_reason(problem)}"
+        message = f"the file cannot be read: {reason_in_words(problem)}"
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     with stream:
         yield stream
-
-
-def _unwritable(path: Path, problem: OSError) -> Diagnostic:
-    return UNWRITABLE_FILE.at(
-        SourceLocation(str(path)), f"the file cannot be written: {_reason(problem)}"
-    )
-
-
-def _reason(problem: OSError | ValueError) -> str:
-    if isinstance(problem, IsADirectoryError):
-        return "it is a folder"
-    known = problem.strerror if isinstance(problem, OSError) else None
-    return (known or str(problem)).lower()
 
 
 def decoded(name: str, data: bytes) -> Source:
@@ -127,7 +119,7 @@ def decoded(name: str, data: bytes) -> Source:
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as reason:
-        raise RulecError(_not_utf8(name, data, reason.start)) from None
+        raise RulecError(not_utf8(name, data, reason.start)) from None
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     return without_null(Source(name, normalize("NFC", text)))
 
@@ -142,18 +134,3 @@ def without_null(source: Source) -> Source:
             help="give a file of plain text in UTF-8",
         )
     return source
-
-
-def _not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
-    way_out = "save the file as UTF-8"
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        place = SourceLocation(name, 1, 1, 1, 1)
-        return NOT_UTF8.at(place, "the file is in UTF-16, not in UTF-8", help=way_out)
-    before = Source(name, data[:position].decode("utf-8"))
-    line, column = before.position(len(before.text))
-    excerpt = data.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r\0")
-    return NOT_UTF8.at(
-        SourceLocation(name, line, column, line, column + 1, excerpt),
-        f"the byte 0x{data[position]:02x} is not UTF-8",
-        help=way_out,
-    )

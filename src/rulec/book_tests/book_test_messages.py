@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
+from rulec.rulebook.model import Rule
 
 EXAMPLE_FAILED = Code(
     "R0406",
@@ -31,3 +33,26 @@ RULE_NOT_EXERCISED = Code(
     "  reject { not wet; wet and not slow }\n}\n",
     kind="examples",
 )
+
+
+def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
+    """A rule whose examples leave one of the verdicts out, or both."""
+    kept, broken = True in missing, False in missing
+    if not any_examples:
+        message = f"rule `{rule.name}` has no example"
+        notes: tuple[str, ...] = ()
+    else:
+        message = f"no example {'keeps' if kept else 'breaks'} rule `{rule.name}`"
+        less = "forbade everything" if kept else "required nothing"
+        notes = (f"all of its examples would also pass if it {less}",)
+    wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
+    clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
+    return RULE_NOT_EXERCISED.at(
+        rule.span,
+        message,
+        expected=f"expected {clauses}",
+        help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
+        "whether the law agrees, you know",
+        notes=notes,
+        severity="warning",
+    )

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.book_tests.book_test_messages import RULE_NOT_EXERCISED
+from rulec.book_tests.book_test_messages import unexercised
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics import Diagnostic
-from rulec.rulebook.model import Rule
 from rulec.witnesses.coverage_witness import possible_letters
 
 
@@ -29,7 +28,7 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
             continue
         shown = {outcome.accepted for outcome in outcomes}
         if len(shown) < 2 and (missing := verdicts(compiled.machine) - shown):
-            yield _unexercised(rule, missing, any_examples=bool(outcomes))
+            yield unexercised(rule, missing, any_examples=bool(outcomes))
 
 
 def verdicts(machine: MealyMonitor) -> set[bool]:
@@ -46,25 +45,3 @@ def verdicts(machine: MealyMonitor) -> set[bool]:
         seen |= new
         waiting += sorted(new)
     return reached_verdicts
-
-
-def _unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
-    kept, broken = True in missing, False in missing
-    if not any_examples:
-        message = f"rule `{rule.name}` has no example"
-        notes: tuple[str, ...] = ()
-    else:
-        message = f"no example {'keeps' if kept else 'breaks'} rule `{rule.name}`"
-        less = "forbade everything" if kept else "required nothing"
-        notes = (f"all of its examples would also pass if it {less}",)
-    wanted = [word for word, is_wanted in (("accept", kept), ("reject", broken)) if is_wanted]
-    clauses = " and ".join(f"`{word} {{ … }}`" for word in wanted)
-    return RULE_NOT_EXERCISED.at(
-        rule.span,
-        message,
-        expected=f"expected {clauses}",
-        help=f"`rulec show` proposes {'both' if len(wanted) == 2 else 'one'}; "
-        "whether the law agrees, you know",
-        notes=notes,
-        severity="warning",
-    )

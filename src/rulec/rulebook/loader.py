@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 from rulec.rulebook.files.extends import Book, read_bases, source_file
-from rulec.rulebook.files.reference_messages import WRONG_KIND_OF_FILE
+from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.search_path import (
     Dependency,
     available_rulebooks,
@@ -140,7 +140,8 @@ def parse_all(file: RulebookFile) -> Trees:
     """
     parsed, mistakes = parse(file.source)
     if parsed.kind == "vocabulary" and parsed.name is not None:
-        raise RulecError(_not_a_rulebook(parsed))
+        expected = "expected `rulebook NAME`"
+        raise RulecError(vocabulary_for_rulebook(parsed.name, expected=expected))
     return _with_bases(file, parsed, mistakes)
 
 
@@ -264,13 +265,3 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
         return place.file != main, place.file, place.start
 
     return tuple(sorted(mistakes, key=rank))
-
-
-def _not_a_rulebook(file: tree.File) -> Diagnostic:
-    assert file.name is not None, "only files with a name are known to be vocabularies"
-    return WRONG_KIND_OF_FILE.at(
-        file.name.span,
-        f"`{file.name.text}` is a vocabulary, not a rulebook",
-        expected="expected `rulebook NAME`",
-        help=f"a rulebook takes its words from it by `use {file.name.text}`",
-    )

@@ -11,10 +11,10 @@ from rulec.syntax.building import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 from rulec.syntax.messages.whole_file import (
     EXPECTED_BEGINNING,
-    GIVEN_TWICE,
     HOW_TO_BEGIN,
     MISPLACED_LINE,
     MISSING_PART,
+    given_twice,
 )
 
 Said = tuple[str, Clause | None, Span]
@@ -43,7 +43,7 @@ def assemble_rule(
             first = said.setdefault(part[0], part)
             if first is not part and part[0] != "unless":
                 what = "in force" if part[0] == "in" else part[0]
-                mistakes.append(_twice(f"`{what}`", part[2], first[2]))
+                mistakes.append(given_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
     if "require" not in said and complete and not head.override:
@@ -101,7 +101,7 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
         mistakes += _not_for_a_vocabulary(parts)
     else:
         for word, lines in once.items():
-            mistakes += [_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]]
+            mistakes += [given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]]
         mistakes += _used_twice(parts)
         said = {mistake.place for mistake in mistakes}
         mistakes += [diagnostic for diagnostic in _misplaced(parts) if diagnostic.place not in said]
@@ -154,7 +154,7 @@ def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:
         if isinstance(part, tree.UseLine):
             name = part.name.text
             if name in first:
-                yield _twice(f"`use {name}`", part.span, first[name])
+                yield given_twice(f"`use {name}`", part.span, first[name])
             first.setdefault(name, part.span)
 
 
@@ -201,16 +201,6 @@ def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
                 expected="expected a declaration",
                 help="rules and header lines belong in a rulebook",
             )
-
-
-def _twice(what: str, again: Span, first: Span) -> Diagnostic:
-    return GIVEN_TWICE.at(
-        again,
-        f"{what} is given twice",
-        expected="given again here",
-        help="keep one of them",
-        labels=(Label(first.place, "first given here"),),
-    )
 
 
 def _no_require(head: RuleHead, span: Span) -> Diagnostic:

@@ -18,7 +18,7 @@ from rulec.syntax.messages.whole_file import (
     EMPTY_FILE,
     EXPECTED_BEGINNING,
     HOW_TO_BEGIN,
-    NOT_A_RULEBOOK,
+    not_a_rulebook,
 )
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.source_decoding import checked
@@ -58,7 +58,7 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         for part in splitter.split()
     ]
     if _is_something_else(parts):
-        return _NOTHING, (_something_else(source, tokens[0]),)
+        return _NOTHING, (not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
     file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
@@ -86,15 +86,6 @@ def _is_something_else(parts: Sequence[Part]) -> bool:
         return False
     broken = sum(isinstance(part, tree.BrokenItem) for part in parts)
     return broken > len(parts) - broken
-
-
-def _something_else(source: Source, first: Token) -> Diagnostic:
-    return NOT_A_RULEBOOK.at(
-        Span(source, first.start, first.end),
-        "the file is no rulebook",
-        expected=EXPECTED_BEGINNING,
-        help=HOW_TO_BEGIN,
-    )
 
 
 def _position(diagnostic: Diagnostic) -> tuple[int, int]:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from rulec.analysis.lint.conflict_search import Conflict, are_related, conflict
-from rulec.analysis.lint.finding_messages import CONFLICTING_RULES
-from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
+from rulec.analysis.lint.finding_messages import CONFLICTING_RULES, undecided_diagnostic
+from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.diagnostics import Diagnostic, Label

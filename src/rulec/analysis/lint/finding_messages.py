@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
+from rulec.rulebook.model import Rule
+from rulec.witnesses.undecided import UndecidedError
 
 CANNOT_BE_VIOLATED = Code(
     "R0801",
@@ -90,3 +93,13 @@ NOT_DECIDED = Code(
     good=_NESTED.format(inner="near(c, c)"),
     kind="analyzed",
 )
+
+
+def undecided_diagnostic(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
+    """The warning (R0807) that a question about a rule was left open."""
+    return NOT_DECIDED.at(
+        rule.span,
+        f"not decided of rule `{rule.name}` whether {what}: {problem}",
+        help="say less in one rule; rules beside each other are looked at one by one",
+        severity="warning",
+    )

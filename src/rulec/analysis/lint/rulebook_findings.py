@@ -14,8 +14,9 @@ from rulec.analysis.lint.finding_messages import (
     CANNOT_BE_VIOLATED,
     NEVER_TRIGGERED,
     WEAKER_THAN_BASE,
+    undecided_diagnostic,
 )
-from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
+from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
 from rulec.diagnostics import Diagnostic, Label, Span

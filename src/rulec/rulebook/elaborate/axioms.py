@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate.elaboration import truth
 from rulec.rulebook.model import Axiom, Variable
-from rulec.rulebook.names.atom_messages import WRONG_ARGUMENT_TYPE
+from rulec.rulebook.names.atom_messages import two_types
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.scope import SIDES, BoundVariable, Scope
 from rulec.rulebook.names.symbol_table import SymbolTable
@@ -50,7 +50,7 @@ def _variables(
         if known is None or known.type is None or declared.fits(wanted, known.type):
             bound_variables[name.text] = BoundVariable(wanted, name.span, name.text)
         elif not declared.fits(known.type, wanted):
-            mistakes.append(_two_types(name, known, wanted))
+            mistakes.append(two_types(name, wanted, known.type, known.span))
     return bound_variables
 
 
@@ -91,13 +91,3 @@ def _parameters(
         SIDES[name]["right"] if name in SIDES else name
     )
     return () if item is None else item.parameters
-
-
-def _two_types(name: tree.Name, known: BoundVariable, wanted: str) -> Diagnostic:
-    return WRONG_ARGUMENT_TYPE.at(
-        name.span,
-        f"`{name.text}` cannot be both a `{known.type}` and a `{wanted}`",
-        expected=f"here it has to be a `{wanted}`",
-        help="say the fact of objects of one type",
-        labels=(Label(known.span.place, f"here it has to be a `{known.type}`"),),
-    )

@@ -19,7 +19,6 @@ from rulec.logic.formula import (
 from rulec.logic.printing import term_in_words
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.bounds import bound_of
-from rulec.rulebook.elaborate.elaboration_messages import OPERATOR_BEFORE_THEN
 from rulec.rulebook.elaborate.linear_arithmetic import (
     Linear,
     Number,
@@ -200,13 +199,7 @@ def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -
 def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
     """Who writes ``never p then q`` means ``never (p then q)``: ``never p`` has no end."""
     if phase.operator in ("always", "never", "eventually") and not phase.grouped:
-        yield OPERATOR_BEFORE_THEN.at(
-            phase.span,
-            f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
-            expected=f"`{phase.operator}` binds tighter than `then`",
-            help=f"write `{phase.operator} (… then …)` to speak of the sequence",
-            severity="warning",
-        )
+        yield say.endless_phase(phase)
 
 
 def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:

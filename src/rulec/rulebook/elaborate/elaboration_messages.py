@@ -332,3 +332,14 @@ def unused_variable(node: tree.Aggregate) -> Diagnostic:
         help="speak of it, or leave the variable out",
         severity="warning",
     )
+
+
+def endless_phase(phase: tree.Prefix) -> Diagnostic:
+    """``never p then q``, where ``never (p then q)`` is probably meant."""
+    return OPERATOR_BEFORE_THEN.at(
+        phase.span,
+        f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
+        expected=f"`{phase.operator}` binds tighter than `then`",
+        help=f"write `{phase.operator} (… then …)` to speak of the sequence",
+        severity="warning",
+    )

@@ -20,7 +20,7 @@ from rulec.rulebook.elaborate.exemptions import (
 )
 from rulec.rulebook.elaborate.linear_arithmetic import negated
 from rulec.rulebook.elaborate.literals import exact_value
-from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE, no_multiple
+from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, excess
 from rulec.rulebook.examples.example_elaboration import example_of
 from rulec.rulebook.model import Exemption, Rule, Variable
@@ -208,10 +208,4 @@ def _guards_a_stretch(formula: Formula) -> bool:
 def _unused(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
     for variable in item.variables:
         if variable.name.text not in scope.used:
-            yield UNUSED_VARIABLE.at(
-                variable.span,
-                f"the formula of `{item.name.text}` says nothing about `{variable.name.text}`",
-                expected="not used in `require`",
-                help="leave the variable out, or speak of it",
-                severity="warning",
-            )
+            yield say.unused_in_rule(item, variable)

@@ -237,3 +237,14 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
         else f"the nearest multiple is {nearest[0]}",
         notes=(f"rule `{rule.name}` would have to know what happens between two states",),
     )
+
+
+def unused_in_rule(item: tree.RuleItem, parameter: tree.Parameter) -> Diagnostic:
+    """A rule's variable that its formula says nothing about."""
+    return UNUSED_VARIABLE.at(
+        parameter.span,
+        f"the formula of `{item.name.text}` says nothing about `{parameter.name.text}`",
+        expected="not used in `require`",
+        help="leave the variable out, or speak of it",
+        severity="warning",
+    )

@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Label, RulecError
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE
-from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, WRONG_KIND_OF_FILE
+from rulec.rulebook.files.reference_messages import (
+    extends_circle,
+    vocabulary_for_rulebook,
+)
 from rulec.rulebook.files.search_path import Dependency, find_base, is_same_file, read_bytes
 from rulec.rulebook.model import SourceFile
 from rulec.syntax import decode, parse, tree
@@ -51,7 +54,11 @@ def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) 
             above = find_base(line.name.text, line.name.span, here.path, search_path)
             first = next((book for book in way if _is(book, above)), None)
             if first is not None or len(way) > MOST_BASES:
-                wrong = _too_many(line) if first is None else _circle(line, way)
+                wrong = (
+                    _too_many(line)
+                    if first is None
+                    else extends_circle(line, [book.file for book in way])
+                )
                 bases.mistakes.append(wrong)
                 bases.failed = True
                 break
@@ -63,7 +70,9 @@ def read_bases(file: tree.File, path: Path | None, search_path: Sequence[Path]) 
             break
         parsed, mistakes = parse(source)
         if parsed.kind == "vocabulary" and parsed.name is not None:
-            bases.mistakes.append(_is_a_vocabulary(line))
+            bases.mistakes.append(
+                vocabulary_for_rulebook(line.name, expected="expected the name of a rulebook")
+            )
             bases.failed = True
             break
         bases.mistakes += mistakes
@@ -89,35 +98,9 @@ def source_file(name: str, data: bytes) -> SourceFile:
     return SourceFile(text, sha256(data).hexdigest())
 
 
-def _circle(line: tree.ExtendsLine, way: Sequence[Book]) -> Diagnostic:
-    names = [f"`{book.file.name.text}`" if book.file.name else "a rulebook" for book in way]
-    chain = " extends ".join([*names, f"`{line.name.text}`"])
-    others = [book.file.extends for book in way if book.file.extends not in (None, line)]
-    return EXTENDS_CIRCLE.at(
-        line.name.span,
-        f"the rulebooks go round in a circle: {chain}",
-        expected="this closes the circle",
-        help="the most general of them extends no other: leave its `extends` line out",
-        labels=tuple(
-            Label(extends_line.span.place, f"`{extends_line.name.text}` is extended here")
-            for extends_line in others
-            if extends_line
-        ),
-    )
-
-
 def _too_many(line: tree.ExtendsLine) -> Diagnostic:
     return FORMULA_TOO_LARGE.at(
         line.span,
         f"more than {MOST_BASES} rulebooks build upon one another",
         help="let a rulebook extend a more general one directly",
-    )
-
-
-def _is_a_vocabulary(line: tree.ExtendsLine) -> Diagnostic:
-    return WRONG_KIND_OF_FILE.at(
-        line.name.span,
-        f"`{line.name.text}` is a vocabulary, not a rulebook",
-        expected="expected the name of a rulebook",
-        help=f"a rulebook takes its words from it by `use {line.name.text}`",
     )

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
+
+if TYPE_CHECKING:  # a check that is recalled does not load the parser
+    from rulec.syntax import tree
 
 WRONG_KIND_OF_FILE = Code(
     "R0206",
@@ -37,3 +45,45 @@ NAME_NOT_FOUND = Code(
     bad="rulebook example\nuse papr\nhard rule r { require not CONGESTED }\n",
     good="rulebook example\nuse paper\nhard rule r { require not CONGESTED }\n",
 )
+
+
+def extends_circle(line: tree.ExtendsLine, way: Sequence[tree.File]) -> Diagnostic:
+    """A rulebook that extends itself, by way of others."""
+    names = [f"`{file.name.text}`" if file.name else "a rulebook" for file in way]
+    chain = " extends ".join([*names, f"`{line.name.text}`"])
+    before = [file.extends for file in way if file.extends is not None and file.extends != line]
+    return EXTENDS_CIRCLE.at(
+        line.name.span,
+        f"the rulebooks go round in a circle: {chain}",
+        expected="this closes the circle",
+        help="the most general of them extends no other: leave its `extends` line out",
+        labels=tuple(
+            Label(extends.span.place, f"`{extends.name.text}` is extended here")
+            for extends in before
+        ),
+    )
+
+
+def not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
+    """A file that should hold a vocabulary and holds something else."""
+    assert file.name is not None, "only files with a name have another one"
+    if file.kind == "rulebook":
+        message = f"`{path.name}` is a rulebook, not a vocabulary"
+    else:
+        message = f"`{path.name}` holds another vocabulary, `{file.name.text}`"
+    return WRONG_KIND_OF_FILE.at(
+        use.name.span,
+        message,
+        expected="expected the name of a vocabulary",
+        help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",
+    )
+
+
+def vocabulary_for_rulebook(name: tree.Name, *, expected: str) -> Diagnostic:
+    """A vocabulary where a rulebook is needed."""
+    return WRONG_KIND_OF_FILE.at(
+        name.span,
+        f"`{name.text}` is a vocabulary, not a rulebook",
+        expected=expected,
+        help=f"a rulebook takes its words from it by `use {name.text}`",
+    )

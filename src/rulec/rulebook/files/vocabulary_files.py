@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.files.extends import source_file
-from rulec.rulebook.files.reference_messages import WRONG_KIND_OF_FILE
+from rulec.rulebook.files.reference_messages import not_the_vocabulary
 from rulec.rulebook.files.search_path import Dependency, find_vocabulary, is_same_file, read_bytes
 from rulec.rulebook.model import SourceFile
 from rulec.syntax import decode, parse, tree
@@ -47,23 +47,9 @@ class Vocabularies:
         self.read_already.append(path)
         file, mistakes = parse(source)
         if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
-            self.mistakes.append(_not_the_vocabulary(use, file, path))
+            self.mistakes.append(not_the_vocabulary(use, file, path))
             self.failed = True
             return None
         self.sources.append(record)
         self.mistakes += mistakes
         return file
-
-
-def _not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
-    assert file.name is not None, "only files with a name have another one"
-    if file.kind == "rulebook":
-        message = f"`{path.name}` is a rulebook, not a vocabulary"
-    else:
-        message = f"`{path.name}` holds another vocabulary, `{file.name.text}`"
-    return WRONG_KIND_OF_FILE.at(
-        use.name.span,
-        message,
-        expected="expected the name of a vocabulary",
-        help=f"give the vocabulary a file of its own that begins with `vocabulary {use.name.text}`",
-    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean, named, nearest_name
+from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
@@ -302,4 +302,15 @@ def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Lab
         expected=f"expected a variable of type `{wanted}`",
         help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
         labels=tuple(labels),
+    )
+
+
+def two_types(name: tree.Name, wanted: str, known_type: str | None, known: Span) -> Diagnostic:
+    """A variable of a fact that would have to be of two types."""
+    return WRONG_ARGUMENT_TYPE.at(
+        name.span,
+        f"`{name.text}` cannot be both a `{known_type}` and a `{wanted}`",
+        expected=f"here it has to be a `{wanted}`",
+        help="say the fact of objects of one type",
+        labels=(Label(known.place, f"here it has to be a `{known_type}`"),),
     )

@@ -240,3 +240,20 @@ def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
         help="leave the line out",
         labels=(Label(known.name.span.place, "inherited from here"),),
     )
+
+
+def priority_circle(
+    higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
+) -> Diagnostic:
+    """A line that contradicts the order of the lines before."""
+    named = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
+    labels = tuple(Label(levels[name].span.place, f"`{name}` was placed here") for name in named)
+    same = higher.text == lower.text
+    return PRIORITY_CIRCLE.at(
+        lower.span,
+        f"`{higher.text} {sign} {lower.text}` contradicts "
+        + ("itself" if same else "the order so far"),
+        expected="this closes a circle" if not same else "a level compared with itself",
+        help="leave one of the lines out; levels of one rank are written `a = b`",
+        labels=labels,
+    )

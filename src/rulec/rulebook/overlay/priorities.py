@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE
-from rulec.rulebook.overlay.overlay_messages import PRIORITY_CIRCLE
+from rulec.rulebook.overlay.overlay_messages import priority_circle
 from rulec.syntax import tree
 
 Order = frozenset[tuple[str, str]]
@@ -42,7 +42,7 @@ def pre_order(
                 larger = _with_pair(larger, pair)
             broken = next((pair for pair in demanded if pair[::-1] in larger), None)
             if broken is not None or (above == below and sign == ">"):
-                mistakes.append(_contradiction(higher, lower, sign, levels))
+                mistakes.append(priority_circle(higher, lower, sign, levels))
                 continue
             order, strict = larger, demanded
         for name in line.levels:
@@ -63,20 +63,4 @@ def _too_many(line: tree.PriorityLine) -> Diagnostic:
         line.span,
         f"there are more than {MOST_LEVELS} levels of priority",
         help="use fewer levels, and weights among the rules of one level",
-    )
-
-
-def _contradiction(
-    higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
-) -> Diagnostic:
-    named = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
-    labels = tuple(Label(levels[name].span.place, f"`{name}` was placed here") for name in named)
-    same = higher.text == lower.text
-    return PRIORITY_CIRCLE.at(
-        lower.span,
-        f"`{higher.text} {sign} {lower.text}` contradicts "
-        + ("itself" if same else "the order so far"),
-        expected="this closes a circle" if not same else "a level compared with itself",
-        help="leave one of the lines out; levels of one rank are written `a = b`",
-        labels=labels,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.code import Code
 
 EXPECTED_BEGINNING = "expected `rulebook NAME`"
@@ -66,3 +67,24 @@ NOT_A_RULEBOOK = Code(
     bad="Dear all,\nplease find the rules attached.\n",
     good="rulebook attached\nsignal p\nhard rule r { require p }\n",
 )
+
+
+def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
+    """Something that can be given once."""
+    return GIVEN_TWICE.at(
+        again,
+        f"{what} is given twice",
+        expected="given again here",
+        help="keep one of them",
+        labels=(Label(first.place, "first given here"),),
+    )
+
+
+def not_a_rulebook(first: Span) -> Diagnostic:
+    """A file that is not in the language at all."""
+    return NOT_A_RULEBOOK.at(
+        first,
+        "the file is no rulebook",
+        expected=EXPECTED_BEGINNING,
+        help=HOW_TO_BEGIN,
+    )
