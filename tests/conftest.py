@@ -5,6 +5,8 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
+from support.snapshots import Snapshots
+
 # The quick profile tries the same examples each time, so that a red run is about the change; the
 # long one looks for new ones.
 settings.register_profile(
@@ -30,3 +32,16 @@ def _own_cache(tmp_path_factory):
         del os.environ["RULEC_CACHE_DIR"]
     else:
         os.environ["RULEC_CACHE_DIR"] = before
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--refresh-snapshots", action="store_true", help="store texts anew instead of comparing"
+    )
+
+
+@pytest.fixture
+def snapshots(request):
+    """The texts in the folder ``snapshots`` beside the test."""
+    refresh = request.config.getoption("--refresh-snapshots")
+    return Snapshots(request.path.parent / "snapshots", refresh=refresh)

@@ -88,7 +88,6 @@ def command(
     from rulec.planning.probability.alternative_predictions import alternative_counts
     from rulec.planning.probability.rule_probability import rule_probabilities
     from rulec.planning.trace_history import read_past
-    from rulec.report.maneuvers import maneuver_json, maneuver_report
     from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers
     from rulec.report.text.console import print_diagnostics, print_result
     from rulec.scenario import load_scenario
@@ -116,8 +115,12 @@ def command(
         classes=None if n_classes is None else (maneuvers.classes(), maneuvers.variants(n_classes)),
     )
     seconds = time.perf_counter() - begin
-    report = maneuver_json.as_json if json_output else maneuver_report.as_text
-    print_result(report(maneuvers, answers, seconds))
+    if json_output:
+        # Its types take 2 ms to make, for which a text need not wait.
+        from rulec.report.maneuvers.maneuver_json import as_json as render
+    else:
+        from rulec.report.maneuvers.maneuver_report import as_text as render
+    print_result(render(maneuvers, answers, seconds))
     return ExitStatus.OK if maneuvers.satisfying else ExitStatus.VIOLATED
 
 

@@ -11,12 +11,12 @@ from rulec.report.maneuvers import maneuver_lines
 from rulec.report.text.count_text import shown_count
 
 
-def count_lines(found: Maneuvers, classes: HomotopyClasses) -> list[str]:
+def count_lines(maneuvers: Maneuvers, classes: HomotopyClasses) -> list[str]:
     """How many classes there are and how many satisfy; where verdicts differ within one, why."""
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
     lines = [f"classes     {satisfying} of {total} satisfying"]
     if classes.divided:
-        counting = [rule.name for rule in found.counting_steps()]
+        counting = [rule.name for rule in maneuvers.counting_steps()]
         why = f": {named(counting)} {'counts' if len(counting) == 1 else 'count'} steps"
         lines.append(
             f"            {shown_count(classes.divided)} of these depending on how long one stays"
@@ -25,11 +25,11 @@ def count_lines(found: Maneuvers, classes: HomotopyClasses) -> list[str]:
     return lines
 
 
-def blocks(found: Maneuvers, variants: Sequence[Variant]) -> list[str]:
+def blocks(maneuvers: Maneuvers, variants: Sequence[Variant]) -> list[str]:
     """A block for every class: its cheapest satisfying member."""
     lines = []
     for number, one in enumerate(variants, 1):
         many = f"{shown_count(one.members)} satisfying members" if one.members > 1 else "1 member"
         lines += ["", f"{number}. {maneuver_lines.in_a_line(one.cheapest)}; class of {many}"]
-        lines += maneuver_lines.cell_lines(found.graph, one.cheapest)
+        lines += maneuver_lines.cell_lines(maneuvers.graph, one.cheapest)
     return lines

@@ -28,9 +28,9 @@ MOST_DEFAULTS = 4
 """So many of what has its default are named in text; JSON has them all."""
 
 
-def as_text(found: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
+def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """The counts in a few lines, and a block for every maneuver that was asked for."""
-    graph, rules = found.graph, found.rules
+    graph, rules = maneuvers.graph, maneuvers.rules
     names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
     horizon = f"{horizon_s(graph):g} s in steps of {graph.step_s:g} s"
@@ -38,17 +38,17 @@ def as_text(found: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     how += f", extent {graph.extent}" if graph.extent != "lane" else ""
     lines = [
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
-        *_scene(found),
+        *_scene(maneuvers),
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
-        f"maneuvers   {shown_count(found.traces)}",
-        f"satisfying  {click.style(shown_count(found.satisfying), bold=True)} by {by}",
-        *_violated_before(found.violated_before or ()),
-        *_by_default(found.by_default),
+        f"maneuvers   {shown_count(maneuvers.traces)}",
+        f"satisfying  {click.style(shown_count(maneuvers.satisfying), bold=True)} by {by}",
+        *_violated_before(maneuvers.violated_before or ()),
+        *_by_default(maneuvers.by_default),
         *probabilities.summary(graph.scenario),
         *probabilities.world_lines(answers.worlds or ()),
     ]
     if answers.classes is not None:
-        lines += homotopy_classes.count_lines(found, answers.classes[0])
+        lines += homotopy_classes.count_lines(maneuvers, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += ["", f"{number}. {in_a_line(maneuver)}", *cell_lines(graph, maneuver)]
@@ -56,12 +56,12 @@ def as_text(found: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
     for one in (*(answers.best or ()), *(answers.ranked or ())):
-        lines += ranked_maneuvers.blocks(found, [one])
+        lines += ranked_maneuvers.blocks(maneuvers, [one])
         lines += _chance_lines(answers, one.maneuver)
     if answers.prunings is not None:
-        lines += ["", *pruning_table.table(found, answers.prunings)]
+        lines += ["", *pruning_table.table(maneuvers, answers.prunings)]
     if answers.classes is not None:
-        lines += homotopy_classes.blocks(found, answers.classes[1])
+        lines += homotopy_classes.blocks(maneuvers, answers.classes[1])
     return "\n".join(lines)
 
 
@@ -70,9 +70,9 @@ def _chance_lines(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:
     return [] if told is None else probabilities.lines(told)
 
 
-def _scene(found: Maneuvers) -> Iterator[str]:
-    account = found.graph.scenario.account
-    return iter(()) if account is None else scene_notes.lines(found, account)
+def _scene(maneuvers: Maneuvers) -> Iterator[str]:
+    account = maneuvers.graph.scenario.account
+    return iter(()) if account is None else scene_notes.lines(maneuvers, account)
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:

@@ -12,9 +12,9 @@ from rulec.report.text.count_text import shown_count
 HEAD = ("rule", "violated by", "alone by", "for example")
 
 
-def table(found: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
+def table(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     """A line for every rule that some maneuver violates, and the names of the others."""
-    rows = [HEAD, *(_row(found, one) for one in prunings if one.violating)]
+    rows = [HEAD, *(_row(maneuvers, one) for one in prunings if one.violating)]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
     lines = [
         "  ".join(
@@ -33,15 +33,15 @@ def table(found: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     return lines if len(rows) > 1 else lines[1:]
 
 
-def _row(found: Maneuvers, pruning: RulePruning) -> tuple[str, str, str, str]:
+def _row(maneuvers: Maneuvers, pruning: RulePruning) -> tuple[str, str, str, str]:
     alone = "soft" if pruning.alone is None else shown_count(pruning.alone)
-    return pruning.rule.name, shown_count(pruning.violating), alone, _example(found, pruning)
+    return pruning.rule.name, shown_count(pruning.violating), alone, _example(maneuvers, pruning)
 
 
-def _example(found: Maneuvers, pruning: RulePruning) -> str:
+def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
     assert pruning.example is not None, "something violates it"
     first = pruning.violations[0]
     moves = maneuver_lines.relations_in_time(
-        found.graph, pruning.example, tuple(first.binding.values())
+        maneuvers.graph, pruning.example, tuple(first.binding.values())
     )
-    return f"{moves}; {when_lost(found, first)}"
+    return f"{moves}; {when_lost(maneuvers, first)}"

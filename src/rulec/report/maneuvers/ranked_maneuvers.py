@@ -17,34 +17,34 @@ MOST_VIOLATIONS = 20
 """So many are shown for a maneuver; JSON has them all."""
 
 
-def blocks(found: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
+def blocks(maneuvers: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
     """A block for each: its place, what it violates, its cells."""
     lines = []
     for one in ranked:
         others = f"; {shown_count(one.members)} violate the same" if one.members > 1 else ""
         lines += ["", f"{one.place}. {maneuver_lines.in_a_line(one.maneuver)}{others}"]
         lines.append(f"   violates {_penalty(one.penalty)}")
-        lines += [f"     {violation_line(found, v)}" for v in one.violations[:MOST_VIOLATIONS]]
+        lines += [f"     {violation_line(maneuvers, v)}" for v in one.violations[:MOST_VIOLATIONS]]
         if len(one.violations) > MOST_VIOLATIONS:
             lines.append(f"     and {len(one.violations) - MOST_VIOLATIONS} more")
-        lines += maneuver_lines.cell_lines(found.graph, one.maneuver)
+        lines += maneuver_lines.cell_lines(maneuvers.graph, one.maneuver)
     return lines
 
 
-def violation_line(found: Maneuvers, violation: Violation) -> str:
+def violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
     """Which rule, of which article, for whom, and since when."""
-    rule = next(one for one in found.rules.rules if one.name == violation.rule)
+    rule = next(one for one in maneuvers.rules.rules if one.name == violation.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
     objects = ", ".join(f"{name} = {visible(value)}" for name, value in violation.binding.items())
     bound = f" for {objects}" if objects else ""
-    return f"{rule.strength} rule {rule.name}{cite}{bound}: {when_lost(found, violation)}"
+    return f"{rule.strength} rule {rule.name}{cite}{bound}: {when_lost(maneuvers, violation)}"
 
 
-def when_lost(found: Maneuvers, violation: Violation) -> str:
+def when_lost(maneuvers: Maneuvers, violation: Violation) -> str:
     """When the rule cannot be kept any more."""
     if violation.step is None:
         return "by how it ends"
-    return f"cannot be kept any more from {found.graph.layers[violation.step].start_s:g} s on"
+    return f"cannot be kept any more from {maneuvers.graph.layers[violation.step].start_s:g} s on"
 
 
 def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:

@@ -20,18 +20,18 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
     }
 
 
-def lines(found: Maneuvers, account: Account) -> Iterator[str]:
+def lines(maneuvers: Maneuvers, account: Account) -> Iterator[str]:
     """The same as text."""
     kept = account.recorded - account.left_out
     out = f", {account.left_out} left out: not on this road" if account.left_out else ""
     yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"
-    end = float(len(found.graph.layers) * found.graph.step)
+    end = float(len(maneuvers.graph.layers) * maneuvers.graph.step)
     if end > account.until_s:
         yield (
             f"recorded    until {max(account.until_s, 0):g} s; who is there then is taken to go on "
             "at its last speed"
         )
-    for name, (value, because) in derived_signals(found, account).items():
+    for name, (value, because) in derived_signals(maneuvers, account).items():
         shown = str(value).lower() if isinstance(value, bool) else value
         yield visible(f"derived     {name} = {shown}: {because}")
     for remark in account.remarks:
