@@ -18,7 +18,7 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.columnize import columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.verify import verify
 from support.oracles.bits.bit_verdicts import verify_on_bits
@@ -40,7 +40,7 @@ def measure(rounds: int) -> Iterator[Result]:
     rules = rulec.compile_rulebook("esterle2019")
     cells = maneuvers()
     layout = cells.layout
-    columns = gathered(cells, rules.vocabulary)
+    columns = columnize(cells, rules.vocabulary)
     booleans = booleans_of(rules, cells)
     sample = sample_of(cells, EVERY)
     size = f"{layout.n_traces:,} traces of {layout.n_steps} states, {len(rules.rules)} rules"

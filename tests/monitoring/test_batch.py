@@ -18,11 +18,11 @@ from rulec.logic.formula import Comparison, Count, Quantity, Same
 from rulec.monitoring.batch import batch_verify, joint_codes
 from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
 from rulec.monitoring.batch.column_reader import NotGivenError
-from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.columnize import columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.sum_thresholds import digits_of_sum
-from rulec.monitoring.batch.trace_groups import grouped
-from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.batch.trace_groups import group_traces
+from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
@@ -63,11 +63,11 @@ def test_cells_and_columns_say_the_same(rulebook, traces):
     sound = [one for one in sound if one.present == sound[0].present]
     if not sound:
         return
-    group = grouped(sound)
+    group = group_traces(sound)
     expected = violations(verify(sound[place], compiled) for place in group.order)
     assert listed(verify_cells(group.cells, compiled), sound) == expected
-    with suppress(OddError, NotGivenError):
-        columns = gathered(group.cells, TIMED_VOCABULARY)
+    with suppress(UnencodableError, NotGivenError):
+        columns = columnize(group.cells, TIMED_VOCABULARY)
         assert listed(verify_columns(columns, compiled), sound) == expected
         assert kept(verify_on_bits(columns, compiled)) == kept_by(verify_columns(columns, compiled))
 
@@ -160,10 +160,10 @@ def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
     compiled = crowded(semantics)
     alone = [verify(trace, compiled) for trace in traces]
     assert verify_chunk(traces, compiled) == alone
-    group = grouped(traces)
+    group = group_traces(traces)
     expected = violations(alone[place] for place in group.order)
     assert listed(verify_cells(group.cells, compiled), traces) == expected
-    columns = gathered(group.cells, TIMED_VOCABULARY)
+    columns = columnize(group.cells, TIMED_VOCABULARY)
     judged = verify_columns(columns, compiled)
     assert listed(judged, traces) == expected
     assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
@@ -182,8 +182,8 @@ def test_three_hundred_objects():
     alone = [verify(trace, compiled) for trace in traces]
     assert sum(len(one.violations) for one in alone) > 300
     assert verify_chunk(traces, compiled) == alone
-    columns = gathered(grouped(traces).cells, TIMED_VOCABULARY)
-    expected = violations(alone[place] for place in grouped(traces).order)
+    columns = columnize(group_traces(traces).cells, TIMED_VOCABULARY)
+    expected = violations(alone[place] for place in group_traces(traces).order)
     judged = verify_columns(columns, compiled)
     assert listed(judged, traces) == expected
     assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
@@ -231,8 +231,8 @@ def test_more_is_read_than_one_number_can_tell_apart(monkeypatch, most_cells):
     ]
     compiled = crowded("stutter")
     alone = [verify(trace, compiled) for trace in traces]
-    group = grouped(traces)
-    judged = verify_columns(gathered(group.cells, TIMED_VOCABULARY), compiled)
+    group = group_traces(traces)
+    judged = verify_columns(columnize(group.cells, TIMED_VOCABULARY), compiled)
     assert listed(judged, traces) == violations(alone[place] for place in group.order)
 
 

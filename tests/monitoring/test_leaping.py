@@ -7,8 +7,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rulec.monitoring.batch.machines.joint_machine import Joint
-from rulec.monitoring.batch.machines.multi_step_tables import _lengths, pays, run_leaping
+from rulec.monitoring.batch.machines.joint_machine import JointMachine
+from rulec.monitoring.batch.machines.multi_step_tables import _lengths, is_cheaper, run_multi_step
 from rulec.monitoring.batch.machines.step_order import steps_of
 from rulec.monitoring.batch.machines.table_run import run
 from rulec.trace.trace_columns import layout_of, smallest_unsigned
@@ -55,8 +55,8 @@ def test_verdicts_are_those_of_the_words(n_states, n_letters, n_traces, longest,
     words = words_of(chance, n_traces, n_letters, longest, n_lengths)
     layout = layout_of(list(map(len, words)))
     letters = column_of(words, layout, np.uint8)
-    if pays(n_states, n_letters, n_traces):
-        found = run_leaping(following, verdicts, letters, steps_of(layout, 0, None))
+    if is_cheaper(n_states, n_letters, n_traces):
+        found = run_multi_step(following, verdicts, letters, steps_of(layout, 0, None))
         assert found.tolist() == walked(following, verdicts, words)
 
 
@@ -78,7 +78,7 @@ def test_every_way_to_run_gives_the_same(n_cells, n_states):
     n_letters = min(n_cells, 7)
     following, verdicts = random_machine(chance, n_states, n_letters)
     meant = tuple(chance.choices(range(n_letters), k=n_cells))
-    joint = Joint((0,), meant, following, verdicts)
+    joint = JointMachine((0,), meant, following, verdicts)
     words = words_of(chance, 1200, n_cells, 8, 8)
     layout = layout_of(list(map(len, words)))
     cells = column_of(words, layout, smallest_unsigned(n_cells))

@@ -10,8 +10,8 @@ from pathlib import Path
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.batch.columnize import gathered
-from rulec.monitoring.batch.trace_groups import grouped
+from rulec.monitoring.batch.columnize import columnize
+from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.table_writer import kinds_in
 from rulec.trace.formats.trace_files import read_chunks, write_traces
@@ -154,8 +154,8 @@ def across(rulebook, compiled, traces):
     strengths = {rule.name: rule.strength for rule in compiled.rules}
     found = {trace.id: [] for trace in traces}
     for alike in shapes.values():
-        group = grouped(alike)
-        columns = gathered(group.cells, compiled.vocabulary)
+        group = group_traces(alike)
+        columns = columnize(group.cells, compiled.vocabulary)
         for task, kept in verify_on_bits(columns, compiled):
             for place, keeps in zip(group.order, kept.tolist(), strict=True):
                 if not keeps:

@@ -17,11 +17,11 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.batch.column_reader import NotGivenError
-from rulec.monitoring.batch.columnize import gathered
+from rulec.monitoring.batch.columnize import columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
-from rulec.monitoring.batch.trace_groups import grouped, under_one_name
-from rulec.monitoring.batch.trace_shapes import Names, Shape, in_own_names, shape_of
-from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.batch.trace_groups import group_traces, under_common_names
+from rulec.monitoring.batch.trace_shapes import Names, Shape, shape_of, under_own_names
+from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.state_view import StateView
@@ -78,7 +78,7 @@ def verify_chunk(
                 continue  # it is no trace, which ``verify`` will say
     for places in shapes.values():
         if len(places) >= fewest or _are_long(items, places):
-            _judge_group(items, places, rulebook, answers)
+            _verify_group(items, places, rulebook, answers)
     return [
         verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
@@ -91,34 +91,34 @@ def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> boo
     return sum(len(one.states or ()) for one in traces if isinstance(one, Trace)) >= _LONG
 
 
-def _judge_group(
+def _verify_group(
     items: Sequence[Trace | RulecError],
     places: Sequence[int],
     rulebook: CompiledRulebook,
     answers: list[Answer | None],
 ) -> None:
     """Answer for those traces of one shape that nothing is odd about."""
-    sound: list[tuple[int, Trace]] = []
+    framed: list[tuple[int, Trace]] = []
     for place in places:
         trace = items[place]
         if isinstance(trace, Trace) and _is_framed(trace):
-            sound.append((place, trace))
-    if not sound:
+            framed.append((place, trace))
+    if not framed:
         return
     try:
-        rules = rules_for(sound[0][1], rulebook)
+        rules = rules_for(framed[0][1], rulebook)
     except RulecError:
         return
-    group = _judged(sound, rules)
+    group = _verify_grouped(framed, rules)
     if group is None:
         return
-    unread = set(chain.from_iterable(one.unread.tolist() for one in group.judged))
-    violations = violations_in(group.judged)
+    unread = set(chain.from_iterable(one.unread.tolist() for one in group.verdicts))
+    violations = violations_in(group.verdicts)
     for number, place in enumerate(group.order):
         if number not in unread:
             where, trace = group.traces[place]
             found = violations.get(number, ())
-            told = in_own_names(found, group.objects, tuple(trace.objects))
+            told = under_own_names(found, group.objects, tuple(trace.objects))
             answers[where] = Verdict(trace.id, told)
 
 
@@ -126,41 +126,41 @@ _Placed = tuple[int, Trace]
 
 
 @dataclass(frozen=True, slots=True)
-class _JudgedGroup:
+class _GroupVerdicts:
     """What the engine says of the objects of a group, of which traces, and in which order."""
 
-    judged: Sequence[VerdictColumns]
+    verdicts: Sequence[VerdictColumns]
     traces: Sequence[_Placed]
     order: Sequence[int]
     objects: Names
 
 
-def _judged(traces: Sequence[_Placed], rules: CompiledRulebook) -> _JudgedGroup | None:
-    group = grouped([trace for _, trace in traces])
+def _verify_grouped(traces: Sequence[_Placed], rules: CompiledRulebook) -> _GroupVerdicts | None:
+    group = group_traces([trace for _, trace in traces])
     cells = group.cells
     if len(cells.states) * _SHARED > cells.layout.n_states:
         if any(counts(fact.formula) for fact in rules.axioms):
             return None
         try:
-            columns = gathered(cells, rules.vocabulary, group.names)
-            judged = verify_columns(columns, rules)
-        except (OddError, NotGivenError):
+            columns = columnize(cells, rules.vocabulary, group.names)
+            verdicts = verify_columns(columns, rules)
+        except (UnencodableError, NotGivenError):
             return None
-        return _JudgedGroup(judged, traces, group.order, tuple(cells.objects))
-    cells = under_one_name(group)
+        return _GroupVerdicts(verdicts, traces, group.order, tuple(cells.objects))
+    cells = under_common_names(group)
     scenes = cells.there or (cells.objects,) * len(cells.states)
-    odd = {
+    refused = {
         id(state)
         for state, known, there in zip(group.cells.states, cells.states, scenes, strict=True)
         if not _fits(known, cells.objects, there, rules)
     }
-    if odd:
-        traces = [one for one in traces if odd.isdisjoint(map(id, one[1].states))]
+    if refused:
+        traces = [one for one in traces if refused.isdisjoint(map(id, one[1].states))]
         if not traces:
             return None
-        group = grouped([trace for _, trace in traces])
-        cells = under_one_name(group)
-    return _JudgedGroup(verify_cells(cells, rules), traces, group.order, tuple(cells.objects))
+        group = group_traces([trace for _, trace in traces])
+        cells = under_common_names(group)
+    return _GroupVerdicts(verify_cells(cells, rules), traces, group.order, tuple(cells.objects))
 
 
 def _is_framed(trace: Trace) -> bool:
@@ -197,10 +197,10 @@ def _fits(
     return True
 
 
-def violations_in(judged: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
+def violations_in(verdicts: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
     """The violations of each trace that has some, in the order of rules and objects."""
     found: dict[int, list[Violation]] = {}
-    for one in judged:
+    for one in verdicts:
         rule, objects = one.task.rule, one.task.objects
         for trace, step in zip(one.violated.tolist(), one.lost_at().tolist(), strict=True):
             violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)

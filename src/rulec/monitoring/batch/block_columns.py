@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.batch.trace_shapes import Names
-from rulec.monitoring.batch.value_encoding import OddError, meant, type_of
+from rulec.monitoring.batch.value_encoding import UnencodableError, column_dtype, encode_values
 from rulec.trace.formats.block_presence import NOBODY, BlockPresence
 from rulec.trace.formats.table_blocks import Block, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of
@@ -20,7 +20,7 @@ _MOST_EMPTY = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group:
+class BlockGroup:
     """Traces of one shape, whose ``objects`` are called as in one of them.
 
     ``traces`` are their places in the block, in the order of the ``layout``; ``rows`` those of the
@@ -28,7 +28,7 @@ class Group:
     """
 
     block: Block
-    outline: BlockPresence
+    presence: BlockPresence
     traces: NDArray[np.int64]
     layout: Layout
     rows: NDArray[np.int64]
@@ -38,28 +38,28 @@ class Group:
     stretches: NDArray[np.int64]
 
 
-def groups_of(block: Block, outline: BlockPresence) -> list[Group]:
+def groups_of(block: Block, presence: BlockPresence) -> list[BlockGroup]:
     """The traces of a block, by their shape."""
     shapes: dict[tuple[object, ...], list[int]] = {}
     for trace in range(len(block)):
-        shapes.setdefault(outline.shape_of(trace), []).append(trace)
-    return [_group(block, outline, np.array(traces)) for traces in shapes.values()]
+        shapes.setdefault(presence.shape_of(trace), []).append(trace)
+    return [_group(block, presence, np.array(traces)) for traces in shapes.values()]
 
 
-def _group(block: Block, outline: BlockPresence, traces: NDArray[np.int64]) -> Group:
-    traces = traces[np.argsort(-outline.length[traces], kind="stable")]
-    layout = layout_of(outline.length[traces])
+def _group(block: Block, presence: BlockPresence, traces: NDArray[np.int64]) -> BlockGroup:
+    traces = traces[np.argsort(-presence.length[traces], kind="stable")]
+    layout = layout_of(presence.length[traces])
     rank = np.full(len(block), -1)
     rank[traces] = np.arange(len(traces))
-    rows = np.flatnonzero(rank[outline.trace] >= 0)
-    state = layout.starts[outline.step[rows]] + rank[outline.trace[rows]]
-    there = slice(outline.starts[traces[0]], outline.starts[traces[0] + 1])
-    names, types = tuple(outline.objects[there]), outline.types[there]
-    stretches = outline.stretches[there]
-    return Group(block, outline, traces, layout, rows, state, names, types, stretches)
+    rows = np.flatnonzero(rank[presence.trace] >= 0)
+    state = layout.starts[presence.step[rows]] + rank[presence.trace[rows]]
+    there = slice(presence.starts[traces[0]], presence.starts[traces[0] + 1])
+    names, types = tuple(presence.objects[there]), presence.types[there]
+    stretches = presence.stretches[there]
+    return BlockGroup(block, presence, traces, layout, rows, state, names, types, stretches)
 
 
-def tabled(group: Group, vocabulary: Vocabulary) -> TraceColumns:
+def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
     """The group as columns. Raises OddError as ``gathered`` does."""
     columns: dict[Key, Array] = {}
     for name in group.block.table.names:
@@ -69,7 +69,7 @@ def tabled(group: Group, vocabulary: Vocabulary) -> TraceColumns:
             continue
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
-            raise OddError
+            raise UnencodableError
         columns |= _by_objects(column, told, declaration, group, vocabulary)
     present = {
         name: (first, last)
@@ -77,7 +77,7 @@ def tabled(group: Group, vocabulary: Vocabulary) -> TraceColumns:
         if first != NOBODY
     }
     objects = dict(zip(group.objects, group.types, strict=True))
-    step_s = float(group.outline.step_s[group.traces[0]])
+    step_s = float(group.presence.step_s[group.traces[0]])
     return TraceColumns(group.layout, columns, objects, present, step_s)
 
 
@@ -85,24 +85,24 @@ def _by_objects(
     column: Column,
     told: NDArray[np.bool_],
     declaration: Declaration,
-    group: Group,
+    group: BlockGroup,
     vocabulary: Vocabulary,
 ) -> dict[Key, Array]:
     """For all objects that anything is told of what is told of them."""
     rows, state = group.rows[told], group.state[told]
-    about = [group.outline.item[rows], group.outline.other[rows]]
+    about = [group.presence.item[rows], group.presence.other[rows]]
     n_parameters = len(declaration.parameters)
     if any((one == NOBODY).any() for one in about[:n_parameters]):
-        raise OddError
+        raise UnencodableError
     if any((one != NOBODY).any() for one in about[n_parameters:]):
-        raise OddError
+        raise UnencodableError
     n_objects, n_states = len(group.objects), group.layout.n_states
     which = np.zeros(len(rows), dtype=np.int64)
     for place in about[:n_parameters]:
         which = which * n_objects + place
     found = np.flatnonzero(np.bincount(which))
     if len(found) * n_states > len(group.rows) * _MOST_EMPTY:
-        raise OddError
+        raise UnencodableError
     number = np.zeros(int(found[-1]) + 1, dtype=np.int64)
     number[found] = np.arange(len(found))
     values = _values(column, rows, declaration)
@@ -112,14 +112,14 @@ def _by_objects(
     is_told = np.zeros(len(table), dtype=bool)
     is_told[cells] = True
     if np.count_nonzero(is_told) != len(cells):
-        raise OddError  # something is told twice
+        raise UnencodableError  # something is told twice
     columns: dict[Key, Array] = {}
     lines = zip(table.reshape(-1, n_states), is_told.reshape(-1, n_states), strict=True)
     for one, (line, was_told) in zip(found.tolist(), lines, strict=True):
         places = [one // n_objects, one % n_objects][2 - n_parameters :] if n_parameters else []
         for place, parameter in zip(places, declaration.parameters, strict=True):
             if not vocabulary.is_subtype(group.types[place], parameter):
-                raise OddError
+                raise UnencodableError
         if not was_told.all():
             _fill(line, ~was_told, places, declaration, group)
         columns[declaration.name, tuple([group.objects[place] for place in places])] = line
@@ -132,12 +132,12 @@ def _values(column: Column, rows: NDArray[np.int64], declaration: Declaration) -
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0
         values = [one for one, is_used in zip(column.values, used, strict=True) if is_used]
-        table = np.zeros(len(used), dtype=type_of(declaration))
-        table[used] = meant(values, declaration)
+        table = np.zeros(len(used), dtype=column_dtype(declaration))
+        table[used] = encode_values(values, declaration)
         return table.take(codes)
     numbers = column.numbers[rows]
     if isinstance(declaration, Enumeration | Signal) or not np.isfinite(numbers).all():
-        raise OddError
+        raise UnencodableError
     return numbers
 
 
@@ -146,12 +146,12 @@ def _fill(
     missing: NDArray[np.bool_],
     places: Sequence[int],
     declaration: Declaration,
-    group: Group,
+    group: BlockGroup,
 ) -> None:
     """Give a column its default where nothing is told of objects that are there."""
     default = declaration.default
     if default is not None:
-        line[missing] = meant([default], declaration)[0]
+        line[missing] = encode_values([default], declaration)[0]
         return
     starts = group.layout.starts
     needed = missing.copy()
@@ -161,4 +161,4 @@ def _fill(
             needed[: starts[first]] = False
             needed[starts[last + 1] :] = False
     if needed.any():
-        raise OddError
+        raise UnencodableError

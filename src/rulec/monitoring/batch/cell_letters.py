@@ -9,8 +9,8 @@ from rulec.trace.trace_columns import TraceCells
 from rulec.vocabulary import Vocabulary
 
 
-class Spelling:
-    """The states of walks, read for tasks, by the code that reads single traces."""
+class CellLetterReader:
+    """The states of walks, read for bindings, by the code that reads single traces."""
 
     def __init__(self, traces: TraceCells, vocabulary: Vocabulary) -> None:
         self._n_cells = len(traces.states)
@@ -33,28 +33,28 @@ class Spelling:
             for there, cells in parts.items()
         ]
 
-    def letters(self, task: RuleBinding) -> list[int]:
+    def letters(self, binding: RuleBinding) -> list[int]:
         """For each cell the class of the letter; -1 where there is none to be read.
 
-        Where an object of the task is not there its machine does not run; any letter will do.
+        Where an object of the binding is not there its machine does not run; any letter will do.
         """
         found = [0] * self._n_cells
         for cells, there, columns in self._parts:
-            if there.issuperset(task.objects.values()):
-                for cell, letter in zip(cells, _word(task, columns, len(cells)), strict=True):
+            if there.issuperset(binding.objects.values()):
+                for cell, letter in zip(cells, _word(binding, columns, len(cells)), strict=True):
                     found[cell] = letter
         return found
 
 
-def _word(task: RuleBinding, columns: LetterReader, n_states: int) -> list[int]:
+def _word(binding: RuleBinding, columns: LetterReader, n_states: int) -> list[int]:
     try:
-        return list(columns.word(task.rule, task.objects, 0, n_states - 1))
+        return list(columns.word(binding.rule, binding.objects, 0, n_states - 1))
     except RulecError:
-        return [_letter(task, columns, place) for place in range(n_states)]
+        return [_letter(binding, columns, place) for place in range(n_states)]
 
 
-def _letter(task: RuleBinding, columns: LetterReader, place: int) -> int:
+def _letter(binding: RuleBinding, columns: LetterReader, place: int) -> int:
     try:
-        return columns.word(task.rule, task.objects, place, place)[0]
+        return columns.word(binding.rule, binding.objects, place, place)[0]
     except RulecError:
         return -1

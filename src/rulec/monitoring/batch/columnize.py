@@ -1,4 +1,4 @@
-"""States gathered into columns, as far as nothing about them is odd."""
+"""Columns made of states, unless something about them is unusual."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from operator import itemgetter
 from typing import Any
 
 from rulec.monitoring.batch.trace_shapes import Names
-from rulec.monitoring.batch.value_encoding import OddError, meant
+from rulec.monitoring.batch.value_encoding import UnencodableError, encode_values
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns
 from rulec.vocabulary import Declaration, Vocabulary
 
@@ -16,32 +16,32 @@ _NOT_GIVEN = object()
 _EMPTY: Mapping[str, Any] = {}
 
 
-def gathered(
+def columnize(
     traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names] = ()
 ) -> TraceColumns:
-    """The same traces as columns.
+    """Turn traces that are given as cells into columns.
 
     ``names`` has for each state what the objects are called there, unless they have their names.
 
     Raises:
-        OddError: if ``check_state`` would refuse a state, or a value is given in some states only
-            and has no default; sometimes, too, if a value is of an unusual type.
+        UnencodableError: if ``check_state`` would refuse a state, or a value is given in some
+            states only and has no default; sometimes, too, if a value is of an unusual type.
     """
     if not set(map(type, traces.states)) <= {dict}:
-        raise OddError
-    gathering = _Gathering(traces, vocabulary, names)
+        raise UnencodableError
+    columnizer = _Columnizer(traces, vocabulary, names)
     for name in set().union(*traces.states):
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
-            raise OddError
+            raise UnencodableError
         values = [state.get(name, _NOT_GIVEN) for state in traces.states]
-        gathering.add(values, declaration, declaration.parameters, ())
+        columnizer.add(values, declaration, declaration.parameters, ())
     return TraceColumns(
-        traces.layout, gathering.columns, traces.objects, traces.present, traces.step_s
+        traces.layout, columnizer.columns, traces.objects, traces.present, traces.step_s
     )
 
 
-class _Gathering:
+class _Columnizer:
     def __init__(self, traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names]) -> None:
         self.columns: dict[Key, Array] = {}
         self._names = names
@@ -62,11 +62,11 @@ class _Gathering:
             return
         maps = [_EMPTY if value is _NOT_GIVEN else value for value in values]
         if not set(map(type, maps)) <= {dict}:
-            raise OddError
+            raise UnencodableError
         for item, inner in self._by_object(maps):
             kind = self._traces.objects.get(item)
             if kind is None or not self._vocabulary.is_subtype(kind, parameters[0]):
-                raise OddError
+                raise UnencodableError
             self.add(inner, declaration, parameters[1:], (*items, item))
 
     def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Sequence[tuple[str, Sequence[Any]]]:
@@ -76,8 +76,8 @@ class _Gathering:
                 return self._if_of_the_same(maps)
         if self._names:
             objects = self._traces.objects
-            meant = {own: dict(zip(own, objects, strict=True)) for own in set(self._names)}
-            maps = list(map(_under, maps, map(meant.__getitem__, self._names)))
+            renaming = {own: dict(zip(own, objects, strict=True)) for own in set(self._names)}
+            maps = list(map(_under, maps, map(renaming.__getitem__, self._names)))
         every = set().union(*maps)
         return [(item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every]
 
@@ -101,7 +101,7 @@ class _Gathering:
     ) -> Array:
         if _NOT_GIVEN in values:
             values = self._filled(values, declaration, items)
-        return meant(values, declaration).take(self._traces.cells)
+        return encode_values(values, declaration).take(self._traces.cells)
 
     def _filled(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
@@ -110,7 +110,7 @@ class _Gathering:
         filler = declaration.default
         if filler is None:
             if self._are_there_in_any(items, _places(values)):
-                raise OddError
+                raise UnencodableError
             # Where an object is not there, nothing reads what would be said of it.
             filler = next(value for value in values if value is not _NOT_GIVEN)
         return [filler if value is _NOT_GIVEN else value for value in values]
@@ -133,7 +133,7 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
     try:
         return {names[item]: value for item, value in about.items()}
     except KeyError:
-        raise OddError from None
+        raise UnencodableError from None
 
 
 def _places(values: Sequence[Any]) -> list[int]:

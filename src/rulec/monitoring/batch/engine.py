@@ -1,15 +1,15 @@
-"""Many traces of one shape, judged by every rule for every binding."""
+"""The batch engine: traces of one shape, verified by every rule for every binding."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.monitoring.batch.cell_letters import Spelling
+from rulec.monitoring.batch.cell_letters import CellLetterReader
 from rulec.monitoring.batch.column_reader import ColumnReader
-from rulec.monitoring.batch.joint_codes import walks
+from rulec.monitoring.batch.joint_codes import joint_cells_of
 from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
-from rulec.monitoring.batch.verdict_columns import VerdictColumns, Walk, verdict_columns
+from rulec.monitoring.batch.verdict_columns import JointCells, VerdictColumns, verdict_columns
 from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 
@@ -19,27 +19,33 @@ def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Ve
     Raises NotGivenError where a rule needs what is neither given nor has a default.
     """
     vocabulary = rulebook.vocabulary
-    tasks = _tasks(columns, rulebook)
-    reading = ColumnReader(columns, vocabulary)
-    found = [one for walk in walks(reading, tasks, vocabulary) for one in verdict_columns(walk)]
-    return _in_order(found, tasks)
+    bindings = _bindings_of(columns, rulebook)
+    reader = ColumnReader(columns, vocabulary)
+    verdicts = [
+        verdict
+        for cells in joint_cells_of(reader, bindings, vocabulary)
+        for verdict in verdict_columns(cells)
+    ]
+    return _in_order(verdicts, bindings)
 
 
 def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[VerdictColumns]:
-    """The same for traces that are given as walks; their states have passed ``check_state``."""
-    tasks = _tasks(traces, rulebook)
-    spelling = Spelling(traces, rulebook.vocabulary)
+    """The verdicts on traces that are given as cells; their states have passed ``check_state``."""
+    bindings = _bindings_of(traces, rulebook)
+    reader = CellLetterReader(traces, rulebook.vocabulary)
     together: dict[tuple[int, int | None], list[RuleBinding]] = {}
-    for task in tasks:
-        together.setdefault(task.stretch, []).append(task)
-    found: list[VerdictColumns] = []
+    for binding in bindings:
+        together.setdefault(binding.stretch, []).append(binding)
+    verdicts: list[VerdictColumns] = []
     for group in together.values():
-        letters = [spelling.letters(task) for task in group]
-        found += verdict_columns(Walk(traces.layout, traces.cells, group, letters))
-    return _in_order(found, tasks)
+        letters = [reader.letters(binding) for binding in group]
+        verdicts += verdict_columns(JointCells(traces.layout, traces.cells, group, letters))
+    return _in_order(verdicts, bindings)
 
 
-def _tasks(traces: TraceColumns | TraceCells, rulebook: CompiledRulebook) -> list[RuleBinding]:
+def _bindings_of(
+    traces: TraceColumns | TraceCells, rulebook: CompiledRulebook
+) -> list[RuleBinding]:
     n_steps = traces.layout.n_steps
     return list(
         rule_bindings(rulebook.rules, rulebook.vocabulary, traces.objects, traces.present, n_steps)
@@ -47,7 +53,7 @@ def _tasks(traces: TraceColumns | TraceCells, rulebook: CompiledRulebook) -> lis
 
 
 def _in_order(
-    found: Sequence[VerdictColumns], tasks: Sequence[RuleBinding]
+    verdicts: Sequence[VerdictColumns], bindings: Sequence[RuleBinding]
 ) -> list[VerdictColumns]:
-    by_task = {id(one.task): one for one in found}
-    return [by_task[id(task)] for task in tasks]
+    by_binding = {verdict.task: verdict for verdict in verdicts}
+    return [by_binding[binding] for binding in bindings]

@@ -1,4 +1,4 @@
-"""From columns to cells: one number for all that some tasks read of a state."""
+"""Joint codes: one number, a cell, for all that some rules read of a state."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.automata.thresholds import scale
 from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
 from rulec.monitoring.batch.rule_bindings import RuleBinding
-from rulec.monitoring.batch.verdict_columns import Walk
+from rulec.monitoring.batch.verdict_columns import JointCells
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -37,8 +37,8 @@ class _Digit:
     meanings: Array
 
 
-_Spelling = Sequence[_Digit]
-"""The digits of the letters of a task's machine, in its order."""
+_Digits = Sequence[_Digit]
+"""The digits of the letters of a binding's machine, in its order."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,79 +64,81 @@ def _values(name: str, vocabulary: Vocabulary) -> Sequence[bool | str]:
     return declaration.values if isinstance(declaration, Enumeration) else (False, True)
 
 
-def walks(
-    reading: ColumnReader, tasks: Sequence[RuleBinding], vocabulary: Vocabulary
-) -> Iterator[Walk]:
-    """Walks on which all tasks can be judged. Raises NotGivenError.
+def joint_cells_of(
+    reader: ColumnReader, bindings: Sequence[RuleBinding], vocabulary: Vocabulary
+) -> Iterator[JointCells]:
+    """Cells from which all bindings can be verified. Raises NotGivenError.
 
     Tasks about the same objects on the same stretch share one, unless they read too much.
     """
     together: dict[_Key, list[RuleBinding]] = {}
-    for task in tasks:
-        together.setdefault((frozenset(task.objects.values()), *task.stretch), []).append(task)
-    # Rules have many tasks: a machine's letters become an array once.
-    rules = {id(task.rule): task.rule for task in tasks}
-    known = {one: _alphabet(rule.machine, vocabulary) for one, rule in rules.items()}
+    for binding in bindings:
+        together.setdefault((frozenset(binding.objects.values()), *binding.stretch), []).append(
+            binding
+        )
+    # Rules have many bindings: a machine's letters become an array once.
+    rules = {binding.rule.name: binding.rule for binding in bindings}
+    known = {name: _alphabet(rule.machine, vocabulary) for name, rule in rules.items()}
     for group in together.values():
-        alphabets = [known[id(task.rule)] for task in group]
-        spellings = [
-            _spelling(task, reading, alphabet)
-            for task, alphabet in zip(group, alphabets, strict=True)
+        alphabets = [known[binding.rule.name] for binding in group]
+        all_digits = [
+            _digits_of(binding, reader, alphabet)
+            for binding, alphabet in zip(group, alphabets, strict=True)
         ]
-        if _size(_columns(spellings)) <= MOST_CELLS:
-            yield _walk(reading, group, spellings, alphabets)
+        if _size(_columns(all_digits)) <= MOST_CELLS:
+            yield _joint_cells(reader, group, all_digits, alphabets)
             continue
-        for task, spelling, alphabet in zip(group, spellings, alphabets, strict=True):
-            if _size(_columns([spelling])) <= MOST_CELLS:
-                yield _walk(reading, [task], [spelling], [alphabet])
+        for binding, digits, alphabet in zip(group, all_digits, alphabets, strict=True):
+            if _size(_columns([digits])) <= MOST_CELLS:
+                yield _joint_cells(reader, [binding], [digits], [alphabet])
             else:
-                yield _walk_of_classes(reading, task, spelling, alphabet)
+                yield _class_cells(reader, binding, digits, alphabet)
 
 
-def _spelling(task: RuleBinding, reading: ColumnReader, alphabet: _Alphabet) -> _Spelling:
-    found = []
-    for read, meanings in zip(task.rule.machine.reads, alphabet.meanings, strict=True):
+def _digits_of(binding: RuleBinding, reader: ColumnReader, alphabet: _Alphabet) -> _Digits:
+    digits = []
+    for read, meanings in zip(binding.rule.machine.reads, alphabet.meanings, strict=True):
         if isinstance(read, NumberRead):
-            items = tuple([task.objects[one] for one in scale(read).variables])
+            items = tuple([binding.objects[variable] for variable in scale(read).variables])
             key: _Key = (read.terms, read.thresholds, scale(read).variables, items)
-            found.append(_Digit(key, read.size, reading.digits(read, task.objects), meanings))
+            digits.append(_Digit(key, read.size, reader.digits(read, binding.objects), meanings))
             continue
-        items = tuple([task.objects[one] for one in read.variables])
-        values = reading.values(read.name, items)
+        items = tuple([binding.objects[variable] for variable in read.variables])
+        values = reader.values(read.name, items)
         if values is None:
             raise NotGivenError(read.name, items)
         column = values if isinstance(values, np.ndarray) else int(values)
-        found.append(_Digit((read.name, items), len(meanings), column, meanings))
-    return found
+        digits.append(_Digit((read.name, items), len(meanings), column, meanings))
+    return digits
 
 
-def _columns(spellings: Sequence[_Spelling]) -> Mapping[_Key, _Digit]:
+def _columns(all_digits: Sequence[_Digits]) -> Mapping[_Key, _Digit]:
     """All that is read and is not the same in all states."""
     return {
         digit.key: digit
-        for spelling in spellings
-        for digit in spelling
+        for digits in all_digits
+        for digit in digits
         if isinstance(digit.values, np.ndarray)
     }
 
 
 def _size(columns: Mapping[_Key, _Digit]) -> int:
-    return prod(one.size for one in columns.values())
+    return prod(digit.size for digit in columns.values())
 
 
-def _walk(
-    reading: ColumnReader,
-    tasks: Sequence[RuleBinding],
-    spellings: Sequence[_Spelling],
+def _joint_cells(
+    reader: ColumnReader,
+    bindings: Sequence[RuleBinding],
+    all_digits: Sequence[_Digits],
     alphabets: Sequence[_Alphabet],
-) -> Walk:
-    columns = _columns(spellings)
+) -> JointCells:
+    columns = _columns(all_digits)
     strides: dict[_Key, int] = {}
     stride = 1
     for key, digit in columns.items():
         strides[key] = stride
         stride *= digit.size
-    layout = reading.columns.layout
+    layout = reader.columns.layout
     cells = np.zeros(layout.n_states, dtype=smallest_unsigned(stride))
     for key, digit in columns.items():
         assert isinstance(digit.values, np.ndarray)
@@ -149,36 +151,39 @@ def _walk(
         numbers = np.zeros(stride, dtype=smallest_unsigned(len(codes)))
         numbers[codes] = np.arange(len(codes))
         cells = numbers.take(cells)
-    said = {key: codes // strides[key] % digit.size for key, digit in columns.items()}
+    varying = {key: codes // strides[key] % digit.size for key, digit in columns.items()}
     letters = [
-        alphabet.letters.take(_numbers(task.rule.machine, spelling, said, len(codes))).tolist()
-        for task, spelling, alphabet in zip(tasks, spellings, alphabets, strict=True)
+        alphabet.letters.take(_numbers(binding.rule.machine, digits, varying, len(codes))).tolist()
+        for binding, digits, alphabet in zip(bindings, all_digits, alphabets, strict=True)
     ]
-    return Walk(layout, cells, tasks, letters)
+    return JointCells(layout, cells, bindings, letters)
 
 
 def _numbers(
-    machine: MealyMonitor, spelling: _Spelling, said: Mapping[_Key, Array], n_codes: int
+    machine: MealyMonitor, digits: _Digits, varying: Mapping[_Key, Array], n_codes: int
 ) -> Array:
-    """For each code the letter that the machine reads; of its digits ``said`` has those that vary.
+    """For each code the letter that the machine reads.
 
-    They are numbers below the size of what is read.
+    ``varying`` has those of its digits that are not the same in all states. They are numbers below
+    the size of what is read.
     """
     numbers, stride = np.zeros(n_codes, dtype=np.int64), 1
-    for digit, read in zip(spelling, machine.reads, strict=True):
-        numbers += stride * digit.meanings.take(said.get(digit.key, digit.values))
+    for digit, read in zip(digits, machine.reads, strict=True):
+        numbers += stride * digit.meanings.take(varying.get(digit.key, digit.values))
         stride *= read.size
     return numbers
 
 
-def _walk_of_classes(
-    reading: ColumnReader, task: RuleBinding, spelling: _Spelling, alphabet: _Alphabet
-) -> Walk:
+def _class_cells(
+    reader: ColumnReader, binding: RuleBinding, digits: _Digits, alphabet: _Alphabet
+) -> JointCells:
     """For a machine with very many letters: its classes themselves are the cells."""
-    layout, machine = reading.columns.layout, task.rule.machine
-    given = {digit.key: digit.values for digit in spelling if isinstance(digit.values, np.ndarray)}
-    numbers = _numbers(machine, spelling, given, layout.n_states)
+    layout, machine = reader.columns.layout, binding.rule.machine
+    given = {digit.key: digit.values for digit in digits if isinstance(digit.values, np.ndarray)}
+    numbers = _numbers(machine, digits, given, layout.n_states)
     # One more than the class, so that what is impossible is a cell, too.
     n_cells = len(machine.successors[0]) + 1
     cells = (alphabet.letters - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
-    return Walk(layout, cells.take(numbers), [task], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)])
+    return JointCells(
+        layout, cells.take(numbers), [binding], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)]
+    )

@@ -1,4 +1,4 @@
-"""What there is to judge: every rule, for every binding of its variables."""
+"""Every rule of a rulebook, for every binding of its variables."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rulec.monitoring.binding import bindings
 from rulec.vocabulary import Vocabulary
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RuleBinding:
     """A rule, bound to ``objects``, from step ``first`` to ``last`` (inclusive) of every trace.
 
-    ``last`` is None for each trace's own end.
+    ``last`` is None for each trace's own end. Bindings are compared by identity: they are keys.
     """
 
     rule: CompiledRule
@@ -24,7 +24,7 @@ class RuleBinding:
 
     @property
     def stretch(self) -> tuple[int, int | None]:
-        """From where to where it is judged."""
+        """The first and the last step."""
         return self.first, self.last
 
 
@@ -35,7 +35,7 @@ def rule_bindings(
     present: Mapping[str, tuple[int, int]],
     n_steps: int,
 ) -> Iterator[RuleBinding]:
-    """All tasks on traces with these objects, of which the longest has ``n_steps`` states.
+    """All bindings on traces with these objects, of which the longest has ``n_steps`` states.
 
     In the order in which a verdict lists violations. All traces have the steps that ``present``
     speaks of.

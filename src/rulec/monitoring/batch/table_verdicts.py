@@ -14,11 +14,11 @@ from rulec.monitoring.batch.batch_verify import (
     verify_chunk,
     violations_in,
 )
-from rulec.monitoring.batch.block_columns import Group, groups_of, tabled
+from rulec.monitoring.batch.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.column_reader import NotGivenError
 from rulec.monitoring.batch.engine import verify_columns
-from rulec.monitoring.batch.trace_shapes import in_own_names
-from rulec.monitoring.batch.value_encoding import OddError
+from rulec.monitoring.batch.trace_shapes import under_own_names
+from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import made_for, made_for_step, verify_or_reason
 from rulec.trace import Trace
@@ -34,7 +34,7 @@ Items = Sequence[Trace | RulecError]
 def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
     """As ``verify_chunk``, of traces that may be a block; with the traces as they were read."""
     if isinstance(items, Block):
-        answers = _judge_block(items, rulebook)
+        answers = _verify_block(items, rulebook)
         if answers is not None:
             return items, answers
         items = list(items)
@@ -50,17 +50,17 @@ def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> Compil
     return made_for(trace, rulebook)
 
 
-def _judge_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
+def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
     """None if something is odd about the block."""
     answers: list[Answer | None] = [None] * len(block)
     try:
-        outline = outlined(block)
-        groups = groups_of(block, outline)
-        if len(groups) * _FEWEST_ROWS > len(outline.trace) + _FEWEST_ROWS:
+        presence = outlined(block)
+        groups = groups_of(block, presence)
+        if len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
             return None
         for group in groups:
-            _judge_group(group, rulebook, answers)
-    except (OddTableError, OddError, NotGivenError, RulecError):
+            _verify_group(group, rulebook, answers)
+    except (OddTableError, UnencodableError, NotGivenError, RulecError):
         return None
     return [
         verify_or_reason(block[place], rulebook) if answer is None else answer
@@ -68,19 +68,21 @@ def _judge_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | Non
     ]
 
 
-def _judge_group(group: Group, rulebook: CompiledRulebook, answers: list[Answer | None]) -> None:
+def _verify_group(
+    group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
+) -> None:
     """Answer for the traces of which all that the rules read can be."""
-    outline = group.outline
+    presence = group.presence
     objects = dict(zip(group.objects, group.types, strict=True))
-    step_s = float(outline.step_s[group.traces[0]])
+    step_s = float(presence.step_s[group.traces[0]])
     rules = rules_for(Trace("", step_s, objects, ()), rulebook)
     if any(counts(fact.formula) for fact in rules.axioms):
-        raise OddError
-    judged = verify_columns(tabled(group, rules.vocabulary), rules)
-    unread = set(chain.from_iterable(one.unread.tolist() for one in judged))
-    violations = violations_in(judged)
+        raise UnencodableError
+    verdicts = verify_columns(columnize_block(group, rules.vocabulary), rules)
+    unread = set(chain.from_iterable(one.unread.tolist() for one in verdicts))
+    violations = violations_in(verdicts)
     for number, trace in enumerate(group.traces.tolist()):
         if number not in unread:
-            found = violations.get(number, ())
-            told = in_own_names(found, group.objects, outline.objects_of(trace)) if found else ()
-            answers[trace] = Verdict(outline.names[trace], told)
+            own = violations.get(number)
+            told = under_own_names(own, group.objects, presence.objects_of(trace)) if own else ()
+            answers[trace] = Verdict(presence.names[trace], told)

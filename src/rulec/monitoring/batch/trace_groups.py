@@ -1,11 +1,11 @@
-"""Traces of one shape as walks through the states that they share."""
+"""Groups of traces of one shape, as cells: the states that they share."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise, repeat
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,12 @@ from rulec.monitoring.letter_reader import present_in
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceCells, layout_of, smallest_unsigned
 
+StateIdentity: TypeAlias = int
+"""The ``id`` of a state, which is a dictionary and so no key itself, while its trace lives."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group:
+class TraceGroup:
     """Traces of one shape as cells; ``order`` are their places in the order of the layout.
 
     The objects are the first trace's. ``names`` has for each state what they are called there, in
@@ -29,57 +32,60 @@ class Group:
     names: Sequence[Names] = ()
 
 
-def grouped(traces: Sequence[Trace]) -> Group:
+def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     """Traces of one shape that have passed ``check_trace``.
 
-    States are told apart by identity: a reader that meets a state again gives the same object.
+    States are told apart by identity: readers intern them, and give the same object for a state
+    that they meet again. The traces keep all of them alive.
     """
     lengths = np.array([len(trace.states) for trace in traces], dtype=np.int64)
     order = np.argsort(-lengths, kind="stable")
     ordered = [traces[place] for place in order.tolist()]
     layout = layout_of(lengths[order])
-    one = ordered[0]
+    example = ordered[0]
     states = list(chain.from_iterable([trace.states for trace in ordered]))
-    scenes, scene_of_step = _scenes(one, layout.n_steps)
+    scenes, scene_of_step = _scenes(example, layout.n_steps)
     steps_of = layout.lengths.tolist()
     names = [tuple(trace.objects) for trace in ordered]
     are_alike = names.count(names[0]) == len(names)
     now = list(chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of]))
     whose = list(chain.from_iterable(map(repeat, names, steps_of)))
     places: Sequence[int]
-    ids = list(map(id, states))
+    ids: list[StateIdentity] = list(map(id, states))
     if len(set(ids)) == len(ids):
-        places, found = range(len(ids)), np.arange(len(ids))
+        places, numbers = range(len(ids)), np.arange(len(ids))
     elif len(scenes) == 1 and are_alike:
-        places, found = _distinct(ids)
+        places, numbers = _distinct(ids)
     else:
-        places, found = _distinct(list(zip(ids, now, whose, strict=True)))
+        places, numbers = _distinct(list(zip(ids, now, whose, strict=True)))
     # From one trace after the other to one step after the other.
     before = np.cumsum(layout.lengths) - layout.lengths
     trace = np.repeat(np.arange(layout.n_traces), layout.lengths)
     step = np.arange(layout.n_states) - before[trace]
     cells = np.empty(layout.n_states, dtype=smallest_unsigned(len(places)))
-    cells[layout.starts[step] + trace] = found
+    cells[layout.starts[step] + trace] = numbers
     there = () if len(scenes) == 1 else tuple([scenes[now[place]] for place in places])
     distinct = tuple([states[place] for place in places])
-    walks = TraceCells(layout, cells, distinct, one.objects, one.present, there, one.step_s)
-    return Group(walks, order.tolist(), () if are_alike else [whose[place] for place in places])
+    own_names = () if are_alike else [whose[place] for place in places]
+    shared = TraceCells(
+        layout, cells, distinct, example.objects, example.present, there, example.step_s
+    )
+    return TraceGroup(shared, order.tolist(), own_names)
 
 
 def _distinct(keys: Sequence[Hashable]) -> tuple[Sequence[int], NDArray[np.int64]]:
     """A place for each distinct key, and for every key which of these it is."""
     places = dict(zip(keys, range(len(keys)), strict=True))
     numbers = {key: number for number, key in enumerate(places)}
-    found = np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
-    return list(places.values()), found
+    return list(places.values()), np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
 
 
-def under_one_name(group: Group) -> TraceCells:
+def under_common_names(group: TraceGroup) -> TraceCells:
     """The group's cells, their states renamed; None in place of one that ``renamed`` refuses."""
     if not group.names:
         return group.cells
-    meant = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
-    states: Any = map(renamed_state, group.cells.states, map(meant.__getitem__, group.names))
+    renaming = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
+    states: Any = map(renamed_state, group.cells.states, map(renaming.__getitem__, group.names))
     return replace(group.cells, states=tuple(states))
 
 

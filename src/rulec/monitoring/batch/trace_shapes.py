@@ -53,7 +53,7 @@ def renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | N
     return None if None in found.values() else found
 
 
-def in_own_names(
+def under_own_names(
     violations: Sequence[Violation], objects: Names, own: Names
 ) -> tuple[Violation, ...]:
     """Violations that are told of some objects, told of those of other names."""

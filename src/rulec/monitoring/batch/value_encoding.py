@@ -1,4 +1,4 @@
-"""Values as the numbers that columns hold."""
+"""Encoding of values as the numbers that columns hold."""
 
 from __future__ import annotations
 
@@ -7,41 +7,41 @@ from typing import Any
 
 import numpy as np
 
+from rulec.automata.thresholds import EXACT_IN_FLOATS
+from rulec.monitoring.state_validation import NUMBERS, TRUTHS
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Signal
 
-_EXACT_IN_FLOATS = 1 << 53
+
+class UnencodableError(Exception):
+    """A state does not fit the vocabulary, or lacks a value without a default, or is unusual."""
 
 
-class OddError(Exception):
-    """Some state does not fit the vocabulary, or leaves out what has no default."""
-
-
-def type_of(declaration: Declaration) -> np.dtype[Any]:
-    """What the column of a name holds: see ``TraceColumns``."""
+def column_dtype(declaration: Declaration) -> np.dtype[Any]:
+    """The numbers that the column of a name holds: see ``TraceColumns``."""
     if isinstance(declaration, Enumeration):
         return smallest_unsigned(len(declaration.values))
     return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
 
 
-def meant(values: Sequence[Any], declaration: Declaration) -> Array:
-    """What values mean; OddError if one does not fit, and for some of unusual types."""
+def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:
+    """Encode values. Raises UnencodableError if one does not fit, and for some unusual types."""
     kinds = set(map(type, values))
     if isinstance(declaration, Enumeration):
         places = {value: place for place, value in enumerate(declaration.values)}
         if kinds != {str} or not places.keys() >= set(values):
-            raise OddError
-        return np.fromiter(map(places.__getitem__, values), type_of(declaration), len(values))
+            raise UnencodableError
+        return np.fromiter(map(places.__getitem__, values), column_dtype(declaration), len(values))
     if isinstance(declaration, Signal):
-        if kinds != {bool}:
-            raise OddError
+        if kinds != TRUTHS:
+            raise UnencodableError
         return np.array(values, dtype=bool)
-    if not kinds <= {int, float}:
-        raise OddError
+    if not kinds <= NUMBERS:
+        raise UnencodableError
     whole = [value for value in values if type(value) is int] if int in kinds else []
-    if any(abs(value) > _EXACT_IN_FLOATS for value in whole):
-        raise OddError
+    if any(abs(value) > EXACT_IN_FLOATS for value in whole):
+        raise UnencodableError
     numbers = np.array(values, dtype=np.float64)
     if not np.isfinite(numbers).all():
-        raise OddError
+        raise UnencodableError
     return numbers

@@ -1,4 +1,4 @@
-"""What the engine says of one rule, for one binding, on many traces."""
+"""Verdicts on many traces: a column for each rule and binding."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_alone
-from rulec.monitoring.batch.machines.joint_machine import joined
+from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, run
 from rulec.monitoring.batch.rule_bindings import RuleBinding
 from rulec.trace.trace_columns import Array, Layout
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Walk:
-    """The column of cells that tasks are judged on, and what the cells mean to each of them.
+class JointCells:
+    """A column of cells, and the letters that some bindings read in them.
 
-    ``letters[k][cell]`` is the class of the letter that the k-th task's machine reads there; below
+    ``letters[k][cell]`` is the letter class that the k-th binding's machine reads there; below
     0 if it reads none: a value is missing, or what is read cannot be the case.
     """
 
     layout: Layout
     cells: Array
-    tasks: Sequence[RuleBinding]
+    bindings: Sequence[RuleBinding]
     letters: Sequence[Sequence[int]]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class VerdictColumns:
-    """A task's verdicts: ``accepted`` has one for each trace, in the layout's order.
+    """The verdicts for a binding: ``accepted`` has one for each trace, in the layout's order.
 
-    ``unread`` are traces with a state, on the task's stretch, that the machine reads no letter of;
-    their verdicts mean nothing.
+    ``unread`` are traces with a state, on the binding's stretch, that the machine reads no letter
+    of; their verdicts mean nothing.
     """
 
     task: RuleBinding
@@ -59,55 +59,57 @@ class VerdictColumns:
         ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
         machine = self.task.rule.machine
         if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
-            meant = np.array(self._letters)
+            letters = np.array(self._letters)
             words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
-            lost = np.array([first_lost_of_one(machine, meant.take(word)) for word in words])
+            lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
             return np.where(lost < 0, lost, lost + first)
         steps = range(first, int(ends[0]) if len(ends) else first)
-        walks = (self._cells[layout.starts[step] + chosen[: _longer(ends, step)]] for step in steps)
-        lost = first_lost(machine, self._letters, walks, ends - first)
+        by_step = (
+            self._cells[layout.starts[step] + chosen[: _n_longer(ends, step)]] for step in steps
+        )
+        lost = first_lost(machine, self._letters, by_step, ends - first)
         return np.where(lost < 0, lost, lost + first)
 
 
-def _longer(ends: NDArray[np.int64], step: int) -> int:
+def _n_longer(ends: NDArray[np.int64], step: int) -> int:
     """How many of these, which descend, are above a step."""
     return int(np.searchsorted(-ends, -step))
 
 
-def verdict_columns(walk: Walk) -> Iterator[VerdictColumns]:
-    """The verdicts on a walk's tasks, in their order. All have the same stretch."""
-    if not walk.tasks:
+def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
+    """The verdicts for some bindings, in their order. All have the same stretch."""
+    if not cells.bindings:
         return
-    first, last = walk.tasks[0].stretch
-    unread = [_unread(walk, letters) for letters in walk.letters]
-    spelled = [_spelled(letters) for letters in walk.letters]
-    machines = [task.rule.machine for task in walk.tasks]
-    for joint in joined(list(zip(machines, spelled, strict=True))):
-        verdicts = run(joint, walk.cells, walk.layout, first, last)
+    first, last = cells.bindings[0].stretch
+    unread = [_unread(cells, letters) for letters in cells.letters]
+    letters_read = [_any_where_none(letters) for letters in cells.letters]
+    machines = [binding.rule.machine for binding in cells.bindings]
+    for joint in join_machines(list(zip(machines, letters_read, strict=True))):
+        verdicts = run(joint, cells.cells, cells.layout, first, last)
         for bit, member in enumerate(joint.members):
             yield VerdictColumns(
-                walk.tasks[member],
-                (verdicts & np.uint8(1 << bit)) != 0,
-                unread[member],
-                walk.layout,
-                walk.cells,
-                spelled[member],
+                task=cells.bindings[member],
+                accepted=(verdicts & np.uint8(1 << bit)) != 0,
+                unread=unread[member],
+                _layout=cells.layout,
+                _cells=cells.cells,
+                _letters=letters_read[member],
             )
 
 
-def _spelled(letters: Sequence[int]) -> tuple[int, ...]:
+def _any_where_none(letters: Sequence[int]) -> tuple[int, ...]:
     """Some letter for the cells that have none: they are met in no trace, or in unread ones."""
     if min(letters, default=0) >= 0:
         return tuple(letters)
     return tuple([max(letter, 0) for letter in letters])
 
 
-def _unread(walk: Walk, letters: Sequence[int]) -> NDArray[np.intp]:
+def _unread(cells: JointCells, letters: Sequence[int]) -> NDArray[np.intp]:
     if min(letters, default=0) >= 0:
         return np.empty(0, dtype=np.intp)
     missing = np.array(letters) < 0
-    (first, last), layout = walk.tasks[0].stretch, walk.layout
+    (first, last), layout = cells.bindings[0].stretch, cells.layout
     start = layout.starts[first]
     end = layout.starts[-1 if last is None else last + 1]
-    places = np.flatnonzero(missing.take(walk.cells[start:end])) + start
+    places = np.flatnonzero(missing.take(cells.cells[start:end])) + start
     return np.unique(layout.traces_at(places))

@@ -1,4 +1,4 @@
-"""Several machines as one, which reads what all of them read and gives all their verdicts."""
+"""Products of machines, which read what all of them read and give all their verdicts."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ MOST_VERDICTS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointMachine:
     """Machines that run together.
 
     ``members`` are the machines' places among those that were given. ``letters[cell]`` is the
-    letter of a cell, ``following[state][letter]`` the next state, ``verdicts[state][letter]`` a
+    letter of a cell, ``successors[state][letter]`` the next state, ``verdicts[state][letter]`` a
     whole number: its bit k says whether the k-th member accepts a word that ends with this letter
     read in this state. Runs start in state 0.
     """
@@ -37,11 +37,13 @@ class Joint:
         return len(self.successors[0])
 
 
-Spelled = tuple[MealyMonitor, tuple[int, ...]]
+LetteredMachine = tuple[MealyMonitor, tuple[int, ...]]
 """A machine, and for each cell the class of the letter that the machine reads there."""
 
 
-def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Iterator[Joint]:
+def join_machines(
+    machines: Sequence[LetteredMachine], most_entries: int = MOST_ENTRIES
+) -> Iterator[JointMachine]:
     """Joint machines that together do what all of these do, in this order.
 
     Neighbours are joined as long as what comes out has no more than ``most_entries``; a machine
@@ -49,7 +51,7 @@ def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Ite
     """
     for start in range(0, len(machines), MOST_VERDICTS):
         members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
-        everything = _joint(members, tuple([machines[one] for one in members]), most_entries)
+        everything = _join(members, tuple([machines[member] for member in members]), most_entries)
         if everything is not None:
             yield everything
         else:
@@ -57,28 +59,28 @@ def joined(machines: Sequence[Spelled], most_entries: int = MOST_ENTRIES) -> Ite
 
 
 def _one_by_one(
-    members: Sequence[int], machines: Sequence[Spelled], most_entries: int
-) -> Iterator[Joint]:
-    found: Joint | None = None
+    members: Sequence[int], machines: Sequence[LetteredMachine], most_entries: int
+) -> Iterator[JointMachine]:
+    found: JointMachine | None = None
     for place in members:
         one = machines[place]
         more = None
         if found is not None:
             together = (*(machines[member] for member in found.members), one)
-            more = _joint((*found.members, place), together, most_entries)
+            more = _join((*found.members, place), together, most_entries)
         if more is None:
             if found is not None:
                 yield found
-            more = _joint((place,), (one,), most_entries) or _alone(place, *one)
+            more = _join((place,), (one,), most_entries) or _unjoined(place, *one)
         found = more
     if found is not None:
         yield found
 
 
 @lru_cache(maxsize=256)
-def _joint(
-    members: tuple[int, ...], machines: tuple[Spelled, ...], most_entries: int
-) -> Joint | None:
+def _join(
+    members: tuple[int, ...], machines: tuple[LetteredMachine, ...], most_entries: int
+) -> JointMachine | None:
     """The smallest machine that does the same; None if it is too large, or would be on the way.
 
     Many traces come some thousand at a time, and mean the same each time.
@@ -115,7 +117,7 @@ def _joint(
         return None
     kept = [effects.index(effect) for effect in numbers]
     letter_of = {one: numbers[effect] for one, effect in zip(spelled, effects, strict=True)}
-    return Joint(
+    return JointMachine(
         members,
         tuple([letter_of[column] for column in columns]),
         tuple([tuple([row[place] for place in kept]) for row in smaller]),
@@ -123,6 +125,6 @@ def _joint(
     )
 
 
-def _alone(place: int, machine: MealyMonitor, letters: tuple[int, ...]) -> Joint:
+def _unjoined(place: int, machine: MealyMonitor, letters: tuple[int, ...]) -> JointMachine:
     verdicts = tuple(tuple(map(int, row)) for row in machine.outputs)
-    return Joint((place,), letters, machine.successors, verdicts)
+    return JointMachine((place,), letters, machine.successors, verdicts)

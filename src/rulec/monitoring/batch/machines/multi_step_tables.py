@@ -29,7 +29,7 @@ _WORTH = 4
 """So many look-ups pay for one entry of a table."""
 
 
-def pays(n_states: int, n_letters: int, n_traces: int) -> bool:
+def is_cheaper(n_states: int, n_letters: int, n_traces: int) -> bool:
     """Are two steps in one look-up cheaper than two look-ups, however the traces end?"""
     return n_states * n_letters**2 <= _most_entries(n_traces)
 
@@ -38,33 +38,33 @@ def _most_entries(n_traces: int) -> int:
     return min(_MOST_ENTRIES, n_traces // _WORTH)
 
 
-def run_leaping(
-    following: Rows, verdicts: Rows, letters: Array, steps: Sequence[Step]
+def run_multi_step(
+    successors: Rows, verdicts: Rows, letters: Array, steps: Sequence[Step]
 ) -> NDArray[np.uint8]:
     """The verdicts on all traces: ``verdicts[state][letter]`` for the last letter of each.
 
     ``letters`` is the column of all letters. Runs start in state 0.
     """
-    n_states, n_letters = len(following), len(following[0])
-    found = np.empty(steps[0].now, dtype=np.uint8)
-    leaps = list(_leaps(steps, n_states, n_letters, _most_entries(steps[0].now)))
+    n_states, n_letters = len(successors), len(successors[0])
+    found = np.empty(steps[0].n_traces, dtype=np.uint8)
+    blocks = list(_step_blocks(steps, n_states, n_letters, _most_entries(steps[0].n_traces)))
     state: Array | None = None
-    for place, leap in enumerate(leaps):
-        entry = letters[leap[0].part].astype(np.uint16)
-        for step in leap[1:]:
+    for place, block in enumerate(blocks):
+        entry = letters[block[0].part].astype(np.uint16)
+        for step in block[1:]:
             entry *= np.uint16(n_letters)
             entry += letters[step.part]
         # A run has been in one state only before its first step.
         begins = n_states if place else 1
         if state is not None:
             entry += state
-        end = leap[-1]
-        if end.onward < end.now:
-            table = _verdicts(following, verdicts, len(leap), begins)
-            found[end.onward : end.now] = table.take(entry[end.onward :])
-        if end.onward:
-            table = _onward(following, len(leap), begins, len(leaps[place + 1]))
-            state = table.take(entry[: end.onward])
+        end = block[-1]
+        if end.n_continuing < end.n_traces:
+            table = _verdicts(successors, verdicts, len(block), begins)
+            found[end.n_continuing : end.n_traces] = table.take(entry[end.n_continuing :])
+        if end.n_continuing:
+            table = _next_states(successors, len(block), begins, len(blocks[place + 1]))
+            state = table.take(entry[: end.n_continuing])
     return found
 
 
@@ -72,41 +72,41 @@ def run_leaping(
 
 
 @lru_cache(maxsize=64)
-def _onward(following: Rows, length: int, begins: int, next_length: int) -> Array:
+def _next_states(successors: Rows, length: int, begins: int, next_length: int) -> Array:
     """Where so many letters lead, from each of the states that runs begin in.
 
     A state is said as the first entry that it has in the next leap's table.
     """
-    table = np.array(following, dtype=np.uint16)
-    scale = np.uint16(len(following[0]) ** next_length)
-    entries: Array = _after(table, following, length, begins) * scale
+    table = np.array(successors, dtype=np.uint16)
+    scale = np.uint16(len(successors[0]) ** next_length)
+    entries: Array = _after(table, successors, length, begins) * scale
     return entries
 
 
 @lru_cache(maxsize=64)
-def _verdicts(following: Rows, verdicts: Rows, length: int, begins: int) -> Array:
+def _verdicts(successors: Rows, verdicts: Rows, length: int, begins: int) -> Array:
     """The verdicts after so many letters."""
-    return _after(np.array(verdicts, dtype=np.uint8), following, length, begins)
+    return _after(np.array(verdicts, dtype=np.uint8), successors, length, begins)
 
 
-def _after(last: Array, following: Rows, length: int, begins: int) -> Array:
+def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
     """What ``last`` says of the last letter, for all that comes before it."""
     if length == 1:
         return last[:begins].ravel()
-    onward = np.array(following, dtype=np.uint16)
-    before = onward[:begins]
+    n_continuing = np.array(successors, dtype=np.uint16)
+    before = n_continuing[:begins]
     for _ in range(length - 2):
-        before = onward[before].reshape(begins, -1)
+        before = n_continuing[before].reshape(begins, -1)
     return last[before].ravel()
 
 
-def _leaps(
+def _step_blocks(
     steps: Sequence[Step], n_states: int, n_letters: int, most: int
 ) -> Iterator[Sequence[Step]]:
     """Steps that are taken together: where a trace ends, they do."""
     start, begins = 0, 1
     for end, step in enumerate(steps, 1):
-        if step.onward < step.now:
+        if step.n_continuing < step.n_traces:
             for length in _lengths(
                 end - start, _most(most // begins, n_letters), _most(most // n_states, n_letters)
             ):

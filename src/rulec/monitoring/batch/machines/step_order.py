@@ -12,8 +12,8 @@ from rulec.trace.trace_columns import Layout
 class Step:
     """A step of ``now`` traces, ``onward`` of which have a next one; ``part`` is their column."""
 
-    now: int
-    onward: int
+    n_traces: int
+    n_continuing: int
     part: slice
 
 
@@ -24,6 +24,6 @@ def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
     # No trace goes on after the last of these steps.
     traces = [*(starts[step + 1] - starts[step] for step in steps), 0]
     return [
-        Step(now, onward, slice(starts[step], starts[step] + now))
-        for step, (now, onward) in zip(steps, pairwise(traces), strict=True)
+        Step(n_traces, n_continuing, slice(starts[step], starts[step] + n_traces))
+        for step, (n_traces, n_continuing) in zip(steps, pairwise(traces), strict=True)
     ]

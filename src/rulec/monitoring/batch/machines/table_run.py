@@ -1,4 +1,4 @@
-"""A machine runs over many traces, a step of all of them at a time."""
+"""Runs of a machine over many traces, a step of all of them at a time."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.monitoring.batch.machines.chunked_run import run_alone, visited
-from rulec.monitoring.batch.machines.joint_machine import Joint
-from rulec.monitoring.batch.machines.multi_step_tables import Rows, pays, run_leaping
+from rulec.monitoring.batch.machines.joint_machine import JointMachine
+from rulec.monitoring.batch.machines.multi_step_tables import Rows, is_cheaper, run_multi_step
 from rulec.monitoring.batch.machines.step_order import Step, steps_of
 from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
 
@@ -20,7 +20,7 @@ _BYTE = 256
 
 
 def run(
-    joint: Joint, cells: Array, layout: Layout, first: int = 0, last: int | None = None
+    joint: JointMachine, cells: Array, layout: Layout, first: int = 0, last: int | None = None
 ) -> NDArray[np.uint8]:
     """The verdicts on all traces, from step ``first`` to ``last`` (inclusive).
 
@@ -32,34 +32,34 @@ def run(
         last: where they end; None for the end of each trace.
 
     Returns:
-        For each trace a joint verdict, as in ``Joint``.
+        For each trace a joint verdict, as in ``JointMachine``.
     """
     n_states, n_cells = len(joint.successors), len(joint.letters)
     if run_alone(layout.n_traces, layout.n_steps - first, n_states):
         return _run_long(joint, cells, layout, first, last)
     steps = steps_of(layout, first, last)
-    if pays(n_states, n_cells, layout.n_traces):
-        # What the cells mean is worked into the tables.
-        return run_leaping(*_by_cells(joint), cells, steps)
+    if is_cheaper(n_states, n_cells, layout.n_traces):
+        # The letters of the cells are worked into the tables.
+        return run_multi_step(*_by_cells(joint), cells, steps)
     if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
         return _run_bytes(joint, joint.letters, cells, steps)
-    letters = spelled(cells, joint.letters)
-    if pays(n_states, joint.n_letters, layout.n_traces):
-        return run_leaping(joint.successors, joint.verdicts, letters, steps)
+    letters = letters_of_cells(cells, joint.letters)
+    if is_cheaper(n_states, joint.n_letters, layout.n_traces):
+        return run_multi_step(joint.successors, joint.verdicts, letters, steps)
     if n_states * joint.n_letters <= _BYTE:
         return _run_bytes(joint, range(joint.n_letters), letters, steps)
     return _run_wide(joint, letters, steps)
 
 
 @lru_cache(maxsize=64)
-def _by_cells(joint: Joint) -> tuple[Rows, Rows]:
-    """What follows and what is the verdict, by state and cell."""
+def _by_cells(joint: JointMachine) -> tuple[Rows, Rows]:
+    """The successors and the verdicts by state and cell."""
     successors = [tuple([row[letter] for letter in joint.letters]) for row in joint.successors]
     verdicts = [tuple([row[letter] for letter in joint.letters]) for row in joint.verdicts]
     return tuple(successors), tuple(verdicts)
 
 
-def spelled(cells: Array, letters: Sequence[int]) -> Array:
+def letters_of_cells(cells: Array, letters: Sequence[int]) -> Array:
     """The letter of every cell, in the narrowest integers."""
     dtype = smallest_unsigned(max(letters, default=0) + 1)
     if cells.dtype == dtype == np.uint8:
@@ -68,63 +68,64 @@ def spelled(cells: Array, letters: Sequence[int]) -> Array:
 
 
 def _run_bytes(
-    joint: Joint,
+    joint: JointMachine,
     letters: Sequence[int],
     column: NDArray[np.uint8],
     steps: Sequence[Step],
 ) -> NDArray[np.uint8]:
     """A byte names the state and the cell; the C library's own loop looks up what follows."""
     width = len(letters)
-    successors = _padded([row[one] * width for row in joint.successors for one in letters])
-    verdicts = _padded([row[one] for row in joint.verdicts for one in letters])
-    ends = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
+    successors = _padded([row[letter] * width for row in joint.successors for letter in letters])
+    verdicts = _padded([row[letter] for row in joint.verdicts for letter in letters])
+    ends = np.empty(steps[0].n_traces if steps else 0, dtype=np.uint8)
     state = np.zeros(len(ends), dtype=np.uint8)
     for step in steps:
-        entry = state[: step.now]
+        goes_on = step.n_continuing
+        entry = state[: step.n_traces]
         entry = entry + column[step.part]
-        ends[step.onward : step.now] = entry[step.onward :]
-        if step.onward:
-            state = np.frombuffer(entry[: step.onward].tobytes().translate(successors), np.uint8)
+        ends[goes_on : step.n_traces] = entry[goes_on:]
+        if goes_on:
+            state = np.frombuffer(entry[:goes_on].tobytes().translate(successors), np.uint8)
     return np.frombuffer(ends.tobytes().translate(verdicts), np.uint8)
 
 
-def _run_wide(joint: Joint, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
-    """The same for machines that a byte is too small for."""
+def _run_wide(joint: JointMachine, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
+    """Run a machine that a byte is too small for."""
     width = joint.n_letters
     dtype = np.uint16 if len(joint.successors) * width <= 1 << 16 else np.intp
     successors = np.array(joint.successors, dtype=dtype).ravel() * dtype(width)
     verdicts = np.array(joint.verdicts, dtype=np.uint8).ravel()
-    found = np.empty(steps[0].now if steps else 0, dtype=np.uint8)
-    state = np.zeros(len(found), dtype=dtype)
+    results = np.empty(steps[0].n_traces if steps else 0, dtype=np.uint8)
+    state = np.zeros(len(results), dtype=dtype)
     for step in steps:
-        entry = state[: step.now] + column[step.part]
-        found[step.onward : step.now] = verdicts.take(entry[step.onward :])
-        state = successors.take(entry[: step.onward])
-    return found
+        entry = state[: step.n_traces] + column[step.part]
+        results[step.n_continuing : step.n_traces] = verdicts.take(entry[step.n_continuing :])
+        state = successors.take(entry[: step.n_continuing])
+    return results
 
 
 def _run_long(
-    joint: Joint, cells: Array, layout: Layout, first: int, last: int | None
+    joint: JointMachine, cells: Array, layout: Layout, first: int, last: int | None
 ) -> NDArray[np.uint8]:
-    """The same for a few long traces, one after the other."""
-    meant = np.array(joint.letters)
+    """Run a machine over a few long traces, one after the other."""
+    letter_of_cell = np.array(joint.letters)
     found = np.empty(layout.n_traces, dtype=np.uint8)
     for trace in range(layout.n_traces):
-        letters = meant.take(cells[layout.places(trace, first, last)])
+        letters = letter_of_cell.take(cells[layout.places(trace, first, last)])
         state = visited(joint.successors, letters)[-1]
         found[trace] = joint.verdicts[state][letters[-1]]
     return found
 
 
 def first_lost(
-    machine: MealyMonitor, letters: Sequence[int], walks: Iterable[Array], lengths: NDArray[Any]
+    machine: MealyMonitor, letters: Sequence[int], by_step: Iterable[Array], lengths: NDArray[Any]
 ) -> NDArray[np.int64]:
     """Where traces are lost, counted from their first step here; -1 where they are not.
 
     Args:
         machine: the machine.
         letters: for each cell the class of its letter.
-        walks: for each step the cells of the traces that have it, which are the first ones.
+        by_step: for each step the cells of the traces that have it, which are the first ones.
         lengths: how many steps the traces have, in descending order.
     """
     if machine.rejecting_sink is None:
@@ -138,7 +139,7 @@ def first_lost(
     classes = np.array(letters, dtype=np.intp)
     state = np.zeros(len(lengths), dtype=np.intp)
     kept = np.zeros(len(lengths), dtype=np.int64)
-    for cells in walks:
+    for cells in by_step:
         entry = state[: len(cells)] + classes.take(cells)
         # Once lost, always lost: so many steps are kept as come before.
         kept[: len(cells)] += ~lost.take(entry)
