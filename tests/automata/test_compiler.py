@@ -21,8 +21,8 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.past_registers import remembered
-from rulec.logic.printing import in_words
+from rulec.logic.past_registers import eliminate_past
+from rulec.logic.printing import formula_text
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
@@ -147,7 +147,7 @@ def checking(automaton, formula, semantics="stutter", cpu_s=None):
     from rulec.automata.spot_bridge.equivalence_check import check
     from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 
-    past = remembered(formula)
+    past = eliminate_past(formula)
     propositions = [*atoms_of(formula), *(one.atom for one in past.memories)]
     spot_formulas = SpotFormulas(names_of(propositions), "alive" if semantics == "finite" else None)
     translated = spot_formulas.translate(automaton, *SHAPE)
@@ -204,7 +204,7 @@ def test_an_automaton_that_forgets_fails_its_check(automaton, why):
 
     later = Unary(UnaryOperator.ONCE, Unary(UnaryOperator.NEXT, P))
     formula = always(implies(Q, later))
-    assert [one.atom.name for one in remembered(formula).memories] == ["memory 0"]
+    assert [one.atom.name for one in eliminate_past(formula).memories] == ["memory 0"]
     checking("Xp R (Xp | !q)", formula)
     with pytest.raises(CheckError):
         checking(automaton, formula)
@@ -235,7 +235,7 @@ def test_a_rule_about_the_past_becomes_its_smallest_table():
     assert 'AP: 2 "q" "near(x)"' in compiled.hoa or 'AP: 2 "near(x)" "q"' in compiled.hoa
     assert "memory" not in compiled.hoa
     assert "\nStates: 3\n" in compiled.hoa
-    assert in_words(compiled.formula) == "always (q implies once near(x))"
+    assert formula_text(compiled.formula) == "always (q implies once near(x))"
 
 
 def test_what_was_before_takes_as_many_states_as_there_are_pasts():
@@ -323,7 +323,7 @@ def test_a_hundred_steps_make_a_hundred_states():
     assert len(compiled.machine.successors) == 100 + 2
     assert compiled.step_s is None
     assert "register" not in compiled.hoa
-    assert in_words(compiled.formula) == "always (once[<= 100 steps] p implies q)"
+    assert formula_text(compiled.formula) == "always (once[<= 100 steps] p implies q)"
 
 
 @pytest.mark.parametrize(
@@ -335,7 +335,7 @@ def test_a_hundred_steps_make_a_hundred_states():
         always(implies(P, Binary(BinaryOperator.UNTIL, Q, near("x"), within(0, 50)))),
         eventually(Binary(BinaryOperator.AND, P, Unary(UnaryOperator.ALWAYS, Q, within(0, 60)))),
     ],
-    ids=in_words,
+    ids=formula_text,
 )
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
 def test_bounds_that_rules_have_fit_into_the_limits(formula, semantics):

@@ -16,7 +16,7 @@ from rulec.automata.alphabet import (
 )
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.logic.semantics import holds
 from support.generators.timed_formulas import (
     CARS,
@@ -118,7 +118,7 @@ def test_what_is_known_is_just_what_letters_have_in_common(formula):
 
 def known(*comparisons):
     formula = all_of(*comparisons)
-    return in_words(knowledge(reads_of(formula, TIMED_VOCABULARY), propositions_of(formula)))
+    return formula_text(knowledge(reads_of(formula, TIMED_VOCABULARY), propositions_of(formula)))
 
 
 def test_faster_than_50_is_faster_than_30_and_no_more_is_said():

@@ -8,7 +8,7 @@ from rulec.api.workflow import compile_rulebook
 from rulec.book_tests.edge_coverage import coverage, percent
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.loader import parse_rulebook
 
@@ -106,6 +106,6 @@ def test_with_every_proposed_example_everything_is_covered(formula):
     examples = "\n".join(missing_example(edge, WORDS) for edge in before.missing_edges)
     rulebook = parse_rulebook(f"{HEAD}hard rule A (v: t) {{ {rule}\n{examples} }}")
     run = run_rulebook_examples(rulebook, compile_rulebook(rulebook))
-    assert all(one.passed for one in run.outcomes), in_words(rulebook.rules[0].formula)
+    assert all(one.passed for one in run.outcomes), formula_text(rulebook.rules[0].formula)
     (after,) = coverage(run)
     assert after.missing_edges == ()

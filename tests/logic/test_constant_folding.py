@@ -5,7 +5,7 @@ from hypothesis import given
 
 from rulec.logic.constant_folding import fold_constants
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.logic.semantics import truth_values
 from rulec.rulebook.loader import parse_rulebook
 from support.generators.random_formulas import formulas, letters, words
@@ -57,4 +57,4 @@ def _parts(formula: Formula):
 def test_what_is_left(written, expected):
     options = "option yes = on\noption no = off\n"
     book = parse_rulebook(f"rulebook a\nsignal p\n{options}hard rule r {{ require {written} }}")
-    assert in_words(fold_constants(book.rules[0].formula)) == expected
+    assert formula_text(fold_constants(book.rules[0].formula)) == expected

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from rulec.logic.bounds import PAST, Range, operations_of
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
-from rulec.logic.past_registers import Register, definition, remembered
-from rulec.logic.printing import in_words
+from rulec.logic.past_registers import Register, definition, eliminate_past
+from rulec.logic.printing import formula_text
 from rulec.logic.semantics import holds, truth_values
 from support.generators.timed_formulas import formulas_in, letters_of, timed_words
 
@@ -30,31 +30,31 @@ def has_past(formula):
 
 
 def test_once_is_a_register():
-    past = remembered(always(ONCE_P))
-    assert in_words(past.present) == "always register 0"
+    past = eliminate_past(always(ONCE_P))
+    assert formula_text(past.present) == "always register 0"
     (register,) = past.registers
-    assert (in_words(register.left), in_words(register.right)) == ("true", "p")
+    assert (formula_text(register.left), formula_text(register.right)) == ("true", "p")
     assert register.span == Range(0, None)
     assert past.memories == ()
 
 
 def test_historically_is_that_never_was_it_otherwise():
-    past = remembered(always(Unary(UnaryOperator.HISTORICALLY, P, steps(1, 4))))
-    assert in_words(past.present) == "always not register 0"
+    past = eliminate_past(always(Unary(UnaryOperator.HISTORICALLY, P, steps(1, 4))))
+    assert formula_text(past.present) == "always not register 0"
     (register,) = past.registers
-    assert (in_words(register.right), register.span) == ("not p", Range(1, 4))
+    assert (formula_text(register.right), register.span) == ("not p", Range(1, 4))
 
 
 def test_the_same_past_is_remembered_once():
     since = Binary(BinaryOperator.SINCE, ONCE_P, Q)
     twice = Binary(BinaryOperator.IFF, since, Binary(BinaryOperator.OR, P, since))
-    assert len(remembered(always(twice)).registers) == 2
+    assert len(eliminate_past(always(twice)).registers) == 2
 
 
 def test_another_range_is_remembered_apart():
     def both(inside):
         within = [Unary(UnaryOperator.ONCE, inside, steps(0, high)) for high in (1, 3)]
-        return remembered(always(Binary(BinaryOperator.AND, *within)))
+        return eliminate_past(always(Binary(BinaryOperator.AND, *within)))
 
     assert [one.span for one in both(P).registers] == [Range(0, 1), Range(0, 3)]
     # One, two, three instants ago; the shorter range needs the first of them.
@@ -63,7 +63,7 @@ def test_another_range_is_remembered_apart():
 
 def test_no_past_is_no_memory():
     formula = Binary(BinaryOperator.THEN, P, Unary(UnaryOperator.NEVER, Q, steps(0, 2)))
-    past = remembered(formula)
+    past = eliminate_past(formula)
     assert (past.present, past.registers, past.memories) == (formula, (), ())
 
 
@@ -71,17 +71,17 @@ def test_no_past_is_no_memory():
 def test_what_the_future_has_a_say_in_is_no_register(inside):
     later = Unary(UnaryOperator.PREVIOUSLY, Unary(inside, P))
     both = Binary(BinaryOperator.AND, later, ONCE_P)
-    past = remembered(always(Unary(UnaryOperator.ONCE, both)))
+    past = eliminate_past(always(Unary(UnaryOperator.ONCE, both)))
     assert len(past.registers) == 1
     assert len(past.memories) == 2
-    assert all("memory" in in_words(one.atom) for one in past.memories)
+    assert all("memory" in formula_text(one.atom) for one in past.memories)
 
 
 def test_a_memory_says_what_was_one_instant_ago():
-    (memory,) = remembered(
+    (memory,) = eliminate_past(
         always(Unary(UnaryOperator.PREVIOUSLY, Unary(UnaryOperator.NEXT, P)))
     ).memories
-    assert in_words(definition(memory)) == (
+    assert formula_text(definition(memory)) == (
         "not memory 0 and always ((next p implies weak next memory 0) "
         "and (next p or weak next not memory 0))"
     )
@@ -156,7 +156,7 @@ def test_how_many_states_a_register_has(span, n_states):
 @given(formulas_in(), timed_words, st.sampled_from(["stutter", "finite"]))
 def test_what_is_left_gives_back_the_meaning(formula, word, semantics):
     """Fill in what registers say and what memories are, and evaluate what is left."""
-    past = remembered(formula)
+    past = eliminate_past(formula)
     assert not has_past(past.present)
     filled = letters_of(formula, word)
     if semantics == "stutter":  # until none of them changes any more
@@ -191,7 +191,7 @@ def with_values(word, atom, values):
 
 @given(formulas_in())
 def test_fresh_atoms_are_no_atoms_of_a_rulebook(formula):
-    past = remembered(formula)
+    past = eliminate_past(formula)
     fresh = {str(one.atom) for one in (*past.registers, *past.memories)}
     assert len(fresh) == len(past.registers) + len(past.memories)
     assert fresh.isdisjoint(str(atom) for atom in atoms_of(formula))

@@ -18,7 +18,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.printing import in_words, number_in_words, term_in_words, time_in_words
+from rulec.logic.printing import formula_text, number_in_words, term_text, time_in_words
 from rulec.rulebook.loader import parse_rulebook
 from support.generators.random_formulas import VOCABULARY, formulas
 from support.generators.timed_formulas import comparison
@@ -37,7 +37,7 @@ signal q
 @given(formulas)
 def test_words_can_be_read_back(formula):
     variables = "(x: thing)" if any(atom.arguments for atom in atoms_of(formula)) else ""
-    text = f"{DECLARATIONS}\nhard rule A {variables} {{ require {in_words(formula)} }}"
+    text = f"{DECLARATIONS}\nhard rule A {variables} {{ require {formula_text(formula)} }}"
     (rule,) = parse_rulebook(text).rules
     assert rule.formula == formula
 
@@ -85,14 +85,14 @@ def bound(low, high, unit="s"):
     ],
 )
 def test_bounds_and_numbers_in_words(formula, text):
-    assert in_words(formula) == text
+    assert formula_text(formula) == text
 
 
 def test_terms_in_words():
-    assert term_in_words(Quantity("speed")) == "speed"
-    assert term_in_words(Quantity("gap", ("v", "w"))) == "gap(v, w)"
+    assert term_text(Quantity("speed")) == "speed"
+    assert term_text(Quantity("gap", ("v", "w"))) == "gap(v, w)"
     count = Count("c", "car", Binary(BinaryOperator.AND, P, Same("c", "v")))
-    assert term_in_words(count) == "count c: car (p and c = v)"
+    assert term_text(count) == "count c: car (p and c = v)"
 
 
 def test_times_in_words():

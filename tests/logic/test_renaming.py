@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from rulec.logic.formula import Atom, Comparison, Count, Quantity, Same
-from rulec.logic.renaming import renamed
+from rulec.logic.renaming import rename_variables
 
 GAP_V, GAP_W = Quantity("gap", ("v",)), Quantity("gap", ("w",))
 
@@ -15,7 +15,9 @@ def test_the_variable_of_a_count_is_its_own():
     def at_least_one(term):
         return Comparison(((Fraction(1), term),), ">=", Fraction(1))
 
-    assert renamed(at_least_one(count("w")), {"v": "a", "w": "b"}) == at_least_one(count("b"))
+    assert rename_variables(at_least_one(count("w")), {"v": "a", "w": "b"}) == at_least_one(
+        count("b")
+    )
 
 
 def test_terms_are_in_order_again():
@@ -23,19 +25,19 @@ def test_terms_are_in_order_again():
     before = Comparison(
         ((Fraction(1), GAP_V), (Fraction(-2), GAP_W)), "<", Fraction(3), "gap(v) - 2 * gap(w) < 3 m"
     )
-    after = renamed(before, {"v": "w", "w": "v"})
+    after = rename_variables(before, {"v": "w", "w": "v"})
     assert after == Comparison(
         ((Fraction(1), GAP_V), (Fraction(-1, 2), GAP_W)), ">", Fraction(-3, 2)
     )
     assert str(after) == "gap(w) - 2 * gap(v) < 3 m"
-    assert renamed(after, {"v": "w", "w": "v"}) == before
+    assert rename_variables(after, {"v": "w", "w": "v"}) == before
 
 
 def test_text_of_several_arguments_and_units_by_the_same_name():
     distance = Quantity("distance", ("m", "v"))
     before = Comparison(((Fraction(1), distance),), "<", Fraction(3), "distance(m, v) < 3 m")
-    assert str(renamed(before, {"m": "a", "v": "b"})) == "distance(a, b) < 3 m"
+    assert str(rename_variables(before, {"m": "a", "v": "b"})) == "distance(a, b) < 3 m"
 
 
 def test_names_that_are_not_given_stay():
-    assert renamed(Atom("p", ("x", "y")), {"y": "z"}) == Atom("p", ("x", "z"))
+    assert rename_variables(Atom("p", ("x", "y")), {"y": "z"}) == Atom("p", ("x", "z"))

@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.logic.semantics import holds, truth_values
 from rulec.rulebook.loader import parse_rulebook
 from support.generators.random_formulas import formulas, letters, words
@@ -375,14 +375,14 @@ hard rule r (x: thing) {{ require {} }}
 @given(formulas, words)
 def test_a_formula_in_words_is_read_with_its_meaning(formula, word):
     """Chains may be read from the other side, which makes no difference."""
-    text = in_words(formula)
+    text = formula_text(formula)
     (rule,) = parse_rulebook(DECLARED.format(text)).rules
-    assert in_words(rule.formula) == text
+    assert formula_text(rule.formula) == text
     assert truth_values(rule.formula, letters(word)) == truth_values(formula, letters(word))
 
 
 def test_a_chain_of_phases_needs_no_parentheses():
     right = Binary(THEN, A, Binary(THEN, Binary(BinaryOperator.AND, B, C), A))
-    assert in_words(right) == "a then b and c then a"
-    assert in_words(Binary(THEN, Binary(THEN, A, B), C)) == "(a then b) then c"
-    assert in_words(Unary(UnaryOperator.NEVER, right)) == "never (a then b and c then a)"
+    assert formula_text(right) == "a then b and c then a"
+    assert formula_text(Binary(THEN, Binary(THEN, A, B), C)) == "(a then b) then c"
+    assert formula_text(Unary(UnaryOperator.NEVER, right)) == "never (a then b and c then a)"

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from rulec.logic.bounds import (
     NotAMultipleError,
     Range,
+    has_seconds,
     in_steps,
     operations_of,
     range_of,
-    reach,
-    speaks_of_seconds,
+    total_bound,
 )
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from support.generators.timed_formulas import formulas_in, timed_formulas
 
 P, Q = Atom("p"), Atom("q")
@@ -35,11 +35,11 @@ def test_seconds_become_steps():
         Unary(UnaryOperator.NEXT, Q, within(2, 2, "steps")),
         within(0, 3),
     )
-    assert speaks_of_seconds(formula)
+    assert has_seconds(formula)
     steps = in_steps(formula, QUARTER)
-    assert not speaks_of_seconds(steps)
-    assert in_words(steps) == "once[>= 2 steps] p until[<= 12 steps] next[2 steps] q"
-    assert reach(steps) == 2 + 2 + 12
+    assert not has_seconds(steps)
+    assert formula_text(steps) == "once[>= 2 steps] p until[<= 12 steps] next[2 steps] q"
+    assert total_bound(steps) == 2 + 2 + 12
 
 
 def test_a_bound_between_two_states_is_named():
@@ -79,7 +79,7 @@ steps = st.fractions(Fraction(1, 100), 10)
 @given(st.data(), steps)
 def test_as_many_steps_as_there_are_in_the_seconds(data, step):
     seconds = data.draw(formulas_in("s", step))
-    assert not speaks_of_seconds(in_steps(seconds, step))
+    assert not has_seconds(in_steps(seconds, step))
     coarse, fine = (in_steps(seconds, one) for one in (step, step / 3))
     for one, finer in zip(operations_of(coarse), operations_of(fine), strict=True):
         if one.bound is not None:
@@ -89,5 +89,5 @@ def test_as_many_steps_as_there_are_in_the_seconds(data, step):
 
 @given(timed_formulas, steps)
 def test_bounds_in_steps_are_the_same_for_any_step(formula, step):
-    assert not speaks_of_seconds(formula)
+    assert not has_seconds(formula)
     assert in_steps(formula, step) == formula

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.monitoring.explain.explanation import Part
 from rulec.report.verdicts.table_folding import fitting, folded, head, width
 from support.builders.rulebooks import always, both, implies, no
@@ -21,7 +21,7 @@ def either(left, right):
 
 def parts_of(formula, without=(), depth=0):
     """The parts of a formula; all decide but those in ``without``."""
-    found = [Part(formula, in_words(formula), depth, (True,), False, formula not in without)]
+    found = [Part(formula, formula_text(formula), depth, (True,), False, formula not in without)]
     match formula:
         case Unary(_, operand):
             found += parts_of(operand, without, depth + 1)

@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.text.formula_lines import formula_lines
 from support.generators.random_formulas import formulas
 
 
 @given(formulas, st.integers(10, 60))
 def test_only_line_breaks_are_added(formula, width):
-    text = in_words(formula)
+    text = formula_text(formula)
     lines = formula_lines(text, width)
     joined = " ".join(line.strip() for line in lines)
     assert re.sub(r"\( ", "(", joined).replace(" )", ")") == text
@@ -23,7 +23,7 @@ def test_only_line_breaks_are_added(formula, width):
 
 @given(formulas)
 def test_what_can_be_broken_is_no_wider_than_asked_for(formula):
-    for line in formula_lines(in_words(formula), 40):
+    for line in formula_lines(formula_text(formula), 40):
         # Names and unary operators cannot be broken, nor can what they stand before.
         assert len(line) <= 40 or not re.search(r" (and|or|implies|iff|xor|then) ", line.strip())
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, parse_formula, print_formula
-from rulec.syntax.tree import Aggregate, AtomUse, Number, Truth
+from rulec.syntax.tree import Aggregate, AtomUse, NumberLiteral, TruthLiteral
 from rulec.syntax.tree_printer import print_whole
 from support.builders.printed_files import print_file
 from support.generators.syntax_trees import files, formulas
@@ -77,5 +77,5 @@ def test_what_is_written_stays_as_it_is(formula, style):
     again = parse_formula(text)
     written = print_formula(again, "written")
     assert parse_formula(written) == again
-    needless = isinstance(formula, AtomUse | Truth | Number | Aggregate)
+    needless = isinstance(formula, AtomUse | TruthLiteral | NumberLiteral | Aggregate)
     assert written == (f"{print_formula(formula, style)} and p" if needless else text)

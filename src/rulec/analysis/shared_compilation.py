@@ -9,7 +9,7 @@ from math import gcd, lcm
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
-from rulec.logic.bounds import speaks_of_seconds
+from rulec.logic.bounds import has_seconds
 from rulec.logic.free_names import names_in
 from rulec.rulebook.model import Axiom, Rule, Rulebook
 
@@ -73,7 +73,7 @@ def _key(rule: Rule, book: Rulebook) -> CompilationKey:
     return (
         rule.formula,
         rule.variables,
-        rule.step_s if speaks_of_seconds(rule.formula) else None,
+        rule.step_s if has_seconds(rule.formula) else None,
         tuple(book.vocabulary.declarations[name] for name in read),
         book.semantics,
         book.axioms,
@@ -98,7 +98,7 @@ def _named(compiled: CompiledRule, rule: Rule) -> CompiledRule:
 def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
     """The rules for traces of one step: the given one, else one that divides those of all."""
     listed = list(rules)
-    steps = [rule.step_s for rule in listed if speaks_of_seconds(rule.formula)]
+    steps = [rule.step_s for rule in listed if has_seconds(rule.formula)]
     if step_s is None and steps:
         whole = lcm(*(step.denominator for step in steps))
         step_s = Fraction(gcd(*(int(step * whole) for step in steps)), whole)

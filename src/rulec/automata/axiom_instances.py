@@ -33,7 +33,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.logic.renaming import renamed
+from rulec.logic.renaming import rename_variables
 from rulec.rulebook.model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
@@ -57,7 +57,9 @@ def axiom_instances(
     """
     types = {variable.name: variable.type for variable in variables}
     return tuple(
-        AxiomInstance(fact, chosen, renamed(fact.formula, dict(zip(own, chosen, strict=True))))
+        AxiomInstance(
+            fact, chosen, rename_variables(fact.formula, dict(zip(own, chosen, strict=True)))
+        )
         for fact in axioms
         if not counts(fact.formula)
         for own in [[variable.name for variable in fact.variables]]

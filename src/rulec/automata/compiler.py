@@ -18,10 +18,10 @@ from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.axiom_instances import axiom_groups, axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.compiler_messages import no_machine, no_spot
-from rulec.automata.spot_worker import Done, Failed, Job, Ready
+from rulec.automata.spot_worker import Done, Failed, Job, WorkerGreeting
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.bounds import NotAMultipleError, fitting_step, in_steps, speaks_of_seconds
+from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
@@ -168,9 +168,9 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     try:
         assert process.stdout is not None
         try:
-            ready: Ready = pickle.load(process.stdout)
+            ready: WorkerGreeting = pickle.load(process.stdout)
         except EOFError:
-            ready = Ready(None, f"its process ended with status {process.wait()}")
+            ready = WorkerGreeting(None, f"its process ended with status {process.wait()}")
         if ready.spot is None:
             raise RulecError(no_spot(ready.problem))
         yield process, ready.spot
@@ -194,7 +194,7 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
 
 def _step(rule: Rule, step_s: Fraction | None) -> Fraction | None:
     """The step that the rule is compiled for; None if it is the same for any."""
-    if not speaks_of_seconds(rule.formula):
+    if not has_seconds(rule.formula):
         return None
     return rule.step_s if step_s is None else step_s
 

@@ -8,7 +8,7 @@ from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.model import Rule
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
@@ -93,7 +93,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
 def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:
     axioms = list(dict.fromkeys(instance.fact for instance in instances))
     first, *others = axioms
-    said = ", ".join(f"`{in_words(axiom.formula)}`" for axiom in axioms)
+    said = ", ".join(f"`{formula_text(axiom.formula)}`" for axiom in axioms)
     types = {variable.name: variable.type for variable in rule.variables}
     who = sorted({f"a `{types[name]}`" for instance in instances for name in instance.variables})
     return CONTRADICTORY_AXIOMS.at(

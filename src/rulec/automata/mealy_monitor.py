@@ -97,7 +97,7 @@ class MealyMonitor:
     accepting_sink: int | None
 
 
-def trap(
+def sink_of(
     successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[bool]], *, verdict: bool
 ) -> int | None:
     """The state that gives ``verdict`` whatever comes; a minimal machine has at most one."""

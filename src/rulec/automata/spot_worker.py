@@ -43,7 +43,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True)
-class Ready:
+class WorkerGreeting:
     """The worker's first word: Spot's version, or None and why Spot can't be loaded."""
 
     spot: str | None
@@ -79,9 +79,9 @@ def main() -> None:
     try:
         from rulec.automata import spot_bridge
     except ImportError as problem:
-        pickle.dump(Ready(None, str(problem)), answers)
+        pickle.dump(WorkerGreeting(None, str(problem)), answers)
         return
-    pickle.dump(Ready(spot_bridge.VERSION), answers)
+    pickle.dump(WorkerGreeting(spot_bridge.VERSION), answers)
     answers.flush()
     while True:
         try:

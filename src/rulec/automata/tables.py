@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, trap
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, sink_of
 
 Output = TypeVar("Output")
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class TableEdge:
     """An edge: the letters on it (the bits of an integer), where it leads, its colours (bits)."""
 
     letters: int
@@ -34,7 +34,7 @@ class DeterministicAutomaton:
     on; None if a word's last letter goes on for ever.
     """
 
-    edges: tuple[tuple[Edge, ...], ...]
+    edges: tuple[tuple[TableEdge, ...], ...]
     initial: int
     accepts: Callable[[int], bool]
     after_the_end: tuple[tuple[int, int], ...] | None = None
@@ -70,8 +70,8 @@ def build_machine(
         tuple(letters),
         tuple(tuple(row[c] for c in kept) for row in successors),
         tuple(tuple(row[c] for c in kept) for row in outputs),
-        rejecting_sink=trap(successors, outputs, verdict=False),
-        accepting_sink=trap(successors, outputs, verdict=True),
+        rejecting_sink=sink_of(successors, outputs, verdict=False),
+        accepting_sink=sink_of(successors, outputs, verdict=True),
     )
 
 
@@ -107,7 +107,7 @@ def _tables(
     return successors, outputs
 
 
-def _edge_on(edges: Sequence[Edge], letter: int) -> Edge:
+def _edge_on(edges: Sequence[TableEdge], letter: int) -> TableEdge:
     return next(edge for edge in edges if edge.letters & letter)
 
 

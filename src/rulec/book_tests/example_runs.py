@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.book_tests.book_test_messages import EXAMPLE_FAILED
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.bounds import speaks_of_seconds
+from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import columns_of, run
 from rulec.rulebook.examples.example_messages import CONTRADICTORY_STATE
@@ -152,7 +152,7 @@ def example_warnings(
     """
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
     rules = tuple(
-        [rule for rule in rulebook.rules if rule.examples or not speaks_of_seconds(rule.formula)]
+        [rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula)]
     )
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
     return [example_warning(rule) for rule in outcomes if not rule.passed]

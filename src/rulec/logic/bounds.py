@@ -101,7 +101,7 @@ def _whole(steps: Fraction) -> int:
     return steps.numerator
 
 
-def speaks_of_seconds(formula: Formula) -> bool:
+def has_seconds(formula: Formula) -> bool:
     """Has it a bound in seconds? If not, the step of a trace makes no difference to it."""
     bounds = (operation.bound for operation in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
@@ -164,7 +164,7 @@ def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
     return replace(bound, low=bound.low / step_s, high=high, unit="steps", span=None)
 
 
-def reach(formula: Formula) -> int:
+def total_bound(formula: Formula) -> int:
     """All bounds of the formula together, in steps: 0 if it has none but the unbounded operators'.
 
     Each counts as far as it looks. ValueError for a bound in seconds.

@@ -7,7 +7,7 @@ from fractions import Fraction
 from operator import eq, ge, gt, le, lt, ne
 
 from rulec.logic.formula import Comparison, Constant, Relation, Term
-from rulec.logic.printing import term_in_words
+from rulec.logic.printing import term_text
 
 _MIRRORED: dict[Relation, Relation] = {
     "<": ">",
@@ -26,7 +26,7 @@ def comparison(
 
     True or false if there is nothing to sum. No coefficient is 0.
     """
-    terms = sorted(coefficients.items(), key=lambda pair: term_in_words(pair[0]))
+    terms = sorted(coefficients.items(), key=lambda pair: term_text(pair[0]))
     if not terms:
         return Constant(stands(Fraction(0), relation, limit))
     _, lead = terms[0]

@@ -72,7 +72,7 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True)
-class Past:
+class WithoutPast:
     """A formula without operators of the past, and what the fresh atoms in it stand for.
 
     For any word there is one way to choose these atoms' values such that each does what it is said
@@ -84,7 +84,7 @@ class Past:
     memories: tuple[Memory, ...]
 
 
-def remembered(formula: Formula) -> Past:
+def eliminate_past(formula: Formula) -> WithoutPast:
     """The formula without operators of the past. Its bounds are in steps; ValueError if not."""
     result = _Found()
     present = _present(formula, result)
@@ -97,7 +97,7 @@ def remembered(formula: Formula) -> Past:
             needed.insert(0, one)
             for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):
                 spoken_of.update(atoms_of(part))
-    return Past(
+    return WithoutPast(
         present,
         tuple(register for register in needed if isinstance(register, Register)),
         tuple(memory for memory in needed if isinstance(memory, Memory)),

@@ -37,7 +37,7 @@ _BINDING = {
 }
 
 
-def in_words(formula: Formula) -> str:
+def formula_text(formula: Formula) -> str:
     """The formula as a rulebook would say it, with no more parentheses than needed to read it."""
     match formula:
         case Atom() | Comparison() | Same():
@@ -46,7 +46,7 @@ def in_words(formula: Formula) -> str:
         case Constant(value):
             return "true" if value else "false"
         case Unary(operator, operand, bound):
-            inner = in_words(operand)
+            inner = formula_text(operand)
             said = _operator(operator, bound)
             return f"{said} {f'({inner})' if isinstance(operand, Binary) else inner}"
         case Binary(operator, left, right, bound):
@@ -58,7 +58,7 @@ def in_words(formula: Formula) -> str:
 
 
 def _side(operator: BinaryOperator, formula: Formula, *, chain: bool) -> str:
-    text = in_words(formula)
+    text = formula_text(formula)
     if not isinstance(formula, Binary):
         return text
     tighter = _BINDING[formula.operator] > _BINDING[operator]
@@ -105,10 +105,10 @@ def number_in_words(number: Fraction) -> str:
     return f"-{digits}" if number < 0 else digits
 
 
-def term_in_words(term: Term) -> str:
+def term_text(term: Term) -> str:
     """``gap(v)``, ``count v: vehicle (behind(v))``: the text that terms are sorted by."""
     match term:
         case Quantity(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
         case Count(variable, type_name, body):
-            return f"count {variable}: {type_name} ({in_words(body)})"
+            return f"count {variable}: {type_name} ({formula_text(body)})"

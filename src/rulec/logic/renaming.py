@@ -21,7 +21,7 @@ from rulec.logic.formula import (
 from rulec.logic.linear_comparison import comparison
 
 
-def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
     """The formula with all its free variables renamed at once; those not in ``names`` stay.
 
     Different variables keep different names, and no count inside has a new name for its variable.
@@ -42,9 +42,11 @@ def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
         case Constant():
             return formula
         case Unary(_, operand):
-            return replace(formula, operand=renamed(operand, names))
+            return replace(formula, operand=rename_variables(operand, names))
         case Binary(_, left, right):
-            return replace(formula, left=renamed(left, names), right=renamed(right, names))
+            return replace(
+                formula, left=rename_variables(left, names), right=rename_variables(right, names)
+            )
 
 
 _ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
@@ -56,7 +58,7 @@ def _term(term: Term, names: Mapping[str, str]) -> Term:
             return Quantity(name, _each(arguments, names))
         case Count(variable, kind, body):
             free = {old: new for old, new in names.items() if old != variable}
-            return Count(variable, kind, renamed(body, free))
+            return Count(variable, kind, rename_variables(body, free))
 
 
 def _each(arguments: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Term, atoms_of
-from rulec.logic.renaming import renamed
+from rulec.logic.renaming import rename_variables
 
 
-def asked(
+def required_inputs(
     formula: Formula, objects: Mapping[str, str], fits: Callable[[str, str], bool]
 ) -> Iterator[Atom | Quantity]:
     """Every atom and quantity, with repetitions, those of every object that may count included.
@@ -33,4 +33,6 @@ def _of_term(
     for name, kind in objects.items():
         if fits(kind, term.type):
             # What is asked of the object that stands in the count's place.
-            yield from asked(renamed(term.body, {term.variable: name}), objects, fits)
+            yield from required_inputs(
+                rename_variables(term.body, {term.variable: name}), objects, fits
+            )

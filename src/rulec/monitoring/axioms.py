@@ -12,8 +12,8 @@ from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.logic.formula import Atom, Count, Term, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds, number_of
-from rulec.logic.printing import in_words, term_in_words
-from rulec.logic.renaming import renamed
+from rulec.logic.printing import formula_text, term_text
+from rulec.logic.renaming import rename_variables
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary.object_choices import choices
@@ -41,7 +41,7 @@ class _Said:
     bound: Mapping[str, str]
 
     def __str__(self) -> str:
-        return f"`{in_words(renamed(self.fact.formula, self.bound))}`"
+        return f"`{formula_text(rename_variables(self.fact.formula, self.bound))}`"
 
 
 def impossible(
@@ -140,7 +140,7 @@ def _values(said: _Said, moment: StateView) -> Iterator[str]:
 def _value(read: Atom | Term, bound: Mapping[str, str], moment: StateView) -> str | None:
     if isinstance(read, Count):
         number = number_of(read, bound, moment)
-        return None if isinstance(number, Unknown) else f"`{term_in_words(read)}` is {number}"
+        return None if isinstance(number, Unknown) else f"`{term_text(read)}` is {number}"
     items = tuple(bound[one] for one in read.arguments)
     value = moment.value(read.name, items)
     if isinstance(value, Unknown):

@@ -11,8 +11,8 @@ from rulec.rulebook.elaborate.rule_elaboration import translate_rule
 from rulec.rulebook.examples.axiom_checks import contradicted
 from rulec.rulebook.model import Axiom, Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.names.symbol_table import declare
-from rulec.rulebook.overlay.constant_checks import check_provisions
+from rulec.rulebook.names.symbol_table import symbol_table
+from rulec.rulebook.overlay.constant_checks import check_constants_and_macros
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
 from rulec.rulebook.overlay.priorities import pre_order
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, overlay
@@ -47,15 +47,15 @@ def resolve(
         warnings.
     """
     books = [*bases, file]
-    declared = declare([*vocabularies, *books], opaque=opaque)
+    declared = symbol_table([*vocabularies, *books], opaque=opaque)
     spans = {**declared.type_spans, **declared.spans}
     unsure = opaque or not all(book.complete for book in books)
     laid = overlay(books, spans, unsure=unsure)
     provisions = ConstantsAndMacros(laid, at, traffic or _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
     known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
-    mistakes = [*declared.mistakes, *laid.mistakes, *mistakes]
-    mistakes += check_provisions(declared, provisions)
+    mistakes = [*symbols.mistakes, *laid.mistakes, *mistakes]
+    mistakes += check_constants_and_macros(symbols, constants)
     axioms: list[Axiom] = []
     for fact in (item for vocabulary in (*vocabularies, *books) for item in vocabulary.items):
         if isinstance(fact, tree.FactItem):
@@ -85,7 +85,7 @@ def resolve(
     semantics = [book.semantics.kind for book in books if book.semantics]
     rulebook = Rulebook(
         file.name.text,
-        declared.vocabulary(file.name.text),
+        symbols.vocabulary(file.name.text),
         tuple(good),
         file.title.text.value if file.title else "",
         file.law.text.value if file.law else "",
@@ -105,15 +105,15 @@ def resolve(
 
 def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagnostic, ...]]:
     """A vocabulary by itself, and what is wrong with it."""
-    declared = declare([file])
-    mistakes = list(declared.mistakes)
-    provisions = ConstantsAndMacros(Overlay(), "")
+    symbols = symbol_table([file])
+    mistakes = list(symbols.mistakes)
+    constants = ConstantsAndMacros(Overlay(), "")
     for item in file.items:
         if isinstance(item, tree.FactItem):
-            mistakes += axiom_of(item, declared, provisions)[1]
+            mistakes += axiom_of(item, symbols, constants)[1]
     if file.name is None or mistakes:
         return None, tuple(mistakes)
-    return declared.vocabulary(file.name.text), ()
+    return symbols.vocabulary(file.name.text), ()
 
 
 def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:

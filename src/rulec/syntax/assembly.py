@@ -29,7 +29,7 @@ _Kind = TypeVar("_Kind")
 
 def assemble_rule(
     head: RuleHead,
-    parts: Sequence[Said | tree.Example | None],
+    parts: Sequence[Said | tree.ExampleItem | None],
     span: Span,
     head_span: Span,
     *,
@@ -67,7 +67,7 @@ def assemble_rule(
         formula("require"),
         value("cite", tree.Text),
         value("says", tree.Text),
-        tuple(part for part in parts if isinstance(part, tree.Example)),
+        tuple(part for part in parts if isinstance(part, tree.ExampleItem)),
         complete,
         span,
         head.level,
@@ -183,7 +183,7 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     # One that has none of its own offers something to those that extend it.
-    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Provision
+    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Definition
     if not any(isinstance(part, enough) for part in parts):
         yield MISSING_PART.at(
             _start(parts[0].span),
@@ -194,7 +194,7 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
-        if isinstance(part, tree.RuleItem | tree.Provision | _Header):
+        if isinstance(part, tree.RuleItem | tree.Definition | _Header):
             yield MISPLACED_LINE.at(
                 _start(part.span),
                 "a vocabulary holds declarations only",

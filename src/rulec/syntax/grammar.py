@@ -31,7 +31,7 @@ _LEVELS = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf:
+class ParseLeaf:
     """A token of the grammar."""
 
     kind: str
@@ -41,11 +41,11 @@ class Leaf:
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class ParseNode:
     """What a rule of the grammar matched, from character ``start`` to ``end``."""
 
     kind: str
-    children: tuple[Branch | Leaf, ...]
+    children: tuple[ParseNode | ParseLeaf, ...]
     start: int
     end: int
 
@@ -65,7 +65,7 @@ class TooDeep:
     position: int
 
 
-def parse_piece(start: Start, text: str, begin: int, end: int) -> Branch | Mismatch | TooDeep:
+def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mismatch | TooDeep:
     """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
     try:
         # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
@@ -124,21 +124,21 @@ def _accepted(start: Start, good: str) -> frozenset[str]:
     return frozenset(state.accepts())  # type: ignore[no-untyped-call]
 
 
-def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:
+def _neutral(tree: Tree[Token], begin: int) -> ParseNode | TooDeep:
     """Lark's tree as ours, built from the leaves up because a hostile one may be very deep."""
-    done: list[Branch | Leaf] = []
+    done: list[ParseNode | ParseLeaf] = []
     todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
     while todo:
         node, depth, ready = todo.pop()
         if isinstance(node, Token):
             start = begin + (node.start_pos or 0)
-            done.append(Leaf(node.type, str(node), start, start + len(node)))
+            done.append(ParseLeaf(node.type, str(node), start, start + len(node)))
         elif ready:
             first = len(done) - len(node.children)
             meta = node.meta
             inside = tuple(done[first:])
             span = begin + meta.start_pos, begin + meta.end_pos
-            done[first:] = [Branch(str(node.data), inside, *span)]
+            done[first:] = [ParseNode(str(node.data), inside, *span)]
         elif depth > MAX_DEPTH:
             return TooDeep(begin + node.meta.start_pos)
         else:
@@ -146,5 +146,5 @@ def _neutral(tree: Tree[Token], begin: int) -> Branch | TooDeep:
             todo.append((node, depth, True))
             todo.extend((child, below, False) for child in reversed(node.children))
     root = done[0]
-    assert isinstance(root, Branch)
+    assert isinstance(root, ParseNode)
     return root

@@ -10,9 +10,9 @@ from typing import TypeVar, cast
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import building, tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
-from rulec.syntax.building import Clause, Values
+from rulec.syntax.building import Clause, NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
-from rulec.syntax.grammar import Branch, Mismatch, Start, TooDeep, parse_piece
+from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
 from rulec.syntax.messages.whole_file import (
     EMPTY_FILE,
@@ -108,7 +108,7 @@ class _Reader:
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def read(
-        self, start: Start, piece: Piece, make: Callable[[Values, Branch], _Built]
+        self, start: Start, piece: Piece, make: Callable[[NodeValues, ParseNode], _Built]
     ) -> _Built | None:
         """What ``make`` makes of a piece that matches ``start``."""
         if piece.reported:
@@ -126,7 +126,7 @@ class _Reader:
                 self.mistakes.append(_messages().too_deep(self._first_token(piece)))
                 return None
             case branch:
-                values = Values(self.source)
+                values = NodeValues(self.source)
                 built = make(values, branch)
         if piece.then is not None:
             self.mistakes.append(piece.then)
@@ -174,11 +174,11 @@ class _Reader:
             return keyword, None, span
         return keyword, self.read("clause", piece, building.clause), span
 
-    def _example(self, pieces: ExamplePieces) -> tree.Example | None:
+    def _example(self, pieces: ExamplePieces) -> tree.ExampleItem | None:
         head = self.read("example_head", pieces.head, building.example_head)
         states = [self.read("state", piece, building.state) for piece in pieces.states]
         if head is None or not states or None in states:
             return None
         span = span_of(self.source, self.tokens, pieces)
         good = cast("list[tree.ExampleState]", states)
-        return tree.Example(head.accepts, tuple(good), head.label, head.objects, span)
+        return tree.ExampleItem(head.accepts, tuple(good), head.label, head.objects, span)

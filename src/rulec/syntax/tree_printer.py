@@ -30,9 +30,9 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
     match node:
         case tree.AtomUse():
             return print_atom(node)
-        case tree.Truth(value):
+        case tree.TruthLiteral(value):
             return "true" if value else "false"
-        case tree.Number(text, unit):
+        case tree.NumberLiteral(text, unit):
             return f"{text} {unit}" if unit else text
         case tree.Prefix(operator, operand, bound):
             sign = _sign(operator, node.sign, style)
@@ -102,15 +102,17 @@ def _sign(operator: str, sign: str, style: Style) -> str:
     return SYMBOLS[operator] if style == "symbols" else operator
 
 
-def _bound(bound: tree.Bound | None) -> str:
+def _bound(bound: tree.BoundNode | None) -> str:
     match bound:
         case None:
             return ""
-        case tree.Bound(low=None, high=high) if high is not None:
+        case tree.BoundNode(low=None, high=high) if high is not None:
             return f"[<= {print_formula(high)}]"
-        case tree.Bound(low=low, high=None) if low is not None:
+        case tree.BoundNode(low=low, high=None) if low is not None:
             return f"[>= {print_formula(low)}]"
-        case tree.Bound(low=low, high=high, exact=exact) if low is not None and high is not None:
+        case tree.BoundNode(low=low, high=high, exact=exact) if (
+            low is not None and high is not None
+        ):
             return f"[{print_formula(low)}{'' if exact else f' .. {print_formula(high)}'}]"
     raise ValueError("a bound has at least one side")
 

@@ -13,7 +13,7 @@ from rulec.automata.thresholds import scale
 from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atoms_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.examples.axiom_checks import Told
 from rulec.rulebook.model import ExampleState
 from rulec.vocabulary import Vocabulary
@@ -129,7 +129,7 @@ def coverage_witness(
             for read, _ in numbers:
                 if not dropped.isdisjoint(term for _, term in read.terms):
                     besides += in_text(read)
-            besides.append(in_words(axiom))
+            besides.append(formula_text(axiom))
     return CoverageWitness(says, tuple(dict.fromkeys(besides)))
 
 

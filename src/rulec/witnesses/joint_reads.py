@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Term
-from rulec.logic.printing import term_in_words
+from rulec.logic.printing import term_text
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.witnesses.letter_functions import LetterFunction
 
@@ -75,7 +75,7 @@ def normal(read: NumberRead) -> tuple[Terms, Fraction]:
     sums: dict[Term, Fraction] = {}
     for coefficient, term in read.terms:
         sums[term] = sums.get(term, Fraction(0)) + coefficient
-    left = sorted((term_in_words(term), term) for term in sums if sums[term])
+    left = sorted((term_text(term), term) for term in sums if sums[term])
     if not left:
         return (), Fraction(1)
     factor = sums[left[0][1]]

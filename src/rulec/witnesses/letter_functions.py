@@ -24,7 +24,7 @@ from rulec.logic.formula import (
     Unary,
 )
 from rulec.logic.free_names import variables_of
-from rulec.logic.renaming import renamed
+from rulec.logic.renaming import rename_variables
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
 from rulec.witnesses.undecided import UndecidedError
@@ -70,7 +70,7 @@ def monitor_function(
 def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
     if isinstance(term, Quantity):
         return Quantity(term.name, tuple(names[argument] for argument in term.arguments))
-    return Count(term.variable, term.type, renamed(term.body, names))
+    return Count(term.variable, term.type, rename_variables(term.body, names))
 
 
 def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
@@ -138,8 +138,8 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[Count]:
 
 
 def body_of(count: Count, name: str) -> Formula:
-    """The formula that is asked of an object that a count goes over."""
-    return _settled(renamed(count.body, {count.variable: name}))
+    """The formula that is required_inputs of an object that a count goes over."""
+    return _settled(rename_variables(count.body, {count.variable: name}))
 
 
 def speaks_of_extra(read: Read | NumberRead) -> bool:

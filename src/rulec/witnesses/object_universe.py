@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.logic.formula import Binary, Comparison, Count, Formula, Term, Unary, atoms_of
-from rulec.logic.renaming import renamed
+from rulec.logic.renaming import rename_variables
 from rulec.rulebook.model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
@@ -39,7 +39,7 @@ class ObjectUniverse:
 
     def renamed(self, formula: Formula, names: Mapping[str, str]) -> Formula:
         """The formula of one state, with objects in the place of variables."""
-        return renamed(self.canonical(formula), names)
+        return rename_variables(self.canonical(formula), names)
 
     def canonical(self, formula: Formula) -> Formula:
         """The formula with the universe's own name for what its counts go over."""
@@ -60,7 +60,7 @@ class ObjectUniverse:
         body = self.canonical(term.body)
         # No object has such a name, and no count inside another one has the same.
         name = COUNTED * (1 + _depth(body))
-        return Count(name, term.type, renamed(body, {term.variable: name}))
+        return Count(name, term.type, rename_variables(body, {term.variable: name}))
 
 
 COUNTED = "?"

@@ -47,7 +47,7 @@ def print_item(item, style="words"):
         raise ValueError("an item that could not be read cannot be printed")
     if isinstance(item, tree.RuleItem):
         return print_rule(item, style)
-    if isinstance(item, tree.Provision):
+    if isinstance(item, tree.Definition):
         return print_provision(item, style)
     return print_declaration(item, style)
 

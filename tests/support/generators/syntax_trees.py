@@ -26,8 +26,8 @@ def _lists(of, least=0):
 
 units = st.sampled_from(["m", "km/h", "m/s^2", "m^-1", "%", "°", "Nm", "µm", "steps", "step"])
 figures = st.from_regex(r"[0-9]{1,4}(\.[0-9]{1,3})?([eE][+-]?[0-9]{1,2})?", fullmatch=True)
-times = st.builds(tree.Number, figures, units)
-numbers = times | st.builds(tree.Number, figures)
+times = st.builds(tree.NumberLiteral, figures, units)
+numbers = times | st.builds(tree.NumberLiteral, figures)
 atoms = st.builds(tree.AtomUse, names, _lists(names))
 parameters = _lists(st.builds(tree.Parameter, names, st.none() | names))
 variable = st.builds(tree.Parameter, names, names)
@@ -35,10 +35,10 @@ variables = _lists(variable)
 amounts = times | atoms
 bounds = st.one_of(
     st.none(),
-    st.builds(tree.Bound, st.none(), amounts),
-    st.builds(tree.Bound, amounts, st.none()),
-    st.builds(tree.Bound, amounts, amounts),
-    amounts.map(lambda one: tree.Bound(one, one, exact=True)),
+    st.builds(tree.BoundNode, st.none(), amounts),
+    st.builds(tree.BoundNode, amounts, st.none()),
+    st.builds(tree.BoundNode, amounts, amounts),
+    amounts.map(lambda one: tree.BoundNode(one, one, exact=True)),
 )
 OVER_TIME = ("then", "until", "release", "weak until", "strong release", "since")
 
@@ -52,7 +52,7 @@ def _infix(operator, left, right, bound):
 
 
 formulas = st.recursive(
-    atoms | st.builds(tree.Truth, st.booleans()) | numbers,
+    atoms | st.builds(tree.TruthLiteral, st.booleans()) | numbers,
     lambda inner: st.one_of(
         st.builds(_prefix, st.sampled_from(UNARY_OPERATORS), inner, bounds),
         st.builds(_infix, st.sampled_from(sorted(PRECEDENCE)), inner, inner, bounds),
@@ -89,7 +89,7 @@ in_force = st.builds(tree.InForce, days, st.just("") | days) | st.builds(
     tree.InForce, st.just(""), days
 )
 levels = st.none() | names
-weights = st.none() | st.builds(tree.Number, figures)
+weights = st.none() | st.builds(tree.NumberLiteral, figures)
 
 provisions = st.one_of(
     st.builds(tree.OptionItem, names, st.booleans()),
@@ -107,7 +107,7 @@ literals = st.builds(tree.StateLiteral, atoms, st.booleans()) | st.builds(
 )
 states = st.builds(tree.ExampleState, _lists(literals, 0))
 examples = st.builds(
-    tree.Example,
+    tree.ExampleItem,
     st.booleans(),
     _lists(states, 1),
     texts.map(lambda text: text.value),

@@ -26,17 +26,17 @@ def _lists(of, least=0, most=4):
 
 
 numbers = st.builds(
-    tree.Number,
+    tree.NumberLiteral,
     st.sampled_from(["0", "7", "1.5", "2e3", "1.5e-3", "007"]),
     st.sampled_from(["", "s", "steps", "km/h", "m/s^2", "%"]),
 )
 atoms = st.builds(tree.AtomUse, some_names, _lists(some_names, most=2))
 amounts = numbers | some_names.map(tree.AtomUse)
 bounds = st.one_of(
-    st.builds(lambda high: tree.Bound(None, high), amounts),
-    st.builds(lambda low: tree.Bound(low, None), amounts),
-    st.builds(tree.Bound, amounts, amounts),
-    st.builds(lambda one: tree.Bound(one, one, exact=True), amounts),
+    st.builds(lambda high: tree.BoundNode(None, high), amounts),
+    st.builds(lambda low: tree.BoundNode(low, None), amounts),
+    st.builds(tree.BoundNode, amounts, amounts),
+    st.builds(lambda one: tree.BoundNode(one, one, exact=True), amounts),
 )
 BOUNDED = {word for word in SYMBOLS if word in ("then", "until", "since", "always", "next", "once")}
 
@@ -72,7 +72,7 @@ def operations(draw, inner):
 
 
 formulas = st.recursive(
-    atoms | numbers | st.builds(tree.Truth, st.booleans()), operations, max_leaves=20
+    atoms | numbers | st.builds(tree.TruthLiteral, st.booleans()), operations, max_leaves=20
 ).filter(lambda one: not isinstance(one, tree.Conditional))
 values = st.one_of(formulas, st.builds(tree.Conditional, formulas, formulas, formulas))
 
@@ -83,7 +83,7 @@ in_force = st.one_of(
 maybe = st.none()
 parameters = _lists(st.builds(tree.Parameter, some_names, maybe | some_names))
 variables = _lists(st.builds(tree.Parameter, some_names, some_names))
-weights = st.sampled_from(["0", "2", "1.5"]).map(tree.Number)
+weights = st.sampled_from(["0", "2", "1.5"]).map(tree.NumberLiteral)
 declarations = st.one_of(
     st.builds(tree.TypeItem, some_names, maybe | some_names),
     st.builds(
@@ -118,7 +118,7 @@ literals = st.one_of(
     st.builds(tree.StateLiteral, atoms, st.just(False), numbers | numbers.map(tree.Minus)),
 )
 examples = st.builds(
-    tree.Example,
+    tree.ExampleItem,
     st.booleans(),
     _lists(st.builds(tree.ExampleState, _lists(literals, 0)), 1),
     texts.map(lambda text: text.value) | st.just(""),

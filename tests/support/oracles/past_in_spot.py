@@ -10,7 +10,7 @@ from rulec.automata.alphabet import names_of
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Atom, Binary, Unary, atoms_of
-from rulec.logic.past_registers import remembered
+from rulec.logic.past_registers import eliminate_past
 from support.generators.timed_formulas import without_bounds
 
 DEFINITIONS = {
@@ -71,4 +71,4 @@ def is_easy(formula):
     """
     operations = list(operations_of(without_bounds(formula)))
     n_guessed = sum(one.operator in PAST for one in operations)
-    return len(operations) <= 20 and max(n_guessed, len(remembered(formula).memories)) <= 3
+    return len(operations) <= 20 and max(n_guessed, len(eliminate_past(formula).memories)) <= 3

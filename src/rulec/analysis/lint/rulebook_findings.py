@@ -21,7 +21,7 @@ from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.witnesses.undecided import UndecidedError
 
@@ -97,7 +97,7 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> I
             yield NEVER_TRIGGERED.at(
                 rule.span,
                 f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
-                f"`{in_words(trigger.formula)}`",
+                f"`{formula_text(trigger.formula)}`",
                 help="no state of the world can be like that; say what is meant, or leave it out",
                 severity="warning",
             )

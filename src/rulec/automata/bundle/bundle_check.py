@@ -13,17 +13,24 @@ from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.bundle.formula_check import problem_in
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, Threshold, trap
+from rulec.automata.mealy_monitor import (
+    IMPOSSIBLE,
+    MealyMonitor,
+    NumberRead,
+    Read,
+    Threshold,
+    sink_of,
+)
 from rulec.diagnostics import SourceLocation
-from rulec.logic.bounds import BOOLEAN, in_steps, operations_of, speaks_of_seconds
+from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.model import SourceFile, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
-def rulebook_of(read: schema.File) -> CompiledRulebook:
+def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
     """The compiled rulebook of a sound file. ValueError with what is wrong otherwise."""
     vocabulary = Vocabulary(
         read.vocabulary.name,
@@ -50,7 +57,7 @@ def rulebook_of(read: schema.File) -> CompiledRulebook:
     )
 
 
-def _priorities(read: schema.File) -> frozenset[tuple[str, str]]:
+def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
     """They are a pre-order of the levels."""
     _require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
     pairs = frozenset(read.priorities)
@@ -66,9 +73,9 @@ def _priorities(read: schema.File) -> frozenset[tuple[str, str]]:
 
 
 _DECLARATIONS: dict[type, type[Enumeration | Signal | Quantity]] = {
-    schema.Enumeration: Enumeration,
-    schema.Signal: Signal,
-    schema.Quantity: Quantity,
+    schema.EnumerationEntry: Enumeration,
+    schema.SignalEntry: Signal,
+    schema.QuantityEntry: Quantity,
 }
 
 
@@ -88,14 +95,14 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             _require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
-def _axiom(fact: schema.Fact, vocabulary: Vocabulary) -> CompiledAxiom:
+def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
     variables = _variables(fact.variables, vocabulary, "a fact")
     formula = from_data(fact.tree)
     problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
     _require(problem is None, f"a fact {problem}")
     timeless = all(part.operator in BOOLEAN for part in operations_of(formula))
     _require(timeless, "a fact speaks of more than one state")
-    _require(in_words(formula) == fact.formula, "a fact has two different formulas")
+    _require(formula_text(formula) == fact.formula, "a fact has two different formulas")
     return CompiledAxiom(
         variables, formula, SourceLocation(fact.file, fact.line) if fact.file else None
     )
@@ -112,12 +119,14 @@ def _variables(
     return variables
 
 
-def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
+def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
     variables = _variables(rule.variables, vocabulary, f"rule `{rule.name}`")
     formula = from_data(rule.tree)
     problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
     _require(problem is None, f"rule `{rule.name}` {problem}")
-    _require(in_words(formula) == rule.formula, f"rule `{rule.name}` has two different formulas")
+    _require(
+        formula_text(formula) == rule.formula, f"rule `{rule.name}` has two different formulas"
+    )
     machine = _machine(rule.machine, rule.name)
     same = machine.reads == reads_of(formula, vocabulary)
     _require(same, f"the table of rule `{rule.name}` does not read what its formula does")
@@ -135,9 +144,9 @@ def _rule(rule: schema.Rule, vocabulary: Vocabulary, levels: Container[str]) -> 
     )
 
 
-def _step(rule: schema.Rule, formula: Formula) -> Fraction | None:
+def _step(rule: schema.BundleRule, formula: Formula) -> Fraction | None:
     """The step of traces that it is for, without which bounds in seconds are no numbers."""
-    needed = speaks_of_seconds(formula)
+    needed = has_seconds(formula)
     _require(needed is (rule.step_s is not None), f"rule `{rule.name}` is for a wrong step")
     if rule.step_s is None:
         return None
@@ -146,7 +155,7 @@ def _step(rule: schema.Rule, formula: Formula) -> Fraction | None:
     return step
 
 
-def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
+def _machine(read: schema.MachineEntry, rule: str) -> MealyMonitor:
     reads = tuple(_read(item) for item in read.reads)
     n_states = len(read.successors)
     n_classes = len(read.successors[0]) if read.successors else 0
@@ -160,7 +169,7 @@ def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
         all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
     ]
     _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
-    traps = [trap(read.successors, read.outputs, verdict=verdict) for verdict in (False, True)]
+    traps = [sink_of(read.successors, read.outputs, verdict=verdict) for verdict in (False, True)]
     _require(
         traps == [read.rejecting_sink, read.accepting_sink],
         f"rule `{rule}` names a wrong dead or safe state",
@@ -168,8 +177,8 @@ def _machine(read: schema.Machine, rule: str) -> MealyMonitor:
     return MealyMonitor(reads, *astuple(read)[1:])
 
 
-def _read(read: schema.Read | schema.NumberRead) -> Read | NumberRead:
-    if isinstance(read, schema.Read):
+def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> Read | NumberRead:
+    if isinstance(read, schema.ReadEntry):
         return Read(*astuple(read))
     return NumberRead(
         terms_from_data(read.terms),

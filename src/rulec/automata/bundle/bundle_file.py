@@ -21,7 +21,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.model import Variable
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
@@ -29,11 +29,11 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 def to_json(rulebook: CompiledRulebook) -> str:
     """The file's text: indented, with every row of numbers on a line of its own."""
     vocabulary = rulebook.vocabulary
-    file = schema.File(
+    file = schema.BundleFile(
         **{name: getattr(rulebook, name) for name in schema.RULEBOOK_FIELDS},
-        sources=[schema.Source(source.name, source.sha256) for source in rulebook.sources],
+        sources=[schema.SourceEntry(source.name, source.sha256) for source in rulebook.sources],
         priorities=sorted(rulebook.priorities),
-        vocabulary=schema.Vocabulary(
+        vocabulary=schema.VocabularyEntry(
             vocabulary.name,
             {item.name: item.parent for item in vocabulary.types.values()},
             [_declaration(item) for item in vocabulary.declarations.values()],
@@ -53,21 +53,23 @@ def _on_one_line(found: re.Match[str]) -> str:
     return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
 
 
-def _declaration(item: Declaration) -> schema.Enumeration | schema.Signal | schema.Quantity:
+def _declaration(
+    item: Declaration,
+) -> schema.EnumerationEntry | schema.SignalEntry | schema.QuantityEntry:
     match item:
         case Enumeration():
-            return schema.Enumeration(item.name, item.parameters, item.values, item.default)
+            return schema.EnumerationEntry(item.name, item.parameters, item.values, item.default)
         case Signal():
-            return schema.Signal(item.name, item.parameters, item.default)
+            return schema.SignalEntry(item.name, item.parameters, item.default)
         case Quantity():
-            return schema.Quantity(item.name, item.parameters, item.unit, item.default)
+            return schema.QuantityEntry(item.name, item.parameters, item.unit, item.default)
 
 
-def _axiom(axiom: CompiledAxiom) -> schema.Fact:
+def _axiom(axiom: CompiledAxiom) -> schema.AxiomEntry:
     place = axiom.place
-    return schema.Fact(
+    return schema.AxiomEntry(
         _variables(axiom.variables),
-        in_words(axiom.formula),
+        formula_text(axiom.formula),
         to_data(axiom.formula),
         # Where it is written on this machine is no business of others.
         file="" if place is None else Path(place.file).name,
@@ -79,16 +81,16 @@ def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
     return [(variable.name, variable.type) for variable in variables]
 
 
-def _rule(rule: CompiledRule) -> schema.Rule:
+def _rule(rule: CompiledRule) -> schema.BundleRule:
     machine = rule.machine
-    return schema.Rule(
+    return schema.BundleRule(
         **{name: getattr(rule, name) for name in schema.RULE_FIELDS},
         weight=str(rule.weight),
         variables=_variables(rule.variables),
         step_s=None if rule.step_s is None else str(rule.step_s),
-        formula=in_words(rule.formula),
+        formula=formula_text(rule.formula),
         tree=to_data(rule.formula),
-        machine=schema.Machine(
+        machine=schema.MachineEntry(
             reads=[_read(read) for read in machine.reads],
             letters=machine.letters,
             successors=machine.successors,
@@ -99,13 +101,13 @@ def _rule(rule: CompiledRule) -> schema.Rule:
     )
 
 
-def _read(read: Read | NumberRead) -> schema.Read | schema.NumberRead:
+def _read(read: Read | NumberRead) -> schema.ReadEntry | schema.NumberReadEntry:
     match read:
         case Read(name, variables, values, others):
-            return schema.Read(name, variables, values, others)
+            return schema.ReadEntry(name, variables, values, others)
         case NumberRead(terms, thresholds):
-            limits = [schema.Threshold(str(item.limit), item.inclusive) for item in thresholds]
-            return schema.NumberRead(terms_to_data(terms), limits)
+            limits = [schema.ThresholdEntry(str(item.limit), item.inclusive) for item in thresholds]
+            return schema.NumberReadEntry(terms_to_data(terms), limits)
 
 
 def read_to_data(read: Read | NumberRead) -> dict[str, Any]:
@@ -123,7 +125,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
     """
     data = data.removeprefix(codecs.BOM_UTF8)
     try:
-        header = msgspec.json.decode(data, type=schema.Header)
+        header = msgspec.json.decode(data, type=schema.BundleHeader)
     except msgspec.MsgspecError as problem:
         raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
@@ -135,7 +137,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
             f"this rulec reads version {schema.VERSION}",
         )
     try:
-        return rulebook_of(msgspec.json.decode(data, type=schema.File))
+        return rulebook_of(msgspec.json.decode(data, type=schema.BundleFile))
     except (msgspec.MsgspecError, ValueError) as problem:
         raise _damaged(file, f"this compiled rulebook is damaged: {json_words(problem)}") from None
 

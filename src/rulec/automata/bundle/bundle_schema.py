@@ -16,14 +16,14 @@ class _Strict(msgspec.Struct, forbid_unknown_fields=True):
     """An object of the file: it has these fields and no others."""
 
 
-class Source(_Strict):
+class SourceEntry(_Strict):
     """A file that went into the rulebook."""
 
     name: str
     sha256: str
 
 
-class Enumeration(_Strict, tag="enumeration", tag_field="kind"):
+class EnumerationEntry(_Strict, tag="enumeration", tag_field="kind"):
     """A declaration: one of several values."""
 
     name: str
@@ -32,7 +32,7 @@ class Enumeration(_Strict, tag="enumeration", tag_field="kind"):
     default: str | None
 
 
-class Signal(_Strict, tag="signal", tag_field="kind"):
+class SignalEntry(_Strict, tag="signal", tag_field="kind"):
     """A declaration: a Boolean."""
 
     name: str
@@ -40,7 +40,7 @@ class Signal(_Strict, tag="signal", tag_field="kind"):
     default: bool | None
 
 
-class Quantity(_Strict, tag="quantity", tag_field="kind"):
+class QuantityEntry(_Strict, tag="quantity", tag_field="kind"):
     """A declaration: a number with a unit."""
 
     name: str
@@ -49,15 +49,15 @@ class Quantity(_Strict, tag="quantity", tag_field="kind"):
     default: float | None
 
 
-class Vocabulary(_Strict):
+class VocabularyEntry(_Strict):
     """Types, each with its parent, and declarations."""
 
     name: str
     types: dict[str, str | None]
-    declarations: list[Enumeration | Signal | Quantity]
+    declarations: list[EnumerationEntry | SignalEntry | QuantityEntry]
 
 
-class Read(_Strict, tag="state", tag_field="kind"):
+class ReadEntry(_Strict, tag="state", tag_field="kind"):
     """An enumeration or a signal that a machine reads."""
 
     name: str
@@ -66,18 +66,18 @@ class Read(_Strict, tag="state", tag_field="kind"):
     others: bool
 
 
-class Threshold(_Strict):
+class ThresholdEntry(_Strict):
     """A place on the number line; the limit is a fraction."""
 
     limit: str
     inclusive: bool
 
 
-class NumberRead(_Strict, tag="number", tag_field="kind"):
+class NumberReadEntry(_Strict, tag="number", tag_field="kind"):
     """A number that a machine reads."""
 
     terms: Any
-    thresholds: list[Threshold]
+    thresholds: list[ThresholdEntry]
 
 
 _WRITTEN_AS = {
@@ -89,10 +89,10 @@ _WRITTEN_AS = {
 """Fields of a Mealy monitor by the names that version 3 of the format gives them."""
 
 
-class Machine(_Strict, rename=_WRITTEN_AS):
+class MachineEntry(_Strict, rename=_WRITTEN_AS):
     """The Mealy monitor of a rule."""
 
-    reads: list[Read | NumberRead]
+    reads: list[ReadEntry | NumberReadEntry]
     letters: tuple[int, ...]
     successors: tuple[tuple[int, ...], ...]
     outputs: tuple[tuple[bool, ...], ...]
@@ -100,7 +100,7 @@ class Machine(_Strict, rename=_WRITTEN_AS):
     accepting_sink: int | None
 
 
-class Rule(_Strict):
+class BundleRule(_Strict):
     """One rule."""
 
     name: str
@@ -116,11 +116,11 @@ class Rule(_Strict):
     step_s: str | None
     formula: str
     tree: Any
-    machine: Machine
+    machine: MachineEntry
     hoa: str
 
 
-class Fact(_Strict):
+class AxiomEntry(_Strict):
     """An axiom, and where it is written: file and line, from 1."""
 
     variables: list[tuple[str, str]]
@@ -130,14 +130,14 @@ class Fact(_Strict):
     line: Annotated[int, msgspec.Meta(ge=1)] | None
 
 
-class Header(msgspec.Struct):
+class BundleHeader(msgspec.Struct):
     """The fields that say whether it is such a file, and of which version."""
 
     format: Literal["rulec compiled rulebook"]
     version: int
 
 
-class File(_Strict, kw_only=True):
+class BundleFile(_Strict, kw_only=True):
     """The whole file."""
 
     format: str = FORMAT
@@ -148,16 +148,16 @@ class File(_Strict, kw_only=True):
     title: str
     law: str
     as_of: str
-    sources: list[Source]
+    sources: list[SourceEntry]
     semantics: Semantics
     traffic: Traffic = ""
     levels: tuple[str, ...]
     priorities: list[tuple[str, str]]
     extends: tuple[str, ...]
     at: str
-    vocabulary: Vocabulary
-    facts: list[Fact]
-    rules: list[Rule]
+    vocabulary: VocabularyEntry
+    facts: list[AxiomEntry]
+    rules: list[BundleRule]
 
 
 RULEBOOK_FIELDS = (

@@ -17,7 +17,7 @@ from rulec.logic.formula import (
     Term,
     Unary,
 )
-from rulec.logic.printing import term_in_words
+from rulec.logic.printing import term_text
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
@@ -72,7 +72,7 @@ def _is_known(atom: Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
 
 def _is_normal(comparison: Comparison) -> bool:
     coefficients = [coefficient for coefficient, _ in comparison.terms]
-    texts = [term_in_words(term) for _, term in comparison.terms]
+    texts = [term_text(term) for _, term in comparison.terms]
     return (
         len(texts) > 0
         and coefficients[0] == 1
@@ -91,7 +91,7 @@ def _problems_of_term(term: Term, vocabulary: Vocabulary, variables: Set[str]) -
                 or len(declaration.parameters) != len(arguments)
                 or not set(arguments) <= variables
             ):
-                yield f"speaks of the quantity `{term_in_words(term)}`, which its vocabulary lacks"
+                yield f"speaks of the quantity `{term_text(term)}`, which its vocabulary lacks"
         case Count(variable, type_name, body):
             if type_name not in vocabulary.types:
                 yield f"counts objects of the unknown type `{type_name}`"

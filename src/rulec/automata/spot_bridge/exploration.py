@@ -12,7 +12,7 @@ import buddy  # isort: skip - only once spot has been imported
 from rulec.automata.alphabet import count_letters, letters_with
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.spot_bridge.translation import Translation
-from rulec.automata.tables import DeterministicAutomaton, Edge
+from rulec.automata.tables import DeterministicAutomaton, TableEdge
 
 
 def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> DeterministicAutomaton:
@@ -39,7 +39,7 @@ def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> Det
 
     edges = tuple(
         tuple(
-            Edge(letters, edge.dst, _bits(edge.acc))
+            TableEdge(letters, edge.dst, _bits(edge.acc))
             for edge in automaton.out(state)
             if (letters := letters_on(edge.cond))
         )

@@ -14,7 +14,7 @@ from rulec.automata.spot_bridge.equivalence_check import check, tried
 from rulec.automata.spot_bridge.progression import Progression
 from rulec.automata.spot_bridge.registers import with_registers
 from rulec.automata.spot_bridge.spot_formulas import F, SpotFormulas
-from rulec.logic.bounds import reach
+from rulec.logic.bounds import total_bound
 from rulec.logic.formula import (
     Binary,
     BinaryOperator,
@@ -24,7 +24,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.past_registers import Memory, definition, remembered
+from rulec.logic.past_registers import Memory, definition, eliminate_past
 from rulec.logic.semantics import Semantics
 
 _SHAPE = ("parity", "det", "complete")
@@ -65,7 +65,7 @@ def translate(
     where Spot, or rulec, got it wrong.
     """
     propositions = propositions_of(formula)
-    past = remembered(formula)
+    past = eliminate_past(formula)
     fresh = [
         *(register.atom for register in past.registers),
         *(memory.atom for memory in past.memories),
@@ -79,7 +79,7 @@ def translate(
     meant = past.present
     if known != Constant(True):
         meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, known))
-    steps = reach(meant)
+    steps = total_bound(meant)
     if past.memories:
         automaton = _guessed(meant, past.memories, spot_formulas)
     else:
@@ -120,7 +120,7 @@ def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFo
 
 def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     """The automaton of the formula or its negation; if it has bounds, from those of its parts."""
-    if reach(formula) == 0:
+    if total_bound(formula) == 0:
         return _by_spot(formula, wanted, spot_formulas)
     match formula:
         case Unary(UnaryOperator.NOT, operand):

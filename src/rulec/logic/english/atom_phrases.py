@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Literal
 
 from rulec.logic.formula import Atom, Bound, Comparison, Count, Quantity, Relation, Term
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 
 _VERBS: dict[Relation, tuple[str, str]] = {
     "<": ("is less than", "is not less than"),
@@ -48,8 +48,8 @@ def number_text(value: Fraction) -> str:
 
 def spoken(name: str) -> str:
     """A name to be read aloud: ``in_front_of`` is three words, ``R_cw`` stays what it is."""
-    in_words = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
-    return name.replace("_", " ") if in_words else name
+    formula_text = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
+    return name.replace("_", " ") if formula_text else name
 
 
 def listed(names: Sequence[str]) -> str:
@@ -145,7 +145,7 @@ def term_text(term: Term) -> str:
         case Quantity(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
         case Count(variable, type_name, body):
-            return f"count {variable}: {type_name} ({in_words(body)})"
+            return f"count {variable}: {type_name} ({formula_text(body)})"
 
 
 def amount(value: Fraction, unit: Literal["s", "steps"]) -> str:

@@ -22,7 +22,7 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
-from rulec.logic.printing import in_words, term_in_words
+from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
 from rulec.monitoring.binding import Binding, bindings
 from rulec.monitoring.explain.nearest_satisfying import Change, nearest_kept
@@ -207,7 +207,7 @@ def _facts(
         if isinstance(read, Count):
             objects = seen.counted(read)
             yield Observation(
-                term_in_words(read),
+                term_text(read),
                 tuple(len(objects[n]) for n in seen.shown),
                 passes and seen.changes([len(one) for one in objects]),
                 decides,
@@ -243,7 +243,7 @@ def _parts(
     """The parts as they are written, with the values of the same formula with bounds in steps."""
     values = truths[stepped]
     shown = tuple(values[n] for n in seen.shown)
-    text, decides = in_words(written), stepped in deciding
+    text, decides = formula_text(written), stepped in deciding
     yield Part(written, text, depth, shown, seen.changes(values), decides)
     match written, stepped:
         case Unary(_, operand), Unary(_, same):

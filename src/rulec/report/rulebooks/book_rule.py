@@ -7,11 +7,11 @@ from difflib import unified_diff
 from textwrap import wrap
 
 from rulec.analysis.lineage.rule_lineage import BookLineage, RuleHistory
-from rulec.logic.bounds import speaks_of_seconds
+from rulec.logic.bounds import has_seconds
 from rulec.logic.english.atom_phrases import amount, listed, number_text, spoken
 from rulec.logic.english.sentence import Phrase
 from rulec.logic.english.sentence_layout import lines
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
@@ -60,7 +60,7 @@ def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> 
     yield Heading(4, "Examples")
     if not rule.examples:
         yield "None."
-    elif speaks_of_seconds(rule.formula):
+    elif has_seconds(rule.formula):
         yield f"The states are {amount(rule.step_s, 's')} apart."
     for number, example in enumerate(rule.examples, 1):
         yield from _example(example, number, vocabulary)
@@ -101,9 +101,9 @@ def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
     """As it is written, and as it is meant where that is something else."""
     clauses = [] if written is None else clauses_of(written)
     said = [(word, text) for word, text in clauses if word in _FORMULAS]
-    meant = [] if rule.condition is None else [("when", in_words(rule.condition))]
-    meant.append(("require", in_words(rule.required or rule.formula)))
-    meant += [("unless", f"{in_words(one.formula)} {one.scope}") for one in rule.exemptions]
+    meant = [] if rule.condition is None else [("when", formula_text(rule.condition))]
+    meant.append(("require", formula_text(rule.required or rule.formula)))
+    meant += [("unless", f"{formula_text(one.formula)} {one.scope}") for one in rule.exemptions]
     yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
     if said != meant:
         yield "With definitions, options and parameters put in:"

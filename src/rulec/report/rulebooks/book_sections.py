@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.analysis.vocabulary_use import used_declarations
 from rulec.logic.english.atom_phrases import listed, spoken
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.book_rule import WIDTH
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, table
@@ -110,7 +110,9 @@ def _facts(rulebook: Rulebook) -> Iterator[Block]:
     if rulebook.axioms:
         yield Heading(2, "What always holds")
         yield "Whatever the rules say, this is so in every state:"
-        yield fenced("\n".join(f"fact {in_words(one.formula)}" for one in rulebook.axioms), "rulec")
+        yield fenced(
+            "\n".join(f"fact {formula_text(one.formula)}" for one in rulebook.axioms), "rulec"
+        )
 
 
 def _descriptions(loaded: Loaded) -> Mapping[str, str]:

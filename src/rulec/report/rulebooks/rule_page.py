@@ -15,7 +15,7 @@ from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
 from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
 from rulec.logic.english.sentence_layout import lines
 from rulec.logic.formula import Constant, Unary, UnaryOperator
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.automata.guard_text import GuardWording
@@ -82,7 +82,7 @@ def _remarks(trace: WitnessTrace) -> Iterator[str]:
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
             yield (
                 f"in state {number} there {'is' if size == 1 else 'are'} {size:,} {noun} "
-                f"{count.variable} for which {in_words(count.body)}"
+                f"{count.variable} for which {formula_text(count.body)}"
             )
 
 
@@ -121,12 +121,12 @@ def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
 
 def _formula(rule: Rule, width: int) -> list[str]:
     """The formula; one with exceptions as it is written, and then with them put in."""
-    whole = formula_lines(visible(in_words(rule.formula)), width)
+    whole = formula_lines(visible(formula_text(rule.formula)), width)
     if rule.required is None:
         return whole
-    parts = [in_words(rule.required)]
-    parts += [f"when {in_words(rule.condition)}"] if rule.condition is not None else []
-    parts += [f"unless {in_words(one.formula)} {one.scope}" for one in rule.exemptions]
+    parts = [formula_text(rule.required)]
+    parts += [f"when {formula_text(rule.condition)}"] if rule.condition is not None else []
+    parts += [f"unless {formula_text(one.formula)} {one.scope}" for one in rule.exemptions]
     written = [line for part in parts for line in formula_lines(visible(part), width)]
     return [*written, "that is", *whole]
 

@@ -8,7 +8,7 @@ from typing import Literal
 from rulec.book_tests.edge_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
 from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.tests.example_text import missing_example
@@ -133,7 +133,7 @@ def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
         ],
         values=rule.n_values,
         missing_values=[
-            MissingValueData(atom=in_words(atom), value=value)
+            MissingValueData(atom=formula_text(atom), value=value)
             for atom, value in rule.missing_values
         ],
     )

@@ -13,7 +13,7 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_wa
 from rulec.diagnostics import Diagnostic
 from rulec.logic.constant_folding import fold_constants
 from rulec.logic.formula import Atom, Constant
-from rulec.logic.printing import in_words, number_in_words
+from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.findings.source_excerpt import visible
 from rulec.rulebook.model import ExampleState
@@ -107,7 +107,7 @@ def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Ite
         values = f"{one.n_values - len(one.missing_values):,} of {one.n_values:,} values of atoms"
         lines = [f"{one.rule}: {edges}, {values} ({as_percent(percent([one]))})"]
         for atom, value in one.missing_values:
-            lines.append(f"`{in_words(atom)}` is never {'true' if value else 'false'}")
+            lines.append(f"`{formula_text(atom)}` is never {'true' if value else 'false'}")
         lines += [
             f"missing: {missing_example(edge, vocabulary)}"
             for edge in one.missing_edges[:MOST_MISSING]

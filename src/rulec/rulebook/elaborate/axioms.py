@@ -16,7 +16,7 @@ from rulec.syntax import tree
 
 
 def axiom_of(
-    item: tree.FactItem, declared: SymbolTable, provisions: ConstantsAndMacros
+    item: tree.FactItem, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> tuple[Axiom | None, list[Diagnostic]]:
     """The fact as meant (None if it has a mistake), and what is wrong with it.
 
@@ -27,9 +27,9 @@ def axiom_of(
     if isinstance(formula, tree.Prefix) and formula.operator == "always" and not formula.bound:
         # Facts hold always; one may say so.
         formula = formula.operand
-    variables = _variables(_asked_for(formula, declared, provisions), declared, mistakes)
+    variables = _variables(_asked_for(formula, symbols, constants), symbols, mistakes)
     scope = Scope(
-        declared, provisions, variables, mistakes, in_moment=True, taken=frozenset(variables)
+        symbols, constants, variables, mistakes, in_moment=True, taken=frozenset(variables)
     )
     provisions.begin()
     result = truth(formula, scope)
@@ -42,7 +42,7 @@ def axiom_of(
 
 
 def _variables(
-    asked_for: Iterable[tuple[tree.Name, str]], declared: SymbolTable, mistakes: list[Diagnostic]
+    asked_for: Iterable[tuple[tree.Name, str]], symbols: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     bound_variables: dict[str, BoundVariable] = {}
     for name, wanted in asked_for:
@@ -56,8 +56,8 @@ def _variables(
 
 def _asked_for(
     formula: tree.Formula,
-    declared: SymbolTable,
-    provisions: ConstantsAndMacros,
+    symbols: SymbolTable,
+    constants: ConstantsAndMacros,
     counted: frozenset[str] = frozenset(),
 ) -> Iterator[tuple[tree.Name, str]]:
     """Every object that the formula speaks of, with the type that is needed there.
@@ -65,7 +65,7 @@ def _asked_for(
     ``counted`` are the variables of the counts around it, which are no objects of the fact's.
     """
     if isinstance(formula, tree.AtomUse):
-        wanted = _parameters(formula, declared, provisions)
+        wanted = _parameters(formula, symbols, constants)
         if len(wanted) == len(formula.arguments):
             for name, kind in zip(formula.arguments, wanted, strict=True):
                 if kind is not None and name.text not in counted:
@@ -73,15 +73,15 @@ def _asked_for(
     elif isinstance(formula, tree.Aggregate):
         counted |= {formula.variable.name.text}
     for part in parts_of(formula):
-        yield from _asked_for(part, declared, provisions, counted)
+        yield from _asked_for(part, symbols, constants, counted)
 
 
 def _parameters(
-    use: tree.AtomUse, declared: SymbolTable, provisions: ConstantsAndMacros
+    use: tree.AtomUse, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> Sequence[str | None]:
     """The types of what is asked for by this name; None for one that may be anything."""
     name = use.name.text
-    definition = provisions.definitions.get(name)
+    definition = constants.definitions.get(name)
     if definition is not None:
         kinds = [
             parameter.type.text if parameter.type else None for parameter in definition.parameters

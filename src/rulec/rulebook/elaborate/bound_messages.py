@@ -5,7 +5,7 @@ from __future__ import annotations
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
 
@@ -19,7 +19,7 @@ SENSELESS_BOUND = Code(
 )
 
 
-def two_units_of_time(bound: tree.Bound) -> Diagnostic:
+def two_units_of_time(bound: tree.BoundNode) -> Diagnostic:
     """A bound from seconds to steps."""
     return SENSELESS_BOUND.at(
         bound.span,
@@ -29,7 +29,7 @@ def two_units_of_time(bound: tree.Bound) -> Diagnostic:
     )
 
 
-def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.Bound) -> Diagnostic:
+def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.BoundNode) -> Diagnostic:
     """``next[<= 2 s]`` or ``eventually[2 s]``."""
     amount = bound.high or bound.low
     text = print_formula(amount) if amount else "2 s"
@@ -42,7 +42,7 @@ def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.Bound) -> Diagnostic:
     return SENSELESS_BOUND.at(bound.span, message, expected="expected another bound", help=way_out)
 
 
-def empty_bound(bound: tree.Bound) -> Diagnostic:
+def empty_bound(bound: tree.BoundNode) -> Diagnostic:
     """``[4 s .. 1 s]``."""
     return SENSELESS_BOUND.at(
         bound.span,
@@ -52,7 +52,7 @@ def empty_bound(bound: tree.Bound) -> Diagnostic:
     )
 
 
-def half_a_step(side: tree.Number) -> Diagnostic:
+def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
     """``[<= 1.5 steps]``."""
     return SENSELESS_BOUND.at(
         side.span,
@@ -62,7 +62,7 @@ def half_a_step(side: tree.Number) -> Diagnostic:
     )
 
 
-def no_time(side: tree.Amount, found: Number) -> Diagnostic:
+def no_time(side: tree.Amount, found: NumberByCases) -> Diagnostic:
     """A bound that is no fixed time from 0 on."""
     if not found.is_constant:
         why = "changes from state to state"

@@ -8,7 +8,7 @@ from typing import Literal
 
 from rulec.logic.formula import Bound
 from rulec.rulebook.elaborate import bound_messages as say
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.literals import exact_value
 from rulec.rulebook.names.scope import Scope
 from rulec.syntax import tree
@@ -17,13 +17,13 @@ from rulec.vocabulary.units import DIMENSIONS
 _ONE_INSTANT = frozenset(("next", "weak next", "previously", "weak previously"))
 _STEPS = frozenset(("step", "steps"))
 
-Evaluate = Callable[[tree.Formula, Scope], Number | None]
+Evaluate = Callable[[tree.Formula, Scope], NumberByCases | None]
 
 _Time = tuple[Fraction, Literal["s", "steps"]]
 
 
 def bound_of(
-    node: tree.Prefix | tree.Infix, bound: tree.Bound | None, scope: Scope, evaluate: Evaluate
+    node: tree.Prefix | tree.Infix, bound: tree.BoundNode | None, scope: Scope, evaluate: Evaluate
 ) -> Bound | Literal[False] | None:
     """The bound as meant; False if it has a mistake, which is then reported.
 
@@ -56,7 +56,7 @@ def bound_of(
 
 
 def _time(side: tree.Amount, scope: Scope, evaluate: Evaluate) -> _Time | None:
-    if isinstance(side, tree.Number) and side.unit in _STEPS:
+    if isinstance(side, tree.NumberLiteral) and side.unit in _STEPS:
         whole = exact_value(side, scope)
         if whole is None:
             return None

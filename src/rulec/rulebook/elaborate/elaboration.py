@@ -16,12 +16,12 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.logic.printing import term_in_words
+from rulec.logic.printing import term_text
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.bounds import bound_of
 from rulec.rulebook.elaborate.linear_arithmetic import (
     Linear,
-    Number,
+    NumberByCases,
     TooManyCasesError,
     added,
     combined,
@@ -34,10 +34,10 @@ from rulec.rulebook.elaborate.linear_arithmetic import (
     scaled,
 )
 from rulec.rulebook.elaborate.literals import literal
-from rulec.rulebook.elaborate.macro_expansion import put_in
+from rulec.rulebook.elaborate.macro_expansion import expand_macro
 from rulec.rulebook.elaborate.quantifiers import aggregate
-from rulec.rulebook.elaborate.size_limits import excess
-from rulec.rulebook.names.scope import Anything, Scope
+from rulec.rulebook.elaborate.size_limits import exceeded_limit
+from rulec.rulebook.names.scope import AnyArgument, Scope
 from rulec.rulebook.overlay import constant_messages
 from rulec.rulebook.overlay.parameter_values import parameter
 from rulec.syntax import tree
@@ -58,16 +58,16 @@ class Object:
     name: str
 
 
-Meaning = Formula | Number | Object | Anything
+Meaning = Formula | NumberByCases | Object | AnyArgument
 
 
 def truth(node: tree.Formula, scope: Scope) -> Formula | None:
     """The formula; None if it has a mistake, which is then reported."""
-    result = meaning(node, scope)
+    result = elaborate(node, scope)
     match result:
         case None:
             return None
-        case Anything():
+        case AnyArgument():
             return Constant(True)
         case Number():
             scope.report(say.number_for_truth(node, result, scope))
@@ -79,9 +79,9 @@ def truth(node: tree.Formula, scope: Scope) -> Formula | None:
             return result
 
 
-def number(node: tree.Formula, scope: Scope) -> Number | None:
+def number(node: tree.Formula, scope: Scope) -> NumberByCases | None:
     """The number; None if it has a mistake, which is then reported."""
-    result = meaning(node, scope)
+    result = elaborate(node, scope)
     match result:
         case None | Anything():
             return None
@@ -92,20 +92,20 @@ def number(node: tree.Formula, scope: Scope) -> Number | None:
             return None
 
 
-def meaning(node: tree.Formula, scope: Scope) -> Meaning | None:
+def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
     """What an expression means; None if it has a mistake, which is then reported.
 
     Raises:
         TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
     """
-    with scope.provisions.one_deeper():
+    with scope.constants.one_deeper():
         try:
             match node:
                 case tree.AtomUse():
                     return _name(node, scope)
-                case tree.Truth(value):
+                case tree.TruthLiteral(value):
                     return Constant(value)
-                case tree.Number():
+                case tree.NumberLiteral():
                     return literal(node, scope)
                 case tree.Prefix():
                     return _prefix(node, scope)
@@ -119,10 +119,12 @@ def meaning(node: tree.Formula, scope: Scope) -> Meaning | None:
                     inside = number(operand, scope)
                     if inside is None:
                         return None
-                    return Number(tuple((when, opposite(linear)) for when, linear in inside.cases))
+                    return NumberByCases(
+                        tuple((when, opposite(linear)) for when, linear in inside.cases)
+                    )
                 case tree.Conditional(value, condition, otherwise):
-                    first, test = meaning(value, scope), truth(condition, scope)
-                    return _either(node, first, test, meaning(otherwise, scope), scope)
+                    first, test = elaborate(value, scope), truth(condition, scope)
+                    return _either(node, first, test, elaborate(otherwise, scope), scope)
                 case tree.Aggregate():
                     return aggregate(node, scope, truth)
         except TooManyCasesError:
@@ -139,7 +141,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
             scope.report(constant_messages.object_as_relation(node, scope))
             return None
         return Object(scope.variables[name].actual)
-    if isinstance(relation, Anything):
+    if isinstance(relation, AnyArgument):
         scope.used.add(name)
         scope.used |= {argument.text for argument in node.arguments}
         return relation
@@ -147,22 +149,22 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         scope.used.add(name)
         node = replace(node, name=replace(node.name, text=relation))
         name = relation
-    kind = scope.provisions.overlay.kind_of(name)
+    kind = scope.constants.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
         scope.report(constant_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
-        return Constant(scope.provisions.options[name])
+        return Constant(scope.constants.options[name])
     if kind == "parameter":
         return parameter(node, scope, number)
     if kind == "definition":
-        return put_in(node, scope, meaning)
+        return expand_macro(node, scope, elaborate)
     result = scope.reference(node)
     if isinstance(result, Quantity):
         unit = scope.declared.unit_of(result.name)
         if unit is None:
             return None
-        return measured(result, unit.factor, unit.dimension, term_in_words(result))
+        return measured(result, unit.factor, unit.dimension, term_text(result))
     return result
 
 
@@ -171,7 +173,7 @@ def _prefix(node: tree.Prefix, scope: Scope) -> Formula | None:
     bound = bound_of(node, node.bound, scope, number)
     if _out_of_place(node, node.operator, scope) or operand is None or bound is False:
         return None
-    written = isinstance(node.operand, tree.Truth)
+    written = isinstance(node.operand, tree.TruthLiteral)
     if node.operator == "not" and isinstance(operand, Constant) and not written:
         return negated(operand)
     return Unary(UnaryOperator(node.operator), operand, bound)
@@ -202,17 +204,17 @@ def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
         yield say.endless_phase(phase)
 
 
-def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
+def _compare(node: tree.Compare, scope: Scope) -> Formula | AnyArgument | None:
     for side, other in ((node.left, node.right), (node.right, node.left)):
         if isinstance(side, tree.AtomUse) and (item := scope.enumeration(side)) is not None:
             scope.used |= {argument.text for argument in side.arguments}
             scope.report(say.values_compared(node, side, item, other, scope))
             return None
-    left, right = meaning(node.left, scope), meaning(node.right, scope)
+    left, right = elaborate(node.left, scope), elaborate(node.right, scope)
     if isinstance(left, Object) and isinstance(right, Object):
         return _same(node, left, right, scope)
-    if isinstance(left, Anything) or isinstance(right, Anything):
-        return Anything()
+    if isinstance(left, AnyArgument) or isinstance(right, AnyArgument):
+        return AnyArgument()
     if isinstance(left, Formula) and isinstance(right, Formula):
         scope.report(say.truths_compared(node, scope))
         return None
@@ -227,15 +229,15 @@ def _compare(node: tree.Compare, scope: Scope) -> Formula | Anything | None:
 
 def _checked(formula: Formula) -> Formula:
     """The formula. Raises TooManyCasesError: conditions have doubled its parts too often."""
-    if excess(formula):
+    if exceeded_limit(formula):
         raise TooManyCasesError
     return formula
 
 
 def _as_number(
     node: tree.Formula, found: Meaning | None, around: tree.Compare, scope: Scope
-) -> Number | None:
-    if found is None or isinstance(found, Number):
+) -> NumberByCases | None:
+    if found is None or isinstance(found, NumberByCases):
         return found
     scope.report(say.not_comparable(node, found, around, scope))
     return None
@@ -255,7 +257,7 @@ def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> Form
     return same if node.relation == "=" else negated(same)
 
 
-def _fit(node: tree.Formula, left: Number, right: Number, scope: Scope) -> bool:
+def _fit(node: tree.Formula, left: NumberByCases, right: NumberByCases, scope: Scope) -> bool:
     one, other = left.dimension, right.dimension
     if one is None or other is None or one == other:
         return True
@@ -264,7 +266,7 @@ def _fit(node: tree.Formula, left: Number, right: Number, scope: Scope) -> bool:
     return False
 
 
-def _arithmetic(node: tree.Arithmetic, scope: Scope) -> Number | None:
+def _arithmetic(node: tree.Arithmetic, scope: Scope) -> NumberByCases | None:
     left, right = number(node.left, scope), number(node.right, scope)
     if left is None or right is None:
         return None
@@ -289,7 +291,7 @@ def _arithmetic(node: tree.Arithmetic, scope: Scope) -> Number | None:
             return combined(left, right, divided)
 
 
-def _varies(value: Number) -> bool:
+def _varies(value: NumberByCases) -> bool:
     return any(linear.coefficients for _, linear in value.cases)
 
 
@@ -308,11 +310,11 @@ def _either(
 ) -> Meaning | None:
     if value is None or condition is None or otherwise is None:
         return None
-    if isinstance(value, Anything) or isinstance(otherwise, Anything):
-        return Anything()
-    if isinstance(value, Number) and isinstance(otherwise, Number):
+    if isinstance(value, AnyArgument) or isinstance(otherwise, AnyArgument):
+        return AnyArgument()
+    if isinstance(value, NumberByCases) and isinstance(otherwise, NumberByCases):
         return either(condition, value, otherwise) if _fit(node, value, otherwise, scope) else None
-    if isinstance(value, Object | Number) or isinstance(otherwise, Object | Number):
+    if isinstance(value, Object | NumberByCases) or isinstance(otherwise, Object | NumberByCases):
         scope.report(say.two_kinds(node, value, otherwise, scope))
         return None
     chosen = Binary(BinaryOperator.AND, condition, value)

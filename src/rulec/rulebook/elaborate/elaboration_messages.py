@@ -8,7 +8,7 @@ from itertools import chain
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE, UNUSED_VARIABLE
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.rulebook.names.scope import SIDES, Scope
@@ -64,7 +64,7 @@ def short(node: tree.Formula) -> str:
 
 def what_of(operand: object) -> str:
     """The kind of a meaning in words."""
-    if isinstance(operand, Number):
+    if isinstance(operand, NumberByCases):
         return kind_of(operand.dimension)
     return "true or false" if isinstance(operand, Formula) else "an object"
 
@@ -73,10 +73,10 @@ def origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
     """Where the names in an expression come from."""
     match node:
         case tree.AtomUse(name):
-            declared = scope.declared.spans.get(name.text)
-            laid = scope.provisions.overlay
+            symbols = scope.symbols.spans.get(name.text)
+            laid = scope.constants.overlay
             provision = laid.changed_at.get(name.text) or laid.declared_at.get(name.text)
-            span = declared or (provision.span if provision else None)
+            span = symbols or (provision.span if provision else None)
             if span is not None:
                 yield Label(span.place, f"`{name.text}` is declared here")
         case tree.Arithmetic(_, left, right):
@@ -92,11 +92,11 @@ def _once(labels: Iterator[Label]) -> tuple[Label, ...]:
     return tuple(dict.fromkeys(labels))
 
 
-def number_for_truth(node: tree.Formula, number: Number, scope: Scope) -> Diagnostic:
+def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
     """A number where a formula needs something true or false."""
     unit = ""
     if isinstance(node, tree.AtomUse):
-        unit = scope.declared.unit_text(node.name.text)
+        unit = scope.symbols.unit_text(node.name.text)
     inside = f" (in {unit})" if unit else ""
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     return NUMBER_OR_FORMULA.at(
@@ -110,7 +110,7 @@ def number_for_truth(node: tree.Formula, number: Number, scope: Scope) -> Diagno
 
 def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
     """A variable where a formula needs something true or false."""
-    example = next(iter(scope.declared.about_one()), "p")
+    example = next(iter(scope.symbols.about_one()), "p")
     return NOT_BOOLEAN.at(
         node.span,
         f"`{short(node)}` is an object and cannot be true or false",
@@ -155,7 +155,7 @@ def values_compared(
         f"`{name}` is not compared: each of its values is true or false by itself",
         expected="expected the value alone",
         help=way_out,
-        labels=(Label(scope.declared.spans[name].place, f"`{name}` is declared here"),),
+        labels=(Label(scope.symbols.spans[name].place, f"`{name}` is declared here"),),
     )
 
 
@@ -165,7 +165,7 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
         "=": "formulas are compared by `iff`",
         "!=": "formulas are compared by `xor`",
     }.get(node.relation, "numbers are compared, and objects by `=` and `!=`")
-    if isinstance(node.right, tree.Truth) and isinstance(node.left, tree.AtomUse):
+    if isinstance(node.right, tree.TruthLiteral) and isinstance(node.left, tree.AtomUse):
         holds = node.right.value == (node.relation == "=")
         way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
     return NUMBER_OR_FORMULA.at(
@@ -192,8 +192,8 @@ def not_comparable(
 
 def two_dimensions(
     node: tree.Compare | tree.Arithmetic | tree.Conditional,
-    left: Number,
-    right: Number,
+    left: NumberByCases,
+    right: NumberByCases,
     scope: Scope,
 ) -> Diagnostic:
     """Numbers of two dimensions side by side."""
@@ -223,13 +223,15 @@ def two_dimensions(
 
 def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     """A number without its unit."""
-    if isinstance(node, tree.Number) and not node.unit and isinstance(beside, tree.AtomUse):
-        unit = scope.declared.unit_text(beside.name.text)
+    if isinstance(node, tree.NumberLiteral) and not node.unit and isinstance(beside, tree.AtomUse):
+        unit = scope.symbols.unit_text(beside.name.text)
         return f"write the unit, such as `{node.text} {unit}`" if unit else ""
     return ""
 
 
-def _kind_help(first: tree.Formula, left: Number, second: tree.Formula, right: Number) -> str:
+def _kind_help(
+    first: tree.Formula, left: NumberByCases, second: tree.Formula, right: NumberByCases
+) -> str:
     """The factor that makes the two comparable."""
     if left.dimension is not None and right.dimension is not None:
         for node, ratio in (
@@ -258,7 +260,7 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
     )
 
 
-def too_long(node: tree.Number) -> Diagnostic:
+def too_long(node: tree.NumberLiteral) -> Diagnostic:
     """A number with more digits than anyone could mean."""
     return NUMBER_TOO_LARGE.at(
         node.span,

@@ -67,7 +67,7 @@ Case = tuple[Conditions, Linear]
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class NumberByCases:
     """A number in cases that exclude one another, of which always one holds."""
 
     cases: tuple[Case, ...]
@@ -95,17 +95,19 @@ class TooManyCasesError(Exception):
     """An expression has too many cases, or has otherwise grown beyond anything to be read."""
 
 
-def constant(value: Fraction, dimension: Dimension | None, text: str) -> Number:
+def constant(value: Fraction, dimension: Dimension | None, text: str) -> NumberByCases:
     """A number that is always the same."""
-    return Number((((), Linear({}, value, dimension, text)),))
+    return NumberByCases((((), Linear({}, value, dimension, text)),))
 
 
-def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> Number:
+def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> NumberByCases:
     """A number that a state gives, in units of ``factor`` base units."""
-    return Number((((), Linear({term: factor}, Fraction(0), dimension, text)),))
+    return NumberByCases((((), Linear({term: factor}, Fraction(0), dimension, text)),))
 
 
-def combined(left: Number, right: Number, combine: Callable[[Linear, Linear], Linear]) -> Number:
+def combined(
+    left: NumberByCases, right: NumberByCases, combine: Callable[[Linear, Linear], Linear]
+) -> NumberByCases:
     """An operation case by case. Raises TooManyCasesError."""
     return _in_cases(
         (both, combine(one, other)) for both, one, other in _pairs(left.cases, right.cases)
@@ -129,7 +131,7 @@ def _in_cases(cases: Iterable[Case]) -> Number:
     return number
 
 
-def either(condition: Formula, value: Number, otherwise: Number) -> Number:
+def either(condition: Formula, value: NumberByCases, otherwise: NumberByCases) -> NumberByCases:
     """``value if condition else otherwise``. Raises TooManyCasesError."""
     if isinstance(condition, Constant):
         return value if condition.value else otherwise
@@ -203,7 +205,7 @@ def opposite(linear: Linear) -> Linear:
     )
 
 
-def compared(left: Number, relation: Relation, right: Number) -> Formula:
+def compared(left: NumberByCases, relation: Relation, right: NumberByCases) -> Formula:
     """``left relation right`` as a formula. Raises TooManyCasesError."""
     cases = [
         (both, added(one, other, -1), f"{one.text} {relation} {other.text}")

@@ -7,7 +7,7 @@ import re
 from fractions import Fraction
 
 from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.linear_arithmetic import Number, constant
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases, constant
 from rulec.rulebook.names.declaration_messages import unknown_unit
 from rulec.rulebook.names.scope import Scope
 from rulec.syntax import tree
@@ -19,21 +19,21 @@ _LONGEST = 400
 _EXPONENT = re.compile(r"[eE]([+-]?[0-9]+)$")
 
 
-def literal(node: tree.Number, scope: Scope) -> Number | None:
+def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
     """A number with its unit; None if it has a mistake, which is then reported."""
     value = exact_value(node, scope)
     if value is None:
         return None
     if not node.unit:
         return constant(value, None if value == 0 else DIMENSIONS["number"], node.text)
-    unit = scope.declared.unit(node.unit)
+    unit = scope.symbols.unit(node.unit)
     if unit is None:
         scope.report(unknown_unit(node.unit, node.span))
         return None
     return constant(value * unit.factor, unit.dimension, f"{node.text} {node.unit}")
 
 
-def exact_value(node: tree.Number, scope: Scope) -> Fraction | None:
+def exact_value(node: tree.NumberLiteral, scope: Scope) -> Fraction | None:
     """The number that is written, without its unit; None if it is too long, which is reported."""
     exponent = _EXPONENT.search(node.text)
     if len(node.text) <= _LONGEST and (exponent is None or abs(int(exponent[1])) <= _LONGEST):

@@ -6,29 +6,29 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from rulec.rulebook.names.scope import SIDES, Anything, BoundVariable, Call, Scope
+from rulec.rulebook.names.scope import SIDES, AnyArgument, BoundVariable, Call, Scope
 from rulec.rulebook.overlay import constant_messages as say
 from rulec.syntax import tree
 
 _Meaning = TypeVar("_Meaning")
 
 
-def put_in(
+def expand_macro(
     use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning]
 ) -> _Meaning | None:
     """What a use of a definition means; None if it has a mistake, which is then reported."""
     name = use.name.text
-    item = scope.provisions.definitions[name]
+    item = scope.constants.definitions[name]
     if any(call.name == name for call in scope.calls):
         scope.report(say.circle(use, "definition", scope))
-        scope.provisions.broken |= {call.name for call in scope.calls}
+        scope.constants.broken |= {call.name for call in scope.calls}
         return None
     if len(use.arguments) != len(item.parameters):
         scope.used |= {argument.text for argument in use.arguments}
         scope.report(say.wrong_number_of_arguments(use, item))
         return None
     variables: dict[str, BoundVariable] = {}
-    relations: dict[str, str | Anything] = {}
+    relations: dict[str, str | AnyArgument] = {}
     good = True
     for parameter, argument in zip(item.parameters, use.arguments, strict=True):
         local = parameter.name.text
@@ -37,7 +37,7 @@ def put_in(
             relations[local] = relation
             continue
         wanted = None if parameter.type is None else parameter.type.text
-        if wanted is not None and wanted not in scope.declared.types:
+        if wanted is not None and wanted not in scope.symbols.types:
             wanted = None
         others = [] if parameter.type is not None else scope.relation_names()
         actual = scope.object(argument, wanted, relations=others)
@@ -47,7 +47,7 @@ def put_in(
         outer = scope.variables.get(argument.text)
         kind = wanted if outer is None else outer.type
         variables[local] = BoundVariable(kind, argument.span, actual)
-    if not good or name in scope.provisions.broken:
+    if not good or name in scope.constants.broken:
         return None
     inner = replace(
         scope,
@@ -60,7 +60,7 @@ def put_in(
     return evaluate(item.body, inner)
 
 
-def _relation(argument: tree.Name, scope: Scope) -> str | Anything | None:
+def _relation(argument: tree.Name, scope: Scope) -> str | AnyArgument | None:
     """The relation that an argument names, if it names one."""
     name = argument.text
     if name in scope.relations:
@@ -68,6 +68,6 @@ def _relation(argument: tree.Name, scope: Scope) -> str | Anything | None:
         return scope.relations[name]
     if name in scope.variables:
         return None
-    if scope.behind(name) is not None or name in SIDES or scope.provisions.overlay.kind_of(name):
+    if scope.behind(name) is not None or name in SIDES or scope.constants.overlay.kind_of(name):
         return name
     return None

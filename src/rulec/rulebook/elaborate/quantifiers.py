@@ -7,17 +7,17 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rulec.logic.formula import Comparison, Count, Formula, Relation
-from rulec.logic.printing import in_words, term_in_words
+from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.linear_arithmetic import (
-    Number,
+    NumberByCases,
     TooManyCasesError,
     compared,
     constant,
     measured,
     negated,
 )
-from rulec.rulebook.elaborate.size_limits import excess
+from rulec.rulebook.elaborate.size_limits import exceeded_limit
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
 from rulec.rulebook.names.scope import BoundVariable, Scope
 from rulec.syntax import tree
@@ -28,7 +28,7 @@ _ONE = Fraction(1)
 
 def aggregate(
     node: tree.Aggregate, scope: Scope, truth: Callable[[tree.Formula, Scope], Formula | None]
-) -> Formula | Number | None:
+) -> Formula | NumberByCases | None:
     """A count, or the comparison that ``some`` and ``every`` are; None if there is a mistake.
 
     ``truth`` gives the formula that the body means. Raises TooManyCasesError for a body that has
@@ -36,9 +36,9 @@ def aggregate(
     """
     name, kind = node.variable.name, node.variable.type
     assert kind is not None, "the grammar asks for a type"
-    known = kind.text in scope.declared.types
-    if not known and not scope.declared.may_know_type(kind.text):
-        scope.report(unknown_type(kind, list(scope.declared.types)))
+    known = kind.text in scope.symbols.types
+    if not known and not scope.symbols.may_know_type(kind.text):
+        scope.report(unknown_type(kind, list(scope.symbols.types)))
     if name.text in scope.variables:
         scope.report(twice("variable", name, scope.variables[name.text].span))
         return None
@@ -49,20 +49,20 @@ def aggregate(
     scope.used |= inner.used - {name.text}
     if body is None or not known:
         return None
-    if excess(body):
+    if exceeded_limit(body):
         raise TooManyCasesError
     term = Count(
         inner.variables[name.text].actual,
         kind.text,
         negated(body) if node.kind == "every" else body,
     )
-    count = measured(term, _ONE, DIMENSIONS["number"], term_in_words(term))
+    count = measured(term, _ONE, DIMENSIONS["number"], term_text(term))
     if node.kind == "count":
         return count
     relation: Relation = "<" if node.kind == "every" else ">="
     comparison = compared(count, relation, constant(_ONE, DIMENSIONS["number"], "1"))
     assert isinstance(comparison, Comparison), "a count varies"
-    return replace(comparison, text=f"{node.kind} {term.variable}: {kind.text} ({in_words(body)})")
+    return replace(comparison, text=f"{node.kind} {term.variable}: {kind.text} ({formula_text(body)})")
 
 
 def _with_counted(node: tree.Aggregate, scope: Scope, kind: str | None) -> Scope:

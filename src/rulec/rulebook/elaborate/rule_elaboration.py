@@ -21,7 +21,7 @@ from rulec.rulebook.elaborate.exemptions import (
 from rulec.rulebook.elaborate.linear_arithmetic import negated
 from rulec.rulebook.elaborate.literals import exact_value
 from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, excess
+from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, exceeded_limit
 from rulec.rulebook.examples.example_elaboration import example_of
 from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.names.rule_variables import variables_of
@@ -35,8 +35,8 @@ from rulec.vocabulary.units import DIMENSIONS
 
 def translate_rule(
     entry: RuleEntry,
-    declared: SymbolTable,
-    provisions: ConstantsAndMacros,
+    symbols: SymbolTable,
+    constants: ConstantsAndMacros,
     levels: Sequence[str] | None,
 ) -> tuple[Rule | None, list[Diagnostic]]:
     """The rule as meant (None if it has a mistake), its mistakes and warnings.
@@ -45,9 +45,9 @@ def translate_rule(
     """
     item = entry.item
     mistakes: list[Diagnostic] = []
-    variables = variables_of(item.variables, declared, mistakes)
-    scope = Scope(declared, provisions, variables, mistakes, taken=frozenset(variables))
-    provisions.begin()
+    variables = variables_of(item.variables, symbols, mistakes)
+    scope = Scope(symbols, constants, variables, mistakes, taken=frozenset(variables))
+    constants.begin()
     parts = _parts_of(item, scope)
     formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
@@ -166,7 +166,7 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
 def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
     """All of it as one formula; None if it has a mistake, which is then reported."""
     formula = _with_exceptions(item, parts, scope)
-    match "" if formula is None else excess(formula):
+    match "" if formula is None else exceeded_limit(formula):
         case "deep":
             scope.report(rule_messages.too_deep("formula", item.name))
             return None

@@ -148,7 +148,7 @@ def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
     )
 
 
-def weightless(weight: tree.Number) -> Diagnostic:
+def weightless(weight: tree.NumberLiteral) -> Diagnostic:
     """A weight of 0."""
     return NOT_ABOVE_ZERO.at(
         weight.span,

@@ -21,7 +21,7 @@ class TooLargeError(Exception):
     """An expression has more than ``MOST_PARTS`` parts, those of its definitions included."""
 
 
-def excess(formula: Formula) -> Literal["", "deep", "large"]:
+def exceeded_limit(formula: Formula) -> Literal["", "deep", "large"]:
     """Is the formula too deep or too large? A part that occurs twice counts twice."""
     rest = [(formula, 1)]
     parts = 0

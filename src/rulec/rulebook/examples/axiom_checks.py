@@ -9,9 +9,9 @@ from fractions import Fraction
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.kleene import Unknown, holds
-from rulec.logic.printing import in_words
-from rulec.logic.renaming import renamed
-from rulec.logic.required_inputs import asked
+from rulec.logic.printing import formula_text
+from rulec.logic.renaming import rename_variables
+from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.examples.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.model import Axiom, Example, ExampleState, Rule
 from rulec.vocabulary import Vocabulary
@@ -19,7 +19,7 @@ from rulec.vocabulary.object_choices import choices
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class ExampleValues:
     """What a state of an example says, and the defaults of what else a rule reads.
 
     What neither of them speaks of is not known. ``read`` are those: declarations and objects.
@@ -51,15 +51,16 @@ def contradicted(
     for example in rule.examples if axioms else ():
         objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
         read = frozenset(
-            (one.name, one.arguments) for one in asked(rule.formula, objects, vocabulary.is_subtype)
+            (one.name, one.arguments)
+            for one in required_inputs(rule.formula, objects, vocabulary.is_subtype)
         )
         for number, state in enumerate(example.states):
-            broken = _broken(Told(state, read, objects, vocabulary), axioms)
+            broken = _broken(ExampleValues(state, read, objects, vocabulary), axioms)
             if broken is not None:
                 yield _no_state(example, number, *broken)
 
 
-def _broken(state: Told, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
+def _broken(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
     """The first fact that does not hold, and how it is said of the objects."""
     for fact in axioms:
         names = [variable.name for variable in fact.variables]
@@ -67,7 +68,7 @@ def _broken(state: Told, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
         for chosen in choices(types, state.objects, state.vocabulary):
             bound = dict(zip(names, chosen, strict=True))
             if holds(fact.formula, bound, state) is False:
-                return fact, in_words(renamed(fact.formula, bound))
+                return fact, formula_text(rename_variables(fact.formula, bound))
     return None
 
 

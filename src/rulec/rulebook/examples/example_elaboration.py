@@ -11,7 +11,7 @@ from rulec.logic.formula import (
     Formula,
     Quantity,
 )
-from rulec.logic.required_inputs import asked
+from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.literals import literal
 from rulec.rulebook.examples import example_messages as say
 from rulec.rulebook.model import Example, ExampleState, Variable
@@ -23,15 +23,15 @@ Key = tuple[str, tuple[str, ...]]
 """A declaration, and the objects that it is asked about."""
 
 
-def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> Example:
+def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope) -> Example:
     """The example; what is wrong with it is reported."""
     variables = dict(scope.variables)
     for object_ in example.objects:
         name, kind = object_.name, object_.type
         assert kind is not None, "the grammar asks for a type"
-        known = kind.text in scope.declared.types
-        if not known and not scope.declared.may_know_type(kind.text):
-            scope.report(unknown_type(kind, list(scope.declared.types)))
+        known = kind.text in scope.symbols.types
+        if not known and not scope.symbols.may_know_type(kind.text):
+            scope.report(unknown_type(kind, list(scope.symbols.types)))
         if name.text in variables:
             scope.report(twice("object", name, variables[name.text].span))
         variables[name.text] = BoundVariable(kind.text if known else None, object_.span, name.text)
@@ -41,8 +41,8 @@ def example_of(example: tree.Example, formula: Formula | None, scope: Scope) -> 
     }
     needed: dict[Key, Atom | Quantity] = {}
     if formula is not None:
-        for what in asked(formula, kinds, scope.declared.fits):
-            if scope.declared.items[what.name].default is None:
+        for what in required_inputs(formula, kinds, scope.symbols.fits):
+            if scope.symbols.items[what.name].default is None:
                 needed.setdefault((what.name, what.arguments), what)
     return Example(
         example.accepts,
@@ -76,15 +76,15 @@ def _state(
         places.setdefault(key, fact.span)
     missing = [what for key, what in needed.items() if key not in said]
     if missing and not unclear:
-        scope.report(say.left_open(state, missing[0], scope.declared))
+        scope.report(say.left_open(state, missing[0], scope.symbols))
     return said
 
 
 def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
     """What a fact is about; None if it has a mistake, which is reported."""
-    kind = scope.provisions.overlay.kind_of(use.name.text)
+    kind = scope.constants.overlay.kind_of(use.name.text)
     if kind and scope.behind(use.name.text) is None:
-        scope.report(say.no_fact(use, kind, scope.provisions.overlay.declared_at[use.name.text]))
+        scope.report(say.no_fact(use, kind, scope.constants.overlay.declared_at[use.name.text]))
         return None
     return scope.reference(use)
 
@@ -96,23 +96,23 @@ def _value(
     if isinstance(found, Quantity):
         return _number(fact, found, scope)
     if fact.value is not None:
-        scope.report(say.not_a_number(fact, found, scope.declared))
+        scope.report(say.not_a_number(fact, found, scope.symbols))
         return None
     if found.value is not None and fact.negated:
-        scope.report(say.denied(fact, found, scope.declared))
+        scope.report(say.denied(fact, found, scope.symbols))
         return None
     return not fact.negated if found.value is None else found.value
 
 
 def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | None:
     """A quantity's value, in the unit of its declaration."""
-    unit = scope.declared.unit_of(found.name)
+    unit = scope.symbols.unit_of(found.name)
     if fact.value is None:
-        scope.report(say.without_number(fact, found, scope.declared))
+        scope.report(say.without_number(fact, found, scope.symbols))
         return None
     minus = isinstance(fact.value, tree.Minus)
     node = fact.value.operand if isinstance(fact.value, tree.Minus) else fact.value
-    assert isinstance(node, tree.Number), "the grammar has no other"
+    assert isinstance(node, tree.NumberLiteral), "the grammar has no other"
     given = literal(node, scope)
     if given is None or unit is None:
         return None

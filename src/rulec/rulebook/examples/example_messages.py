@@ -5,8 +5,8 @@ from __future__ import annotations
 from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom, Quantity
-from rulec.logic.printing import term_in_words
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.logic.printing import term_text
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
@@ -51,9 +51,9 @@ DENIED_VALUE = Code(
 )
 
 
-def denied(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
+def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnostic:
     """``not`` before an enumeration's value."""
-    item = declared.items[atom.name]
+    item = symbols.items[atom.name]
     assert isinstance(item, Enumeration), "only enumerations have values"
     others = [
         f"`{Atom(atom.name, atom.arguments, value)}`"
@@ -65,7 +65,7 @@ def denied(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagno
         f"a state says which value `{_subject(atom)}` has, not which it lacks",
         expected="expected a value",
         help=f"write {any_of(others)}" if others else f"`{atom}` always holds",
-        labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
+        labels=(Label(symbols.spans[atom.name].place, f"`{atom.name}` is declared here"),),
     )
 
 
@@ -84,11 +84,11 @@ def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -
     )
 
 
-def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: SymbolTable) -> Diagnostic:
+def left_open(state: tree.ExampleState, what: Atom | Quantity, symbols: SymbolTable) -> Diagnostic:
     """Something that the formula needs, that has no default, and that the state does not say."""
-    item = declared.items[what.name]
+    item = symbols.items[what.name]
     if isinstance(what, Quantity):
-        ways = [f"`{term_in_words(what)} = … {declared.unit_text(what.name)}`"]
+        ways = [f"`{term_text(what)} = … {symbols.unit_text(what.name)}`"]
     elif isinstance(item, Enumeration):
         ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
     else:
@@ -98,11 +98,11 @@ def left_open(state: tree.ExampleState, what: Atom | Quantity, declared: SymbolT
         f"this state leaves open `{_subject(what)}`, which the formula needs",
         expected=f"expected {any_of(ways)}",
         help="say it in this state, or give its declaration a default",
-        labels=(Label(declared.spans[what.name].place, f"`{what.name}` has no default"),),
+        labels=(Label(symbols.spans[what.name].place, f"`{what.name}` has no default"),),
     )
 
 
-def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
+def no_fact(use: tree.AtomUse, kind: str, symbols: tree.Name) -> Diagnostic:
     """An option, a parameter or a definition in a state."""
     return NOT_BOOLEAN.at(
         use.span,
@@ -110,42 +110,42 @@ def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
         "about a state",
         expected="expected a signal, a value or a quantity",
         help="name the facts themselves",
-        labels=(Label(declared.span.place, f"`{use.name.text}` is declared here"),),
+        labels=(Label(symbols.span.place, f"`{use.name.text}` is declared here"),),
     )
 
 
-def without_number(fact: tree.StateLiteral, what: Quantity, declared: SymbolTable) -> Diagnostic:
+def without_number(fact: tree.StateLiteral, what: Quantity, symbols: SymbolTable) -> Diagnostic:
     """A quantity without a value."""
-    unit = declared.unit_text(what.name)
+    unit = symbols.unit_text(what.name)
     return NUMBER_OR_FORMULA.at(
         fact.span,
-        f"`{term_in_words(what)}` is a number (in {unit}) and cannot be true or false",
+        f"`{term_text(what)}` is a number (in {unit}) and cannot be true or false",
         expected="expected its value",
-        help=f"write `{term_in_words(what)} = 5 {unit}`",
-        labels=(Label(declared.spans[what.name].place, f"`{what.name}` is declared here"),),
+        help=f"write `{term_text(what)} = 5 {unit}`",
+        labels=(Label(symbols.spans[what.name].place, f"`{what.name}` is declared here"),),
     )
 
 
-def not_a_number(fact: tree.StateLiteral, atom: Atom, declared: SymbolTable) -> Diagnostic:
+def not_a_number(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnostic:
     """A number for what is true or false."""
     return NUMBER_OR_FORMULA.at(
         fact.span,
         f"`{atom}` is true or false and has no number",
         expected=f"expected `{atom}`",
         help=f"write `{atom}` or, for a signal, `not {atom}`",
-        labels=(Label(declared.spans[atom.name].place, f"`{atom.name}` is declared here"),),
+        labels=(Label(symbols.spans[atom.name].place, f"`{atom.name}` is declared here"),),
     )
 
 
 def other_dimension(
-    fact: tree.StateLiteral, what: Quantity, given: Number, unit: Unit
+    fact: tree.StateLiteral, what: Quantity, given: NumberByCases, unit: Unit
 ) -> Diagnostic:
     """A value in a unit of another dimension."""
     assert fact.value is not None, "only a value has a unit"
     given_kind = given.dimension.name if given.dimension else "number"
     return MIXED_DIMENSIONS.at(
         fact.value.span,
-        f"`{term_in_words(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
+        f"`{term_text(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {given_kind}",
         expected=f"expected a {unit.dimension.name}",
         help=f"write it in {unit.text}",
@@ -157,12 +157,10 @@ def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic
     assert fact.value is not None, "only a value can be too large"
     return NUMBER_TOO_LARGE.at(
         fact.value.span,
-        f"this number is too large for `{term_in_words(what)}`, which counts in {unit.text}",
+        f"this number is too large for `{term_text(what)}`, which counts in {unit.text}",
         help=f"write a number below 1e308 {unit.text}",
     )
 
 
 def _subject(what: Atom | Quantity) -> str:
-    return (
-        term_in_words(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))
-    )
+    return term_text(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))

@@ -113,7 +113,7 @@ _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
 
 def explain(
     use: tree.AtomUse,
-    declared: SymbolTable,
+    symbols: SymbolTable,
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
@@ -122,41 +122,41 @@ def explain(
     ``variables`` have types, None if not known; ``others`` are names that a formula may use too.
     """
     name = use.name.text
-    item = declared.items.get(name)
+    item = symbols.items.get(name)
     if isinstance(item, Enumeration):
         values = any_of([f"`{_call(value, item)}`" for value in item.values])
-        return _not_an_atom(use, declared, "has several values", f"write {values}")
-    if name in declared.types:
+        return _not_an_atom(use, symbols, "has several values", f"write {values}")
+    if name in symbols.types:
         return NOT_BOOLEAN.at(
             use.name.span,
             f"`{name}` is a type of objects and cannot be true or false",
             expected=_ATOM,
             help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
-            labels=(Label(declared.type_spans[name].place, f"`{name}` is declared here"),),
+            labels=(Label(symbols.type_spans[name].place, f"`{name}` is declared here"),),
         )
-    return _unknown(use, declared, variables, others)
+    return _unknown(use, symbols, variables, others)
 
 
-def _not_an_atom(use: tree.AtomUse, declared: SymbolTable, why: str, help_: str) -> Diagnostic:
+def _not_an_atom(use: tree.AtomUse, symbols: SymbolTable, why: str, help_: str) -> Diagnostic:
     name = use.name.text
     return NOT_BOOLEAN.at(
         use.name.span,
         f"`{name}` {why} and cannot be true or false",
         expected=_ATOM,
         help=help_,
-        labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
+        labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
     )
 
 
 def _unknown(
     use: tree.AtomUse,
-    declared: SymbolTable,
+    symbols: SymbolTable,
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
     name = use.name.text
-    atoms = declared.atoms()
-    quantities = [item.name for item in declared.items.values() if isinstance(item, Quantity)]
+    atoms = symbols.atoms()
+    quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
     known = [*atoms, *quantities, *others]
     glued = _glued(name, set(atoms))
     if name == "if":
@@ -165,7 +165,7 @@ def _unknown(
         way_out = f"write `{glued}`"
     else:
         way_out = (
-            ("" if use.arguments else _short_form(name, declared, list(variables)))
+            ("" if use.arguments else _short_form(name, symbols, list(variables)))
             or did_you_mean(name, known)
             or f"declare it, such as `signal {_as_used(use, variables)}`, "
             "or `use` a vocabulary that has it"
@@ -206,17 +206,17 @@ def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
     )
 
 
-def _short_form(name: str, declared: SymbolTable, variables: Sequence[str]) -> str:
+def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> str:
     """The mistake in ``b_v`` where it stands for ``b(v)``."""
     head, _, tail = name.rpartition("_")
-    item = declared.behind_atom(head)
+    item = symbols.behind_atom(head)
     if item is not None and len(item.parameters) == 1:
         known = f"its variables are {named(variables)}" if variables else "it has none"
         return f"`{name}` means `{head}({tail})`, but the rule has no variable `{tail}`; {known}"
     if item is not None and tail in variables:
         number = len(item.parameters) or "no"
         return f"`{head}` is about {number} objects, so `_{tail}` cannot stand behind it"
-    near = nearest_name(head, declared.about_one()) if tail in variables else None
+    near = nearest_name(head, symbols.about_one()) if tail in variables else None
     return f"did you mean `{near}_{tail}`?" if near else ""
 
 
@@ -237,7 +237,7 @@ def _glued(name: str, atoms: set[str]) -> str:
 def wrong_number(
     use: tree.AtomUse,
     item: Signal | Enumeration | Quantity,
-    declared: SymbolTable,
+    symbols: SymbolTable,
     variables: Iterable[str],
     *,
     name: str,
@@ -253,7 +253,7 @@ def wrong_number(
         f"`{name}` is about {objects}, and {has} given",
         expected=f"expected {objects}",
         help=f"write `{written}`",
-        labels=(Label(declared.spans[name].place, f"`{name}` is declared here"),),
+        labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
     )
 
 
@@ -274,7 +274,7 @@ def _call(value: str, item: Enumeration) -> str:
 
 def unknown_variable(
     name: tree.Name,
-    declared: SymbolTable,
+    symbols: SymbolTable,
     variables: Sequence[str],
     *,
     known: Iterable[str],
@@ -284,7 +284,7 @@ def unknown_variable(
     if variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
     else:
-        kind = next(iter(declared.types), "vehicle")
+        kind = next(iter(symbols.types), "vehicle")
         way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
     return UNKNOWN_VARIABLE.at(
         name.span,

@@ -54,7 +54,7 @@ def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
             return left, right
         case tree.Conditional(value, condition, otherwise):
             return value, condition, otherwise
-        case tree.AtomUse() | tree.Truth() | tree.Number():
+        case tree.AtomUse() | tree.TruthLiteral() | tree.NumberLiteral():
             return ()
 
 
@@ -69,7 +69,7 @@ def names_in(formula: tree.Formula) -> Iterator[str]:
                 yield side.name.text
 
 
-def _bounds(formula: tree.Formula) -> Iterator[tree.Bound]:
+def _bounds(formula: tree.Formula) -> Iterator[tree.BoundNode]:
     match formula:
         case tree.Prefix(operand=operand, bound=bound):
             if bound is not None:

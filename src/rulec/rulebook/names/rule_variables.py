@@ -10,7 +10,7 @@ from rulec.syntax import tree
 
 
 def variables_of(
-    parameters: tuple[tree.Parameter, ...], declared: SymbolTable, mistakes: list[Diagnostic]
+    parameters: tuple[tree.Parameter, ...], symbols: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
     """Variables with their types; what is wrong with them is added to ``mistakes``."""
     bound_variables: dict[str, BoundVariable] = {}

@@ -32,7 +32,7 @@ class BoundVariable:
 
 
 @dataclass(frozen=True, slots=True)
-class Anything:
+class AnyArgument:
     """A definition's parameter while the definition is checked by itself: object or relation."""
 
 
@@ -60,12 +60,12 @@ class Scope:
     names) of the counts around, ``taken`` all actual names in use.
     """
 
-    declared: SymbolTable
-    provisions: ConstantsAndMacros
+    symbols: SymbolTable
+    constants: ConstantsAndMacros
     variables: dict[str, BoundVariable]
     mistakes: list[Diagnostic]
     used: set[str] = field(default_factory=set)
-    relations: dict[str, str | Anything] = field(default_factory=dict)
+    relations: dict[str, str | AnyArgument] = field(default_factory=dict)
     calls: tuple[Call, ...] = ()
     counted: frozenset[str] = frozenset()
     taken: frozenset[str] = frozenset()
@@ -104,19 +104,19 @@ class Scope:
 
     def relation_names(self) -> list[str]:
         """What can be given to a definition for a relation."""
-        return [*self.declared.atoms(), *SIDES, *self.provisions.names(), *self.relations]
+        return [*self.symbols.atoms(), *SIDES, *self.constants.names(), *self.relations]
 
     def absolute(self, use: tree.AtomUse, name: str) -> str | None:
         """``near_side_of`` as the side that it is; other names as they are; None if reported."""
         if name not in SIDES or self.behind(name) is not None:
             return name
-        traffic = self.provisions.traffic
+        traffic = self.constants.traffic
         if not traffic:
             self.report(atom_messages.no_traffic(use, name))
             return None
         side = SIDES[name][traffic]
         if self.behind(side) is None:
-            if not self.declared.may_know(side):
+            if not self.symbols.may_know(side):
                 self.report(atom_messages.no_sides(use, name, side))
             return None
         return side
@@ -124,7 +124,7 @@ class Scope:
     def enumeration(self, use: tree.AtomUse) -> Enumeration | None:
         """The enumeration of that name, which is no atom: its values are."""
         name = use.name.text
-        item = self.declared.items.get(name)
+        item = self.symbols.items.get(name)
         hidden = name in self.variables or name in self.relations
         return item if isinstance(item, Enumeration) and not hidden else None
 
@@ -143,10 +143,10 @@ class Scope:
             if readings:
                 head, variable = readings[0]
                 return self._checked(use, head, (tree.Name(variable, use.span),))
-        if not self.provisions.may_know(name) and not self.declared.may_know(name):
+        if not self.constants.may_know(name) and not self.symbols.may_know(name):
             types = {variable: bound.type for variable, bound in self.variables.items()}
-            others = [*self.provisions.names(), *self.relations]
-            self.report(atom_messages.explain(use, self.declared, types, others))
+            others = [*self.constants.names(), *self.relations]
+            self.report(atom_messages.explain(use, self.symbols, types, others))
         return None
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
@@ -167,7 +167,7 @@ class Scope:
         if len(arguments) != len(item.parameters):
             self.used |= {argument.text for argument in arguments}
             self.report(
-                atom_messages.wrong_number(use, item, self.declared, self.variables, name=name)
+                atom_messages.wrong_number(use, item, self.symbols, self.variables, name=name)
             )
             return None
         actual = [
@@ -194,7 +194,7 @@ class Scope:
         be meant besides an object.
         """
         self.used.add(argument.text)
-        if isinstance(self.relations.get(argument.text), Anything):
+        if isinstance(self.relations.get(argument.text), AnyArgument):
             return argument.text
         variable = self.variables.get(argument.text)
         if variable is None:
@@ -202,16 +202,16 @@ class Scope:
             self.report(
                 atom_messages.unknown_variable(
                     argument,
-                    self.declared,
+                    self.symbols,
                     variables,
                     known=[*variables, *relations],
                     owner="definition" if self.of_definition else "rule",
                 )
             )
             return None
-        if wanted is None or variable.type is None or self.declared.fits(variable.type, wanted):
+        if wanted is None or variable.type is None or self.symbols.fits(variable.type, wanted):
             return variable.actual
-        where = None if parameter is None else self.declared.parameter_spans.get(parameter)
+        where = None if parameter is None else self.symbols.parameter_spans.get(parameter)
         labels = [Label(variable.span.place, f"`{argument.text}` is declared here")]
         if parameter is not None and where is not None:
             about = f"`{parameter[0]}` is about objects of type `{wanted}`"

@@ -23,7 +23,7 @@ from rulec.vocabulary.units import Unit, parse_unit
 
 @dataclass(slots=True)
 class SymbolTable:
-    """What the files declare, and where; filled by ``declare``.
+    """What the files declare, and where; filled by ``symbol_table``.
 
     ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
     may have declared; with ``opaque`` any name may be missing for a reason that has been reported,
@@ -116,7 +116,7 @@ class SymbolTable:
         return unsure or wanted in above
 
 
-def declare(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
+def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
     """The declarations of used vocabularies and of the file that uses them, in this order."""
     vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
     declared = SymbolTable(
@@ -124,17 +124,17 @@ def declare(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
         opaque=opaque or not all(file.complete for file in files),
     )
     for file in files:
-        _note_suspects(declared, file)
-        _declare_types(declared, file)
+        _note_suspects(symbols, file)
+        _declare_types(symbols, file)
     for file in files:
         for item in file.items:
             if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
-                _declare_item(declared, item, _roots(declared, file))
-    _note_clashes(declared, files)
-    for (first, again), names in declared.shared.items():
+                _declare_item(symbols, item, _roots(symbols, file))
+    _note_clashes(symbols, files)
+    for (first, again), names in symbols.shared.items():
         uses = [_use_of(source, files) for source in (first, again)]
-        declared.mistakes.append(both_declare(names, *uses))
-    return declared
+        symbols.mistakes.append(both_declare(names, *uses))
+    return symbols
 
 
 def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
@@ -143,51 +143,51 @@ def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
     return [use for file in files for use in file.uses if use.name.text == name][-1]
 
 
-def _note_clashes(declared: SymbolTable, files: Sequence[tree.File]) -> None:
+def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
     """Types with the name of a signal, a quantity, an enumeration or a value."""
     order = [file.span.source for file in files]
-    for name in declared.type_spans.keys() & declared.spans.keys():
-        spans = (declared.type_spans[name], declared.spans[name])
+    for name in symbols.type_spans.keys() & symbols.spans.keys():
+        spans = (symbols.type_spans[name], symbols.spans[name])
         first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
-        declared.twice("name", tree.Name(name, again), first)
+        symbols.twice("name", tree.Name(name, again), first)
 
 
-def _note_suspects(declared: SymbolTable, file: tree.File) -> None:
+def _note_suspects(symbols: SymbolTable, file: tree.File) -> None:
     for item in file.items:
         if isinstance(item, tree.BrokenItem):
-            declared.suspects |= item.names
-            declared.opaque |= item.nameless and item.word != "type"
-            declared.opaque_types |= item.nameless and item.word == "type"
+            symbols.suspects |= item.names
+            symbols.opaque |= item.nameless and item.word != "type"
+            symbols.opaque_types |= item.nameless and item.word == "type"
 
 
-def _declare_types(declared: SymbolTable, file: tree.File) -> None:
+def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
     own = [item for item in file.items if isinstance(item, tree.TypeItem)]
     fresh: list[tree.TypeItem] = []
     for item in own:
         name = item.name.text
-        if name in declared.types:
-            declared.twice("type", item.name, declared.type_spans[name])
+        if name in symbols.types:
+            symbols.twice("type", item.name, symbols.type_spans[name])
             continue
-        declared.types[name] = ObjectType(name, item.parent.text if item.parent else None)
-        declared.type_spans[name] = item.name.span
+        symbols.types[name] = ObjectType(name, item.parent.text if item.parent else None)
+        symbols.type_spans[name] = item.name.span
         fresh.append(item)
     for item in fresh:
         parent = item.parent
-        if parent is not None and parent.text not in declared.types:
-            _unknown_type(declared, parent)
-            declared.types[item.name.text] = ObjectType(item.name.text)
-            declared.uncertain.add(item.name.text)
+        if parent is not None and parent.text not in symbols.types:
+            _unknown_type(symbols, parent)
+            symbols.types[item.name.text] = ObjectType(item.name.text)
+            symbols.uncertain.add(item.name.text)
     for item in fresh:
-        _break_circle(declared, item)
+        _break_circle(symbols, item)
 
 
-def _break_circle(declared: SymbolTable, item: tree.TypeItem) -> None:
-    above = declared.ancestors(item.name.text)
-    top = declared.types[above[-1]].parent
+def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:
+    above = symbols.ancestors(item.name.text)
+    top = symbols.types[above[-1]].parent
     if top != item.name.text or item.parent is None:
         return
     chain = " is ".join(f"`{name}`" for name in [*above, top])
-    declared.mistakes.append(
+    symbols.mistakes.append(
         TYPE_CIRCLE.at(
             item.parent.span,
             f"the types go round in a circle: {chain}",
@@ -196,17 +196,17 @@ def _break_circle(declared: SymbolTable, item: tree.TypeItem) -> None:
             else "a type cannot be above itself",
             help="leave out `is …` at the most general of them",
             labels=tuple(
-                Label(declared.type_spans[name].place, f"`{name}` is declared here")
+                Label(symbols.type_spans[name].place, f"`{name}` is declared here")
                 for name in above[1:]
             ),
         )
     )
     for name in above:
-        declared.types[name] = ObjectType(name)
-        declared.uncertain.add(name)
+        symbols.types[name] = ObjectType(name)
+        symbols.uncertain.add(name)
 
 
-def _roots(declared: SymbolTable, file: tree.File) -> list[str]:
+def _roots(symbols: SymbolTable, file: tree.File) -> list[str]:
     """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
@@ -217,50 +217,50 @@ def _roots(declared: SymbolTable, file: tree.File) -> list[str]:
 
 
 def _declare_item(
-    declared: SymbolTable,
+    symbols: SymbolTable,
     item: tree.EnumerationItem | tree.SignalItem | tree.QuantityItem,
     roots: list[str],
 ) -> None:
     match item:
         case tree.SignalItem(signals, truth):
             for head in signals:
-                types = _parameter_types(declared, head.name, head.parameters, roots)
-                _add(declared, head.name, Signal(head.name.text, types, truth))
+                types = _parameter_types(symbols, head.name, head.parameters, roots)
+                _add(symbols, head.name, Signal(head.name.text, types, truth))
         case tree.QuantityItem(name, parameters, unit, number):
-            types = _parameter_types(declared, name, parameters, roots)
-            if declared.unit(unit) is None:
-                declared.mistakes.append(unknown_unit(item.unit, item.unit_span, name.text))
-            _add(declared, name, Quantity(name.text, types, unit, number))
+            types = _parameter_types(symbols, name, parameters, roots)
+            if symbols.unit(unit) is None:
+                symbols.mistakes.append(unknown_unit(item.unit, item.unit_span, name.text))
+            _add(symbols, name, Quantity(name.text, types, unit, number))
         case tree.EnumerationItem(name, parameters, values, chosen):
-            types = _parameter_types(declared, name, parameters, roots)
+            types = _parameter_types(symbols, name, parameters, roots)
             texts = tuple(dict.fromkeys(value.text for value in values))
             default = None
             if chosen is not None and chosen.text in texts:
                 default = chosen.text
             elif chosen is not None:
-                declared.mistakes.append(no_such_value(name, chosen, texts))
+                symbols.mistakes.append(no_such_value(name, chosen, texts))
             enumeration = Enumeration(name.text, types, texts, default)
-            _add(declared, name, enumeration)
+            _add(symbols, name, enumeration)
             for value in values:
-                first = declared.spans.get(value.text)
+                first = symbols.spans.get(value.text)
                 if first is not None:
-                    declared.twice("name", value, first)
+                    symbols.twice("name", value, first)
                 else:
-                    declared.spans[value.text] = value.span
-                    declared.value_of[value.text] = enumeration
+                    symbols.spans[value.text] = value.span
+                    symbols.value_of[value.text] = enumeration
 
 
-def _add(declared: SymbolTable, name: tree.Name, item: Declaration) -> None:
-    first = declared.spans.get(name.text)
+def _add(symbols: SymbolTable, name: tree.Name, item: Declaration) -> None:
+    first = symbols.spans.get(name.text)
     if first is not None:
-        declared.twice("name", name, first)
+        symbols.twice("name", name, first)
         return
-    declared.spans[name.text] = name.span
-    declared.items[name.text] = item
+    symbols.spans[name.text] = name.span
+    symbols.items[name.text] = item
 
 
 def _parameter_types(
-    declared: SymbolTable,
+    symbols: SymbolTable,
     name: tree.Name,
     parameters: tuple[tree.Parameter, ...],
     roots: list[str],
@@ -286,6 +286,6 @@ def _parameter_types(
     return tuple(types)
 
 
-def _unknown_type(declared: SymbolTable, name: tree.Name) -> None:
-    if not declared.may_know_type(name.text):
-        declared.mistakes.append(unknown_type(name, list(declared.types)))
+def _unknown_type(symbols: SymbolTable, name: tree.Name) -> None:
+    if not symbols.may_know_type(name.text):
+        symbols.mistakes.append(unknown_type(name, list(symbols.types)))

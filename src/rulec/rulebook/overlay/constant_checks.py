@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate import rule_messages
-from rulec.rulebook.elaborate.elaboration import meaning, number
+from rulec.rulebook.elaborate.elaboration import elaborate, number
 from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError
 from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.rule_variables import variables_of
-from rulec.rulebook.names.scope import Anything, Call, Scope
+from rulec.rulebook.names.scope import AnyArgument, Call, Scope
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
 from rulec.rulebook.overlay.parameter_values import parameter
@@ -19,27 +19,29 @@ from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 
 
-def check_provisions(declared: SymbolTable, provisions: ConstantsAndMacros) -> list[Diagnostic]:
-    """What is wrong with parameters and definitions; the broken ones are noted in ``provisions``.
+def check_constants_and_macros(
+    symbols: SymbolTable, constants: ConstantsAndMacros
+) -> list[Diagnostic]:
+    """What is wrong with parameters and definitions; the broken ones are noted in ``constants``.
 
     Each comes after those that it uses, so that a mistake is met first where it was made.
     """
     mistakes: list[Diagnostic] = []
-    for name in _in_order_of_use(provisions):
-        provisions.begin()
-        if name in provisions.overlay.parameters:
-            mistakes += _check_parameter(name, declared, provisions)
-        elif name not in provisions.broken:
-            mistakes += _check_definition(provisions.definitions[name], declared, provisions)
+    for name in _in_order_of_use(constants):
+        constants.begin()
+        if name in constants.overlay.parameters:
+            mistakes += _check_parameter(name, symbols, constants)
+        elif name not in constants.broken:
+            mistakes += _check_definition(constants.definitions[name], symbols, constants)
     return mistakes
 
 
-def _in_order_of_use(provisions: ConstantsAndMacros) -> list[str]:
+def _in_order_of_use(constants: ConstantsAndMacros) -> list[str]:
     """Parameters and definitions, as far as there is no circle after those that they use."""
     uses: dict[str, list[str]] = {}
-    for name, values in provisions.overlay.parameters.items():
+    for name, values in constants.overlay.parameters.items():
         uses[name] = [one for value in values for one in names_used(value.item)]
-    for name, definition in provisions.definitions.items():
+    for name, definition in constants.definitions.items():
         uses[name] = [*names_used(definition)]
     ordered: list[str] = []
     seen: set[str] = set()
@@ -59,16 +61,16 @@ def _in_order_of_use(provisions: ConstantsAndMacros) -> list[str]:
 
 
 def _check_parameter(
-    name: str, declared: SymbolTable, provisions: ConstantsAndMacros
+    name: str, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> Iterator[Diagnostic]:
-    values = provisions.overlay.parameters[name]
+    values = constants.overlay.parameters[name]
     for value in values:
         kind = value.item.dimension if isinstance(value.item, tree.ParamItem) else None
         if kind is not None and kind.text not in DIMENSIONS:
             yield unknown_dimension(kind, list(DIMENSIONS))
-    if any(in_force(value.item.in_force, provisions.at) for value in values):
+    if any(in_force(value.item.in_force, constants.at) for value in values):
         first = values[0].item.name
-        scope = Scope(declared, provisions, {}, [])
+        scope = Scope(symbols, constants, {}, [])
         try:
             parameter(tree.AtomUse(first, (), first.span), scope, number)
         except TooDeepError:
@@ -77,11 +79,11 @@ def _check_parameter(
             scope.report(rule_messages.too_large("parameter", first))
         yield from scope.mistakes
         if scope.mistakes:
-            provisions.numbers[name] = None
+            constants.numbers[name] = None
 
 
 def _check_definition(
-    item: tree.DefineItem, declared: SymbolTable, provisions: ConstantsAndMacros
+    item: tree.DefineItem, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> list[Diagnostic]:
     mistakes: list[Diagnostic] = []
     typed = tuple(parameter_ for parameter_ in item.parameters if parameter_.type is not None)
@@ -93,8 +95,8 @@ def _check_definition(
         if first is not parameter_ and (first.type is None or parameter_.type is None):
             mistakes.append(twice("parameter", parameter_.name, first.span))
     scope = Scope(
-        declared,
-        provisions,
+        symbols,
+        constants,
         variables,
         mistakes,
         relations={
@@ -108,7 +110,7 @@ def _check_definition(
     )
     result = None
     try:
-        result = meaning(item.body, scope)
+        result = elaborate(item.body, scope)
     except TooDeepError:
         scope.report(rule_messages.too_deep("definition", item.name))
     except TooLargeError:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
@@ -126,7 +126,7 @@ def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnos
 
 
 def parameter_of_another_kind(
-    item: tree.ParamItem | tree.SetItem, number: Number, wanted: Dimension, first: tree.Name
+    item: tree.ParamItem | tree.SetItem, number: NumberByCases, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
     """A parameter's value of another dimension than it has."""
     assert not isinstance(item.value, bool), "only an option is on or off"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
 from rulec.rulebook.model import Traffic
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
@@ -24,7 +24,7 @@ class ConstantsAndMacros:
     overlay: Overlay
     at: str
     traffic: Traffic = ""
-    numbers: dict[str, Number | None] = field(default_factory=dict)
+    numbers: dict[str, NumberByCases | None] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)
     """Definitions with a mistake that has been reported."""
     parts: int = 0

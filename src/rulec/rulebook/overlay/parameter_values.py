@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rulec.rulebook.elaborate.linear_arithmetic import Number
+from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.scope import Call, Scope
 from rulec.rulebook.overlay import constant_messages as say
 from rulec.rulebook.overlay.constants_and_macros import in_force
@@ -13,17 +13,17 @@ from rulec.rulebook.overlay.rulebook_overlay import Value, never_in_force
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS, Dimension
 
-Evaluate = Callable[[tree.Formula, Scope], Number | None]
+Evaluate = Callable[[tree.Formula, Scope], NumberByCases | None]
 
 
-def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> Number | None:
+def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> NumberByCases | None:
     """The number that a parameter stands for; None if it has a mistake, which is then reported."""
     name = use.name.text
     if any(call.name == name for call in scope.calls):
         scope.report(say.circle(use, "parameter", scope))
-        scope.provisions.broken |= {call.name for call in scope.calls}
+        scope.constants.broken |= {call.name for call in scope.calls}
         return None
-    known = scope.provisions.numbers
+    known = scope.constants.numbers
     if name not in known:
         value = value_in_force(use, scope)
         known[name] = None if value is None else _evaluated(use, value, scope, evaluate)
@@ -42,11 +42,13 @@ def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
             scope.report(say.no_value_in_force(use, values, provisions.at))
         return None
     if len(candidates) > 1:
-        scope.report(say.two_values_in_force(candidates, name, provisions.at))
+        scope.report(say.two_values_in_force(candidates, name, constants.at))
     return candidates[0]
 
 
-def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate) -> Number | None:
+def _evaluated(
+    use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
+) -> NumberByCases | None:
     name, item = use.name.text, value.item
     assert not isinstance(item.value, bool), "only an option is on or off"
     inner = replace(
@@ -80,7 +82,7 @@ def _evaluated(use: tree.AtomUse, value: Value, scope: Scope, evaluate: Evaluate
 
 def _dimension(name: str, scope: Scope) -> Dimension | None:
     """What the declaration says; None if it says nothing or nothing known."""
-    for value in scope.provisions.overlay.parameters[name]:
+    for value in scope.constants.overlay.parameters[name]:
         item = value.item
         if isinstance(item, tree.ParamItem) and item.dimension is not None:
             return DIMENSIONS.get(item.dimension.text)
@@ -89,7 +91,7 @@ def _dimension(name: str, scope: Scope) -> Dimension | None:
 
 def _first_value(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> Dimension | None:
     """Where the declaration names no dimension, its own value has it."""
-    first = scope.provisions.overlay.parameters[name][0]
+    first = scope.constants.overlay.parameters[name][0]
     if first is value or isinstance(first.item.value, bool):
         return None
     number = evaluate(first.item.value, replace(scope, mistakes=[]))

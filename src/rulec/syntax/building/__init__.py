@@ -11,13 +11,13 @@ from rulec.syntax.building.rules import (
     rule_head,
     state,
 )
-from rulec.syntax.building.values import Values
+from rulec.syntax.building.values import NodeValues
 
 __all__ = [
     "Clause",
     "ExampleHead",
+    "NodeValues",
     "RuleHead",
-    "Values",
     "clause",
     "example_head",
     "formula",

@@ -6,15 +6,15 @@ from typing import Literal
 
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import amount, formula, parameters
-from rulec.syntax.building.values import Values, branches, leaf_of, leaves
-from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.building.values import NodeValues, branches, leaf_of, leaves
+from rulec.syntax.grammar import ParseLeaf, ParseNode
 
 _PROVISIONS = ("option", "param", "set", "define", "drop", "soften", "silent")
 
 
 def item(
-    values: Values, node: Branch
-) -> tree.FileLine | tree.HeaderLine | tree.Declaration | tree.Provision:
+    values: NodeValues, node: ParseNode
+) -> tree.FileLine | tree.HeaderLine | tree.Declaration | tree.Definition:
     """A header line, a declaration or a provision."""
     span = values.span(node)
     match node.kind:
@@ -39,7 +39,7 @@ def item(
             (number,) = branches(node, "number")
             return tree.StepLine(amount(values, number), span)
         case "priority_line":
-            signs = [leaf for leaf in node.children if isinstance(leaf, Leaf)]
+            signs = [leaf for leaf in node.children if isinstance(leaf, ParseLeaf)]
             relations: list[Literal[">", "="]] = [
                 ">" if sign.kind == "GREATER" else "="
                 for sign in signs
@@ -47,12 +47,12 @@ def item(
             ]
             return tree.PriorityLine(values.names(node), tuple(relations), span)
         case kind if kind.removesuffix("_item") in _PROVISIONS:
-            return provision(values, node)
+            return definition(values, node)
         case _:
             return declaration(values, node)
 
 
-def provision(values: Values, node: Branch) -> tree.Provision:
+def definition(values: NodeValues, node: ParseNode) -> tree.Definition:
     """An option, a parameter, a definition, or what is done to an inherited one."""
     span = values.span(node)
     name, *others = values.names(node)
@@ -82,12 +82,12 @@ def provision(values: Values, node: Branch) -> tree.Provision:
             return tree.SilentItem(name, values.text(node), span)
 
 
-def value_of(values: Values, node: Branch) -> tree.Formula:
+def value_of(values: NodeValues, node: ParseNode) -> tree.Formula:
     """The one formula or expression directly below a node."""
     (value,) = (
         child
         for child in node.children
-        if isinstance(child, Branch) and child.kind not in ("parameters", "in_force")
+        if isinstance(child, ParseNode) and child.kind not in ("parameters", "in_force")
     )
     return formula(values, value)
 
@@ -97,23 +97,23 @@ def _dates(values: Values, node: Branch) -> tree.InForce | None:
     return in_force(values, result[0]) if result else None
 
 
-def in_force(values: Values, node: Branch) -> tree.InForce:
+def in_force(values: NodeValues, node: ParseNode) -> tree.InForce:
     """``in force from DATE until DATE``."""
     dates = [values.date(leaf) for leaf in leaves(node, "DATE")]
     since = dates.pop(0) if leaves(node, "FROM") else ""
     return tree.InForce(since, dates[0] if dates else "", values.span(node))
 
 
-def weight(values: Values, node: Branch) -> tree.Number | None:
+def weight(values: NodeValues, node: ParseNode) -> tree.NumberLiteral | None:
     """The number behind ``weight``, if there is one."""
     numbers = leaves(node, "NUMBER")
     if not numbers:
         return None
     values.number(numbers[0])
-    return tree.Number(numbers[0].text, "", values.span(numbers[0]))
+    return tree.NumberLiteral(numbers[0].text, "", values.span(numbers[0]))
 
 
-def declaration(values: Values, node: Branch) -> tree.Declaration:
+def declaration(values: NodeValues, node: ParseNode) -> tree.Declaration:
     """A declaration."""
     span = values.span(node)
     names = values.names(node)

@@ -8,8 +8,8 @@ from typing import Literal
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import amount, atom, parameters
 from rulec.syntax.building.items import in_force, value_of, weight
-from rulec.syntax.building.values import Values, branches, leaves
-from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.building.values import NodeValues, branches, leaves
+from rulec.syntax.grammar import ParseLeaf, ParseNode
 
 _SCOPES: dict[str, tree.Scope] = {
     "INITIALLY": "initially",
@@ -28,7 +28,7 @@ class RuleHead:
     name: tree.Name
     variables: tuple[tree.Parameter, ...]
     level: tree.Name | None
-    weight: tree.Number | None
+    weight: tree.NumberLiteral | None
     override: bool
 
 
@@ -45,7 +45,7 @@ Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
 """What a clause says; a text for ``certainty``."""
 
 
-def rule_head(values: Values, node: Branch) -> RuleHead:
+def rule_head(values: NodeValues, node: ParseNode) -> RuleHead:
     """A rule's head."""
     name, *level = values.names(node)
     hard, soft = leaves(node, "HARD"), leaves(node, "SOFT")
@@ -59,7 +59,7 @@ def rule_head(values: Values, node: Branch) -> RuleHead:
     )
 
 
-def clause(values: Values, node: Branch) -> Clause:
+def clause(values: NodeValues, node: ParseNode) -> Clause:
     """What a clause says."""
     match node.kind:
         case "require_clause" | "when_clause":
@@ -67,32 +67,32 @@ def clause(values: Values, node: Branch) -> Clause:
         case "unless_clause":
             *_, last = node.children
             scope = None
-            if isinstance(last, Leaf):
+            if isinstance(last, ParseLeaf):
                 scope = _SCOPES[last.kind]
             return tree.Unless(value_of(values, node), scope, values.span(node))
         case "certainty_clause":
-            return node.children[1].text if isinstance(node.children[1], Leaf) else ""
+            return node.children[1].text if isinstance(node.children[1], ParseLeaf) else ""
         case "in_force":
             return in_force(values, node)
         case _:
             return values.text(node)
 
 
-def example_head(values: Values, node: Branch) -> ExampleHead:
+def example_head(values: NodeValues, node: ParseNode) -> ExampleHead:
     """An example's head."""
     label = values.text(node).value if leaves(node, "STRING") else ""
     return ExampleHead(bool(leaves(node, "ACCEPT")), label, parameters(values, node))
 
 
-def state(values: Values, node: Branch) -> tree.ExampleState:
+def state(values: NodeValues, node: ParseNode) -> tree.ExampleState:
     """A state of an example."""
     literals = tuple(_literal(values, branch) for branch in branches(node, "literal"))
     return tree.ExampleState(literals, values.span(node))
 
 
-def _literal(values: Values, node: Branch) -> tree.StateLiteral:
+def _literal(values: NodeValues, node: ParseNode) -> tree.StateLiteral:
     (use,) = branches(node, "atom")
-    value: tree.Number | tree.Minus | None = None
+    value: tree.NumberLiteral | tree.Minus | None = None
     for number in branches(node, "number"):
         value = amount(values, number)
         if leaves(node, "MINUS"):

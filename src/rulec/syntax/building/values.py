@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
-from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.literals import misleads, why_not_a_day
 from rulec.syntax.messages.literal_values import (
     control_character,
@@ -18,25 +18,25 @@ from rulec.syntax.messages.literal_values import (
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
+class NodeValues:
     """Makes the values of one source; mistakes inside them are added to ``mistakes``."""
 
     source: Source
     mistakes: list[Diagnostic] = field(default_factory=list)
 
-    def span(self, node: Branch | Leaf) -> Span:
+    def span(self, node: ParseNode | ParseLeaf) -> Span:
         """The characters of a node."""
         return Span(self.source, node.start, node.end)
 
-    def name(self, leaf: Leaf) -> tree.Name:
+    def name(self, leaf: ParseLeaf) -> tree.Name:
         """An identifier."""
         return tree.Name(leaf.text, self.span(leaf))
 
-    def names(self, node: Branch) -> tuple[tree.Name, ...]:
+    def names(self, node: ParseNode) -> tuple[tree.Name, ...]:
         """The identifiers directly below a node."""
         return tuple(self.name(leaf) for leaf in leaves(node, "NAME"))
 
-    def text(self, node: Branch) -> tree.Text:
+    def text(self, node: ParseNode) -> tree.Text:
         """The node's text in quotes, its escapes and characters checked."""
         leaf = leaf_of(node, "STRING")
         span = self.span(leaf)
@@ -56,14 +56,14 @@ class Values:
                 value.append(character)
         return tree.Text("".join(value), span)
 
-    def date(self, leaf: Leaf) -> str:
+    def date(self, leaf: ParseLeaf) -> str:
         """ISO text of a date that exists."""
         wrong = why_not_a_day(leaf.text)
         if wrong:
             self.mistakes.append(no_such_date(self.span(leaf), leaf.text, wrong))
         return "" if wrong else leaf.text
 
-    def number(self, leaf: Leaf) -> float:
+    def number(self, leaf: ParseLeaf) -> float:
         """A finite number; 0 in place of one that is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
@@ -72,16 +72,16 @@ class Values:
         return number
 
 
-def leaves(node: Branch, kind: str) -> list[Leaf]:
+def leaves(node: ParseNode, kind: str) -> list[ParseLeaf]:
     """The tokens of a kind directly below a node."""
-    return [child for child in node.children if isinstance(child, Leaf) and child.kind == kind]
+    return [child for child in node.children if isinstance(child, ParseLeaf) and child.kind == kind]
 
 
-def leaf_of(node: Branch, kind: str) -> Leaf:
+def leaf_of(node: ParseNode, kind: str) -> ParseLeaf:
     """The first of these; there must be one."""
     return leaves(node, kind)[0]
 
 
-def branches(node: Branch, kind: str) -> list[Branch]:
+def branches(node: ParseNode, kind: str) -> list[ParseNode]:
     """The matched rules of a kind directly below a node."""
-    return [child for child in node.children if isinstance(child, Branch) and child.kind == kind]
+    return [child for child in node.children if isinstance(child, ParseNode) and child.kind == kind]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 
-from rulec.syntax.formatting.document import WIDTH, Row
+from rulec.syntax.formatting.document import WIDTH, LaidOutLine
 
 _BEFORE_COMMENT = 2
 
 
-def align_marks(rows: Iterable[tuple[Row | None, int]]) -> None:
+def align_marks(rows: Iterable[tuple[LaidOutLine | None, int]]) -> None:
     """Bring marks that stood below one another in the file below one another again.
 
     Args:
@@ -27,7 +27,7 @@ def align_marks(rows: Iterable[tuple[Row | None, int]]) -> None:
             row.code = row.code[:at] + " " * (column - at) + row.code[at:]
 
 
-def with_comments(rows: Sequence[Row]) -> list[str]:
+def with_comments(rows: Sequence[LaidOutLine]) -> list[str]:
     """The rows with their trailing comments: in one column where they were in one column."""
     commented = [row for row in rows if row.comment is not None]
     for _, group in groupby(commented, key=lambda row: row.comment and row.comment.column):
@@ -41,6 +41,6 @@ def with_comments(rows: Sequence[Row]) -> list[str]:
     return [row.code + (f"{gap}{row.comment.text}" if row.comment else "") for row in rows]
 
 
-def _width(row: Row, column: int) -> int:
+def _width(row: LaidOutLine, column: int) -> int:
     assert row.comment is not None, "only rows with comments are asked for"
     return column + _BEFORE_COMMENT + len(row.comment.text)

@@ -43,7 +43,7 @@ class LineEnd:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class ColumnMark:
     """Remembers where in its row something stands, for a column to be made there."""
 
 
@@ -56,7 +56,7 @@ class Nest:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class GroupDocument:
     """On one line if it fits; ``forced`` if it cannot be."""
 
     inside: Document
@@ -64,18 +64,18 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class Concatenation:
     """One after the other."""
 
     parts: tuple[Document, ...]
     forced: bool
 
 
-Document = str | Break | Fill | LineEnd | Mark | Nest | Group | Run
+Document = str | Break | Fill | LineEnd | ColumnMark | Nest | GroupDocument | Concatenation
 
 
 @dataclass(slots=True)
-class Row:
+class LaidOutLine:
     """A line of the result: what it holds, its trailing comment, where its mark is.
 
     ``opens``: it ends with the brace of a block.
@@ -87,15 +87,15 @@ class Row:
     opens: bool = False
 
 
-def run(*parts: Document) -> Run:
+def run(*parts: Document) -> Concatenation:
     """One after the other."""
-    return Run(parts, any(map(has_line_end, parts)))
+    return Concatenation(parts, any(map(has_line_end, parts)))
 
 
-def group(*parts: Document, forced: bool = False) -> Group:
+def group(*parts: Document, forced: bool = False) -> GroupDocument:
     """On one line if it fits, and if it is not ``forced`` to break."""
     inside = run(*parts)
-    return Group(inside, forced or inside.forced)
+    return GroupDocument(inside, forced or inside.forced)
 
 
 def has_line_end(document: Document) -> bool:
@@ -105,7 +105,7 @@ def has_line_end(document: Document) -> bool:
             return True
         case Nest(inside=inside):
             return has_line_end(inside)
-        case Group(forced=forced) | Run(forced=forced):
+        case GroupDocument(forced=forced) | Concatenation(forced=forced):
             return forced
         case _:
             return False
@@ -119,22 +119,22 @@ _Todo = list[tuple[int, bool, Document]]
 class _Layout:
     todo: _Todo
     width: int
-    rows: list[Row] = field(default_factory=list)
+    rows: list[LaidOutLine] = field(default_factory=list)
 
-    def go(self) -> list[Row]:
+    def go(self) -> list[LaidOutLine]:
         self._line(self.todo[0][0])
         while self.todo:
             indent, flat, document = self.todo.pop()
             match document:
                 case str():
                     self.rows[-1].code += document
-                case Mark():
+                case ColumnMark():
                     self.rows[-1].mark = len(self.rows[-1].code)
-                case Run(parts):
+                case Concatenation(parts):
                     self.todo.extend((indent, flat, part) for part in reversed(parts))
                 case Nest(deeper, inside):
                     self.todo.append((indent + deeper, flat, inside))
-                case Group(inside, forced):
+                case GroupDocument(inside, forced):
                     fits = flat or (not forced and self._fits(indent, inside))
                     self.todo.append((indent, fits, inside))
                 case Break(text):
@@ -156,7 +156,7 @@ class _Layout:
         return self.rows
 
     def _line(self, indent: int) -> None:
-        self.rows.append(Row(" " * min(indent, _DEEPEST)))
+        self.rows.append(LaidOutLine(" " * min(indent, _DEEPEST)))
 
     def _room(self) -> int:
         return self.width - len(self.rows[-1].code)
@@ -177,9 +177,9 @@ class _Layout:
             match one:
                 case str():
                     room -= len(one)
-                case Run(parts):
+                case Concatenation(parts):
                     inner.extend((0, flat, part) for part in reversed(parts))
-                case Nest(inside=inside) | Group(inside=inside):
+                case Nest(inside=inside) | GroupDocument(inside=inside):
                     inner.append((0, flat, inside))
                 case Break(text):
                     if not flat:
@@ -210,16 +210,16 @@ class _Layout:
             match one:
                 case str():
                     room -= len(one)
-                case Run(parts):
+                case Concatenation(parts):
                     inner.extend(reversed(parts))
-                case Nest(inside=inside) | Group(inside=inside):
+                case Nest(inside=inside) | GroupDocument(inside=inside):
                     inner.append(inside)
                 case Break() | Fill() | LineEnd():
                     return True
         return False
 
 
-def lay_out(document: Document, indent: int = 0, width: int = WIDTH) -> list[Row]:
+def lay_out(document: Document, indent: int = 0, width: int = WIDTH) -> list[LaidOutLine]:
     """The rows of a document; none is longer than ``width`` unless it cannot be broken."""
     return _Layout([(indent, False, document)], width).go()
 

@@ -11,8 +11,8 @@ from rulec.diagnostics import Source
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.formatting.alignment import align_marks, with_comments
 from rulec.syntax.formatting.comments import Comment, blank_line_before, comments_of
-from rulec.syntax.formatting.document import WIDTH, Row, lay_out
-from rulec.syntax.formatting.piece_documents import Speller
+from rulec.syntax.formatting.document import WIDTH, LaidOutLine, lay_out
+from rulec.syntax.formatting.piece_documents import DocumentBuilder
 from rulec.syntax.formatting.piece_rows import Part, Pieces
 from rulec.syntax.scanner import scan
 from rulec.syntax.split_file import FileSplitter
@@ -24,7 +24,7 @@ def arranged(source: Source) -> str:
     """The text of a file without mistakes in its canonical form."""
     tokens = scan(source)
     parts = list(FileSplitter(source, tokens).split())
-    speller = Speller(deque(comments_of(source, tokens)))
+    speller = DocumentBuilder(deque(comments_of(source, tokens)))
     block = _Block(source.text, speller, Pieces(source, tokens, speller), [])
     end = len(source.text)
     if tokens[0].text == "vocabulary":
@@ -43,14 +43,14 @@ class _Block:
     """Adds to ``rows`` what stands below one another, by ``indent`` from the left."""
 
     text: str
-    speller: Speller
+    speller: DocumentBuilder
     pieces: Pieces
-    rows: list[Row]
+    rows: list[LaidOutLine]
     indent: int = 0
 
     def add(self, parts: Sequence[Part], begin: int, end: int) -> None:
         """Parts, with the comments around them from ``begin`` to ``end``."""
-        marks: list[tuple[Row | None, int]] = []
+        marks: list[tuple[LaidOutLine | None, int]] = []
         behind, after_rule = begin, False
         columns = self.pieces.columns(parts)
         for part, column in zip(parts, columns, strict=True):
@@ -81,13 +81,13 @@ class _Block:
         self.rows[-1].opens = True
         inner = _Block(self.text, self.speller, self.pieces, self.rows, self.indent + _INDENT)
         inner.add(parts, begin, end)
-        self.rows.append(Row(" " * self.indent + "}"))
+        self.rows.append(LaidOutLine(" " * self.indent + "}"))
 
-    def _rows(self, part: Part, column: int) -> list[Row]:
+    def _rows(self, part: Part, column: int) -> list[LaidOutLine]:
         match part:
             case RulePieces():
                 one_line = self.pieces.one_line(part, self.indent)
-                return [Row(one_line)] if one_line else self._rule(part)
+                return [LaidOutLine(one_line)] if one_line else self._rule(part)
             case ExamplePieces():
                 return lay_out(self.pieces.example(part, column), self.indent)
             case Piece("clause"):
@@ -95,7 +95,7 @@ class _Block:
             case Piece():
                 return lay_out(self.pieces.item(part, column), self.indent)
 
-    def _rule(self, rule: RulePieces) -> list[Row]:
+    def _rule(self, rule: RulePieces) -> list[LaidOutLine]:
         # The brace stands behind the head.
         head = lay_out(self.pieces.rule_head(rule), self.indent, WIDTH - len(" {"))
         block = _Block(self.text, self.speller, self.pieces, head, self.indent)
@@ -117,12 +117,12 @@ class _Block:
         for comment, blank in zip(comments, blanks):  # noqa: B905 - what follows may have one more
             self._add_row(Row(" " * self.indent + comment.text), blank=blank)
 
-    def _add_row(self, row: Row, *, blank: bool) -> None:
+    def _add_row(self, row: LaidOutLine, *, blank: bool) -> None:
         if blank and self.rows and not self.rows[-1].opens:
-            self.rows.append(Row(""))
+            self.rows.append(LaidOutLine(""))
         self.rows.append(row)
 
-    def _mark(self, part: Part, rows: Sequence[Row]) -> tuple[Row | None, int]:
+    def _mark(self, part: Part, rows: Sequence[LaidOutLine]) -> tuple[LaidOutLine | None, int]:
         if isinstance(part, ExamplePieces) and len(rows) == 1:
             brace = self.pieces.opening(part).start
             return rows[0], brace - self.text.rfind("\n", 0, brace)

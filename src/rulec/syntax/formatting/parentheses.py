@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import (
     ARITHMETIC_PRECEDENCE,
     COMPARISON_PRECEDENCE,
@@ -24,29 +24,29 @@ _FORMULAS_ONLY = frozenset(
 _WHOLE = _FORMULAS_ONLY | {"unless_clause", "param_item", "set_item", "group"}
 
 
-def level(node: Branch) -> int:
+def level(node: ParseNode) -> int:
     """How tightly the operator of an infix, a comparison or an arithmetic operation binds."""
     sign = node.children[1]
-    assert isinstance(sign, Leaf), "the operator is between its operands"
+    assert isinstance(sign, ParseLeaf), "the operator is between its operands"
     if node.kind == "compare":
         return COMPARISON_PRECEDENCE
     return ARITHMETIC_PRECEDENCE[sign.text] if node.kind == "arithmetic" else _LEVELS[sign.kind]
 
 
-def without_spare_parentheses(node: Branch) -> Branch:
+def without_spare_parentheses(node: ParseNode) -> ParseNode:
     """The same without parentheses around a name, a number, other parentheses, or everything."""
     whole = node.kind in _WHOLE and _has_no_words_behind(node)
     children = tuple(
-        child if isinstance(child, Leaf) else _child(node, child, whole=whole)
+        child if isinstance(child, ParseLeaf) else _child(node, child, whole=whole)
         for child in node.children
     )
     return replace(node, children=children)
 
 
-def _child(node: Branch, child: Branch, *, whole: bool) -> Branch:
+def _child(node: ParseNode, child: ParseNode, *, whole: bool) -> ParseNode:
     while child.kind == "group":
         inside = child.children[1]
-        assert isinstance(inside, Branch), "a group holds a formula"
+        assert isinstance(inside, ParseNode), "a group holds a formula"
         kind = inside.kind
         only_here = kind == "conditional" and node.kind in _FORMULAS_ONLY
         if kind not in OPERATIONS or kind in ("group", "aggregate") or (whole and not only_here):
@@ -56,6 +56,6 @@ def _child(node: Branch, child: Branch, *, whole: bool) -> Branch:
     return without_spare_parentheses(child)
 
 
-def _has_no_words_behind(node: Branch) -> bool:
+def _has_no_words_behind(node: ParseNode) -> bool:
     """``unless (p or q) throughout`` reads better with them."""
-    return node.kind != "unless_clause" or isinstance(node.children[-1], Branch)
+    return node.kind != "unless_clause" or isinstance(node.children[-1], ParseNode)

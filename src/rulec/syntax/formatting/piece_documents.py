@@ -14,19 +14,19 @@ from typing import Literal
 from rulec.syntax.formatting.comments import Comment
 from rulec.syntax.formatting.document import (
     Break,
+    Concatenation,
     Document,
     Fill,
     LineEnd,
     Nest,
-    Run,
     group,
     run,
 )
 from rulec.syntax.formatting.parentheses import OPERATIONS, level
-from rulec.syntax.grammar import Branch, Leaf
+from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import OPERATOR_LETTERS
 
-Node = Branch | Leaf
+Node = ParseNode | ParseLeaf
 Gap = Break | Fill | Literal["", " "]
 """What stands between two tokens; only the first two can end a line, or hold a comment."""
 
@@ -40,7 +40,7 @@ _CHAINS = frozenset(("infix", "arithmetic", "compare"))
 
 
 @dataclass(slots=True)
-class Speller:
+class DocumentBuilder:
     """Walks through a file from its beginning to its end, and gives out each comment once."""
 
     comments: deque[Comment]
@@ -74,41 +74,41 @@ class Speller:
     def spell(self, node: Node) -> Document:
         """A node of any kind."""
         match node:
-            case Leaf():
+            case ParseLeaf():
                 return node.text if node.kind == "STRING" else " ".join(node.text.split())
-            case Branch(kind="infix" | "arithmetic" | "compare"):
+            case ParseNode(kind="infix" | "arithmetic" | "compare"):
                 return self._chain(_links(node, level(node)))
-            case Branch("prefix", (Leaf() as sign, *_, operand)):
+            case ParseNode("prefix", (ParseLeaf() as sign, *_, operand)):
                 return self._operator(node.children, _behind_prefix(sign, node.children, operand))
-            case Branch("minus", children):
+            case ParseNode("minus", children):
                 return self._operator(children, "")
-            case Branch("group", (opening, inside, closing)):
+            case ParseNode("group", (opening, inside, closing)):
                 return self._parentheses(opening, inside, closing)
-            case Branch("aggregate", (kind, variable, opening, inside, closing)):
+            case ParseNode("aggregate", (kind, variable, opening, inside, closing)):
                 head = run(self.spell(kind), " ", self.spell(variable), " ")
                 return run(head, self._parentheses(opening, inside, closing))
-            case Branch("conditional", children):
+            case ParseNode("conditional", children):
                 value, if_word, condition, else_word, otherwise = children
                 return self._chain([[value], [if_word, condition], [else_word, otherwise]])
-            case Branch("state", children):
+            case ParseNode("state", children):
                 return self._chain(_in_pairs(children))
-            case Branch():
+            case ParseNode():
                 return self.plain(node.children, node.kind)
 
-    def plain(self, nodes: Sequence[Node], kind: str, deeper: int = 4) -> Run:
+    def plain(self, nodes: Sequence[Node], kind: str, deeper: int = 4) -> Concatenation:
         """Node after node, with spaces and possible line ends as the tokens ask for them."""
         parts: list[Document] = []
         for index, node in enumerate(nodes):
             if index:
                 gap = between(last_leaf(nodes[index - 1]), first_leaf(node), kind, deeper)
                 parts.append(self.gap(gap, first_leaf(node).start))
-            if isinstance(node, Branch) and node.kind not in OPERATIONS:
+            if isinstance(node, ParseNode) and node.kind not in OPERATIONS:
                 parts.append(self.plain(node.children, node.kind, deeper))
             else:
                 parts.append(self.spell(node))
         return run(*parts)
 
-    def worded(self, node: Branch, column: int, deeper: int = 4) -> Run:
+    def worded(self, node: ParseNode, column: int, deeper: int = 4) -> Concatenation:
         """A word and what it says, which begins at ``column`` and goes on there."""
         word, *said = node.children
         start = self.spell(word)
@@ -117,7 +117,7 @@ class Speller:
         first = lead.flat if isinstance(lead, Break) else lead
         return run(start, Nest(column, run(first, self.plain(said, node.kind, deeper))))
 
-    def assigned(self, node: Branch, column: int, *, broken: bool) -> Document:
+    def assigned(self, node: ParseNode, column: int, *, broken: bool) -> Document:
         """``word name = value``, with the name at ``column``.
 
         The value is on lines of its own if it is ``broken`` off, or too long.
@@ -140,14 +140,14 @@ class Speller:
             parts.append(self._operator(link, _behind_operator(link)))
         return group(*parts)
 
-    def _operator(self, nodes: Sequence[Node], behind: Gap) -> Run:
+    def _operator(self, nodes: Sequence[Node], behind: Gap) -> Concatenation:
         """An operator with its bound, if any, and its operand; or an operand alone."""
         *before, operand = nodes
         parts = [self.spell(node) for node in before]
         if before:
             parts.append(self.gap(behind, first_leaf(operand).start))
         inside = self.spell(operand)
-        chained = isinstance(operand, Branch) and operand.kind in _CHAINS
+        chained = isinstance(operand, ParseNode) and operand.kind in _CHAINS
         return run(*parts, Nest(2, inside) if chained else inside)
 
     def _parentheses(self, opening: Node, inside: Node, closing: Node) -> Document:
@@ -158,23 +158,23 @@ class Speller:
         return group(first, Nest(2, run(begins, text)), ends, self.spell(closing))
 
 
-def first_leaf(node: Node) -> Leaf:
+def first_leaf(node: Node) -> ParseLeaf:
     """Where a node begins."""
-    while isinstance(node, Branch):
+    while isinstance(node, ParseNode):
         node = node.children[0]
     return node
 
 
-def last_leaf(node: Node) -> Leaf:
+def last_leaf(node: Node) -> ParseLeaf:
     """Where a node ends."""
-    while isinstance(node, Branch):
+    while isinstance(node, ParseNode):
         node = node.children[-1]
     return node
 
 
 def _links(node: Node, of: int) -> list[list[Node]]:
     """The operands, each behind its operator, of all operators of one level."""
-    if not isinstance(node, Branch) or node.kind not in _CHAINS or level(node) != of:
+    if not isinstance(node, ParseNode) or node.kind not in _CHAINS or level(node) != of:
         return [[node]]
     left, *operator, right = node.children
     first, *others = _links(right, of)
@@ -187,8 +187,8 @@ def _in_pairs(children: Iterable[Node]) -> list[list[Node]]:
     return [[first], *([others[at], others[at + 1]] for at in range(0, len(others), 2))]
 
 
-def _behind_prefix(sign: Leaf, children: Sequence[Node], operand: Node) -> Gap:
-    grouped = isinstance(operand, Branch) and operand.kind == "group" and len(children) == 2
+def _behind_prefix(sign: ParseLeaf, children: Sequence[Node], operand: Node) -> Gap:
+    grouped = isinstance(operand, ParseNode) and operand.kind == "group" and len(children) == 2
     if sign.text == "!" or (sign.text in OPERATOR_LETTERS and grouped):
         return ""
     return _behind_operator(children)
@@ -201,10 +201,10 @@ def _behind_operator(link: Sequence[Node]) -> Gap:
 
 
 def _is_equals(node: Node) -> bool:
-    return isinstance(node, Leaf) and node.kind == "EQUALS"
+    return isinstance(node, ParseLeaf) and node.kind == "EQUALS"
 
 
-def between(before: Leaf, behind: Leaf, inside: str, deeper: int) -> Gap:
+def between(before: ParseLeaf, behind: ParseLeaf, inside: str, deeper: int) -> Gap:
     """What stands between two tokens that are no operator's."""
     match before.kind, behind.kind:
         case (_, "COMMA" | "RPAR" | "RSQB" | "LSQB") | ("LPAR" | "LSQB" | "MINUS", _):

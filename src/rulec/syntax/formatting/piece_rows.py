@@ -12,16 +12,16 @@ from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.formatting.document import (
     WIDTH,
     Break,
+    ColumnMark,
     Document,
-    Mark,
     Nest,
     group,
     on_one_line,
     run,
 )
 from rulec.syntax.formatting.parentheses import without_spare_parentheses
-from rulec.syntax.formatting.piece_documents import Speller, first_leaf
-from rulec.syntax.grammar import Branch, Start, parse_piece
+from rulec.syntax.formatting.piece_documents import DocumentBuilder, first_leaf
+from rulec.syntax.grammar import ParseNode, Start, parse_piece
 from rulec.syntax.keywords import CLAUSE_WORDS, FILE_WORDS, HEADER_WORDS, PROVISION_WORDS
 from rulec.syntax.scanner import Token
 
@@ -44,7 +44,7 @@ class Pieces:
 
     source: Source
     tokens: list[Token]
-    speller: Speller
+    speller: DocumentBuilder
 
     def begin(self, part: Part) -> int:
         """The character at which a part begins."""
@@ -54,11 +54,11 @@ class Pieces:
         """The character behind a part."""
         return span_of(self.source, self.tokens, part).end
 
-    def matched(self, piece: Piece) -> Branch:
+    def matched(self, piece: Piece) -> ParseNode:
         """What the grammar makes of a piece."""
         span = span_of(self.source, self.tokens, piece)
         branch = parse_piece(cast("Start", piece.kind), self.source.text, span.start, span.end)
-        assert isinstance(branch, Branch), "the file has no mistakes"
+        assert isinstance(branch, ParseNode), "the file has no mistakes"
         return without_spare_parentheses(branch)
 
     def item(self, piece: Piece, column: int) -> Document:
@@ -101,7 +101,7 @@ class Pieces:
             states += [*([";"] if index else []), gap, self.speller.spell(state)]
         ends = self.speller.closing_gap(" ", self.closing(example).start)
         broken = "\n" in self.source.text[self.opening(example).start : self.end(example)]
-        return group(start, " ", Mark(), "{", Nest(2, run(*states)), ends, "}", forced=broken)
+        return group(start, " ", ColumnMark(), "{", Nest(2, run(*states)), ends, "}", forced=broken)
 
     def rule_head(self, rule: RulePieces) -> Document:
         """``hard rule NAME (variables)``."""
@@ -155,6 +155,6 @@ class Pieces:
         between = self.source.text[self.end(before) : self.begin(behind)]
         return any(not line.strip() for line in between.split("\n")[1:-1])
 
-    def _breaks_behind_equals(self, node: Branch) -> bool:
+    def _breaks_behind_equals(self, node: ParseNode) -> bool:
         equals, value = next(pair for pair in pairwise(node.children) if pair[0].kind == "EQUALS")
         return "\n" in self.source.text[equals.end : first_leaf(value).start]

@@ -7,6 +7,7 @@ from typing import Literal
 
 from rulec.diagnostics import Span
 from rulec.syntax.tree.declarations import Declaration
+from rulec.syntax.tree.definitions import Definition
 from rulec.syntax.tree.header import (
     ExtendsLine,
     LawLine,
@@ -18,7 +19,6 @@ from rulec.syntax.tree.header import (
     UseLine,
 )
 from rulec.syntax.tree.names import NOWHERE, Name
-from rulec.syntax.tree.provisions import Provision
 from rulec.syntax.tree.rules import RuleItem
 
 
@@ -36,7 +36,7 @@ class BrokenItem:
     nameless: bool = False
 
 
-Item = Declaration | Provision | RuleItem | BrokenItem
+Item = Declaration | Definition | RuleItem | BrokenItem
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ class AtomUse:
 
 
 @dataclass(frozen=True, slots=True)
-class Truth:
+class TruthLiteral:
     """``true`` or ``false``."""
 
     value: bool
@@ -32,7 +32,7 @@ class Truth:
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class NumberLiteral:
     """``1.5 km/h``: an unsigned number as written, and its unit, empty if there is none."""
 
     text: str
@@ -40,12 +40,12 @@ class Number:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-Amount = Number | AtomUse
+Amount = NumberLiteral | AtomUse
 """A time in a bound: a number of seconds or steps, or a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
+class BoundNode:
     """``[<= high]``, ``[>= low]``, ``[low .. high]``, or ``[low]``, which is ``exact``."""
 
     low: Amount | None
@@ -60,7 +60,7 @@ class Prefix:
 
     operator: str
     operand: Formula
-    bound: Bound | None = None
+    bound: BoundNode | None = None
     span: Span = field(default=NOWHERE, compare=False, repr=False)
     sign: str = field(default="", compare=False, repr=False)
     grouped: bool = field(default=False, compare=False, repr=False)
@@ -73,7 +73,7 @@ class Infix:
     operator: str
     left: Formula
     right: Formula
-    bound: Bound | None = None
+    bound: BoundNode | None = None
     span: Span = field(default=NOWHERE, compare=False, repr=False)
     sign: str = field(default="", compare=False, repr=False)
     grouped: bool = field(default=False, compare=False, repr=False)
@@ -133,8 +133,8 @@ class Aggregate:
 
 Formula = (
     AtomUse
-    | Truth
-    | Number
+    | TruthLiteral
+    | NumberLiteral
     | Prefix
     | Infix
     | Compare

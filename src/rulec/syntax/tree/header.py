@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from rulec.diagnostics import Span
-from rulec.syntax.tree.formulas import Number
+from rulec.syntax.tree.formulas import NumberLiteral
 from rulec.syntax.tree.names import NOWHERE, Name, Text
 
 
@@ -72,7 +72,7 @@ class SemanticsLine:
 class StepLine:
     """``step 0.5 s``: how far the states of examples are apart."""
 
-    amount: Number
+    amount: NumberLiteral
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 

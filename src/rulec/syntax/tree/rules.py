@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from rulec.diagnostics import Span
-from rulec.syntax.tree.formulas import AtomUse, Formula, Minus, Number
+from rulec.syntax.tree.definitions import InForce
+from rulec.syntax.tree.formulas import AtomUse, Formula, Minus, NumberLiteral
 from rulec.syntax.tree.names import NOWHERE, Name, Parameter, Text
-from rulec.syntax.tree.provisions import InForce
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class StateLiteral:
 
     atom: AtomUse
     negated: bool = False
-    value: Number | Minus | None = None
+    value: NumberLiteral | Minus | None = None
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
@@ -33,7 +33,7 @@ class ExampleState:
 
 
 @dataclass(frozen=True, slots=True)
-class Example:
+class ExampleItem:
     """``accept "label" (objects) { state; … }`` or ``reject …``."""
 
     accepts: bool
@@ -68,11 +68,11 @@ class RuleItem:
     require: Formula | None = None
     cite: Text | None = None
     says: Text | None = None
-    examples: tuple[Example, ...] = ()
+    examples: tuple[ExampleItem, ...] = ()
     complete: bool = True
     span: Span = field(default=NOWHERE, compare=False, repr=False)
     level: Name | None = None
-    weight: Number | None = None
+    weight: NumberLiteral | None = None
     override: bool = False
     unless: tuple[Unless, ...] = ()
     when: Formula | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from rulec.diagnostics import Span
-from rulec.syntax.tree.formulas import Formula, Number
+from rulec.syntax.tree.formulas import Formula, NumberLiteral
 from rulec.syntax.tree.names import NOWHERE, Name, Parameter, Text
 
 
@@ -77,7 +77,7 @@ class SoftenItem:
 
     name: Name
     level: Name | None = None
-    weight: Number | None = None
+    weight: NumberLiteral | None = None
     because: Text | None = None
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
@@ -91,4 +91,4 @@ class SilentItem:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-Provision = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenItem | SilentItem
+Definition = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenItem | SilentItem
