@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from rulec.automata.bundle.bundle_schema import File
+from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.code_pages import CodeData
 from rulec.report.findings.diagnostics_json import FindingData
@@ -28,7 +28,7 @@ from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict
 SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "audit": (AuditDocument,),
     "codes": (list[CodeData],),
-    "compiled": (File,),
+    "compiled": (BundleFile,),
     "diff": (DiffDocument,),
     "envelope": (EnvelopeLine,),
     "findings": (list[FindingData],),

@@ -47,11 +47,11 @@ def resolve(
         warnings.
     """
     books = [*bases, file]
-    declared = symbol_table([*vocabularies, *books], opaque=opaque)
-    spans = {**declared.type_spans, **declared.spans}
+    symbols = symbol_table([*vocabularies, *books], opaque=opaque)
+    spans = {**symbols.type_spans, **symbols.spans}
     unsure = opaque or not all(book.complete for book in books)
     laid = overlay(books, spans, unsure=unsure)
-    provisions = ConstantsAndMacros(laid, at, traffic or _last_traffic(books))
+    constants = ConstantsAndMacros(laid, at, traffic or _last_traffic(books))
     levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
     known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
     mistakes = [*symbols.mistakes, *laid.mistakes, *mistakes]
@@ -59,18 +59,18 @@ def resolve(
     axioms: list[Axiom] = []
     for fact in (item for vocabulary in (*vocabularies, *books) for item in vocabulary.items):
         if isinstance(fact, tree.FactItem):
-            known, diagnostics = axiom_of(fact, declared, provisions)
+            known, diagnostics = axiom_of(fact, symbols, constants)
             mistakes += diagnostics
             axioms += [known] if known is not None else []
     rules: list[Rule | None] = []
     for entry in laid.rules.values():
-        rule, diagnostics = translate_rule(entry, declared, provisions, known_levels)
+        rule, diagnostics = translate_rule(entry, symbols, constants, known_levels)
         mistakes += diagnostics
         if in_force(entry.item.in_force, at):
             rules.append(rule)
     good = [rule for rule in rules if rule is not None]
-    if not declared.mistakes:
-        words = declared.vocabulary(file.name.text if file.name else "")
+    if not symbols.mistakes:
+        words = symbols.vocabulary(file.name.text if file.name else "")
         mistakes += [
             diagnostic for rule in good for diagnostic in contradicted(rule, axioms, words)
         ]
@@ -92,7 +92,7 @@ def resolve(
         file.law.as_of if file.law else "",
         sources,
         semantics[-1] if semantics else "stutter",
-        provisions.traffic,
+        constants.traffic,
         tuple(base.name.text for base in reversed(bases) if base.name),
         levels,
         priorities,

@@ -14,7 +14,7 @@ from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atom
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
 from rulec.logic.printing import formula_text
-from rulec.rulebook.examples.axiom_checks import Told
+from rulec.rulebook.examples.axiom_checks import ExampleValues
 from rulec.rulebook.model import ExampleState
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import counts_read
@@ -121,7 +121,7 @@ def coverage_witness(
     ]
     for axiom in axioms:
         own_names = {name: name for name in variables_of(axiom)}
-        if holds(axiom, own_names, Told(says, frozenset(), {}, vocabulary)) is False:
+        if holds(axiom, own_names, ExampleValues(says, frozenset(), {}, vocabulary)) is False:
             about = set(chain.from_iterable(map(_quantities, atoms_of(axiom))))
             dropped = {
                 term for term in about if says.pop((term.name, term.arguments), None) is not None

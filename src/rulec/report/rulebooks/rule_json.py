@@ -8,7 +8,7 @@ from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
 
 from rulec.logic.english.sentence_layout import in_one_line
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.report.automata.automaton_model import Automaton, Fate
 from rulec.report.json_document import Document, Part, as_indented
 from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
@@ -111,7 +111,7 @@ def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData
         book=rule.book,
         sentence=in_one_line(phrase_of(rule, vocabulary)),
         restrictions=[in_one_line(phrase) for phrase in restrictions_of(rule)],
-        formula=in_words(rule.formula),
+        formula=formula_text(rule.formula),
     )
     if page is None:
         return data

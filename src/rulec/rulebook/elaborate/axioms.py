@@ -31,7 +31,7 @@ def axiom_of(
     scope = Scope(
         symbols, constants, variables, mistakes, in_moment=True, taken=frozenset(variables)
     )
-    provisions.begin()
+    constants.begin()
     result = truth(formula, scope)
     if result is None or mistakes:
         return None, mistakes
@@ -47,9 +47,9 @@ def _variables(
     bound_variables: dict[str, BoundVariable] = {}
     for name, wanted in asked_for:
         known = bound_variables.get(name.text)
-        if known is None or known.type is None or declared.fits(wanted, known.type):
+        if known is None or known.type is None or symbols.fits(wanted, known.type):
             bound_variables[name.text] = BoundVariable(wanted, name.span, name.text)
-        elif not declared.fits(known.type, wanted):
+        elif not symbols.fits(known.type, wanted):
             mistakes.append(two_types(name, wanted, known.type, known.span))
     return bound_variables
 
@@ -86,8 +86,8 @@ def _parameters(
         kinds = [
             parameter.type.text if parameter.type else None for parameter in definition.parameters
         ]
-        return [kind if kind in declared.types else None for kind in kinds]
-    item = declared.items.get(name) or declared.value_of.get(
+        return [kind if kind in symbols.types else None for kind in kinds]
+    item = symbols.items.get(name) or symbols.value_of.get(
         SIDES[name]["right"] if name in SIDES else name
     )
     return () if item is None else item.parameters

@@ -69,7 +69,7 @@ def truth(node: tree.Formula, scope: Scope) -> Formula | None:
             return None
         case AnyArgument():
             return Constant(True)
-        case Number():
+        case NumberByCases():
             scope.report(say.number_for_truth(node, result, scope))
             return None
         case Object():
@@ -83,9 +83,9 @@ def number(node: tree.Formula, scope: Scope) -> NumberByCases | None:
     """The number; None if it has a mistake, which is then reported."""
     result = elaborate(node, scope)
     match result:
-        case None | Anything():
+        case None | AnyArgument():
             return None
-        case Number():
+        case NumberByCases():
             return result
         case _:
             scope.report(say.no_number(node, result, scope))
@@ -161,7 +161,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         return expand_macro(node, scope, elaborate)
     result = scope.reference(node)
     if isinstance(result, Quantity):
-        unit = scope.declared.unit_of(result.name)
+        unit = scope.symbols.unit_of(result.name)
         if unit is None:
             return None
         return measured(result, unit.factor, unit.dimension, term_text(result))

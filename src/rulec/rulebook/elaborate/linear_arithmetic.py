@@ -124,8 +124,8 @@ def _pairs(
             yield both, one, other
 
 
-def _in_cases(cases: Iterable[Case]) -> Number:
-    number = Number(tuple(islice(cases, MOST_CASES + 1)))
+def _in_cases(cases: Iterable[Case]) -> NumberByCases:
+    number = NumberByCases(tuple(islice(cases, MOST_CASES + 1)))
     if len(number.cases) > MOST_CASES:
         raise TooManyCasesError
     return number

@@ -62,7 +62,9 @@ def aggregate(
     relation: Relation = "<" if node.kind == "every" else ">="
     comparison = compared(count, relation, constant(_ONE, DIMENSIONS["number"], "1"))
     assert isinstance(comparison, Comparison), "a count varies"
-    return replace(comparison, text=f"{node.kind} {term.variable}: {kind.text} ({formula_text(body)})")
+    return replace(
+        comparison, text=f"{node.kind} {term.variable}: {kind.text} ({formula_text(body)})"
+    )
 
 
 def _with_counted(node: tree.Aggregate, scope: Scope, kind: str | None) -> Scope:

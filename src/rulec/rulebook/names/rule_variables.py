@@ -17,9 +17,9 @@ def variables_of(
     for parameter in parameters:
         name, type_ = parameter.name, parameter.type
         assert type_ is not None, "the grammar asks for a variable's type"
-        known = type_.text in declared.types
-        if not known and not declared.may_know_type(type_.text):
-            mistakes.append(unknown_type(type_, list(declared.types)))
+        known = type_.text in symbols.types
+        if not known and not symbols.may_know_type(type_.text):
+            mistakes.append(unknown_type(type_, list(symbols.types)))
         if name.text in bound_variables:
             mistakes.append(twice("variable", name, bound_variables[name.text].span))
         else:

@@ -97,10 +97,10 @@ class Scope:
 
     def behind(self, name: str) -> Declared_ | None:
         """The signal or quantity of that name, or the enumeration that has such a value."""
-        quantity = self.declared.items.get(name)
+        quantity = self.symbols.items.get(name)
         if isinstance(quantity, QuantityDeclaration):
             return quantity
-        return self.declared.behind_atom(name)
+        return self.symbols.behind_atom(name)
 
     def relation_names(self) -> list[str]:
         """What can be given to a definition for a relation."""

@@ -119,7 +119,7 @@ class SymbolTable:
 def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
     """The declarations of used vocabularies and of the file that uses them, in this order."""
     vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
-    declared = SymbolTable(
+    symbols = SymbolTable(
         of_vocabularies=vocabularies,
         opaque=opaque or not all(file.complete for file in files),
     )
@@ -211,7 +211,7 @@ def _roots(symbols: SymbolTable, file: tree.File) -> list[str]:
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
         type_.name
-        for type_ in declared.types.values()
+        for type_ in symbols.types.values()
         if type_.parent is None and (file.kind == "rulebook" or type_.name in own)
     ]
 
@@ -270,19 +270,19 @@ def _parameter_types(
     for position, parameter in enumerate(parameters):
         first = seen.setdefault(parameter.name.text, parameter.name.span)
         if first is not parameter.name.span:
-            declared.mistakes.append(twice("parameter", parameter.name, first))
-        if name.text not in declared.spans:
-            declared.parameter_spans[name.text, position] = parameter.span
+            symbols.mistakes.append(twice("parameter", parameter.name, first))
+        if name.text not in symbols.spans:
+            symbols.parameter_spans[name.text, position] = parameter.span
         if parameter.type is not None:
             types.append(parameter.type.text)
-            if parameter.type.text not in declared.types:
-                _unknown_type(declared, parameter.type)
+            if parameter.type.text not in symbols.types:
+                _unknown_type(symbols, parameter.type)
         elif len(roots) == 1:
             types.append(roots[0])
         else:
             types.append("")
-            if not (declared.opaque or declared.opaque_types or declared.suspects):
-                declared.mistakes.append(which_type(parameter, roots))
+            if not (symbols.opaque or symbols.opaque_types or symbols.suspects):
+                symbols.mistakes.append(which_type(parameter, roots))
     return tuple(types)
 
 

@@ -87,7 +87,7 @@ def _check_definition(
 ) -> list[Diagnostic]:
     mistakes: list[Diagnostic] = []
     typed = tuple(parameter_ for parameter_ in item.parameters if parameter_.type is not None)
-    variables = variables_of(typed, declared, mistakes)
+    variables = variables_of(typed, symbols, mistakes)
     seen: dict[str, tree.Parameter] = {}
     for parameter_ in item.parameters:
         first = seen.setdefault(parameter_.name.text, parameter_)
@@ -100,7 +100,7 @@ def _check_definition(
         variables,
         mistakes,
         relations={
-            parameter_.name.text: Anything()
+            parameter_.name.text: AnyArgument()
             for parameter_ in item.parameters
             if parameter_.type is None
         },
@@ -116,8 +116,8 @@ def _check_definition(
     except TooLargeError:
         scope.report(rule_messages.too_large("definition", item.name))
     wrong = any(mistake.severity == "error" for mistake in mistakes)
-    if wrong or not provisions.broken.isdisjoint(names_used(item)):
-        provisions.broken.add(item.name.text)
+    if wrong or not constants.broken.isdisjoint(names_used(item)):
+        constants.broken.add(item.name.text)
     elif result is not None:
         mistakes += (
             rule_messages.unused_parameter(item, parameter_)

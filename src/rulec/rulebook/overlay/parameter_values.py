@@ -32,14 +32,14 @@ def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> NumberByCa
 
 def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
     """The value in force: of the rulebook nearest to the one in question that has any."""
-    name, provisions = use.name.text, scope.provisions
-    values = provisions.overlay.parameters[name]
-    good = [value for value in values if in_force(value.item.in_force, provisions.at)]
+    name, constants = use.name.text, scope.constants
+    values = constants.overlay.parameters[name]
+    good = [value for value in values if in_force(value.item.in_force, constants.at)]
     nearest = max((value.level for value in good), default=0)
     candidates = [value for value in good if value.level == nearest]
     if not candidates:
         if not any(never_in_force(value.item.in_force) for value in values):
-            scope.report(say.no_value_in_force(use, values, provisions.at))
+            scope.report(say.no_value_in_force(use, values, constants.at))
         return None
     if len(candidates) > 1:
         scope.report(say.two_values_in_force(candidates, name, constants.at))
@@ -61,7 +61,7 @@ def _evaluated(
         in_moment=True,
         used=set(),
     )
-    with scope.provisions.one_deeper():
+    with scope.constants.one_deeper():
         number = evaluate(item.value, inner)
     if number is None:
         return None
@@ -69,7 +69,7 @@ def _evaluated(
     if wanted is None:
         wanted = _first_value(name, value, inner, evaluate)
     if wanted is not None and number.dimension not in (None, wanted):
-        first = scope.provisions.overlay.declared_at[name]
+        first = scope.constants.overlay.declared_at[name]
         scope.report(say.parameter_of_another_kind(item, number, wanted, first))
         return None
     if number.dimension is not None:
@@ -77,7 +77,7 @@ def _evaluated(
     # A bare 0 has the dimension that is asked for.
     dimension = wanted or DIMENSIONS["number"]
     zeros = ((when, replace(linear, dimension=dimension)) for when, linear in number.cases)
-    return Number(tuple(zeros))
+    return NumberByCases(tuple(zeros))
 
 
 def _dimension(name: str, scope: Scope) -> Dimension | None:

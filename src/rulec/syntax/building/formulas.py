@@ -90,7 +90,7 @@ def _bound(values: NodeValues, nodes: Sequence[ParseNode | ParseLeaf]) -> tree.B
     first, *others = (
         atom(values, child) if child.kind == "atom" else amount(values, child)
         for child in node.children
-        if isinstance(child, Branch)
+        if isinstance(child, ParseNode)
     )
     span = values.span(node)
     if leaves(node, "AT_MOST"):

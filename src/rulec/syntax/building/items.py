@@ -92,7 +92,7 @@ def value_of(values: NodeValues, node: ParseNode) -> tree.Formula:
     return formula(values, value)
 
 
-def _dates(values: Values, node: Branch) -> tree.InForce | None:
+def _dates(values: NodeValues, node: ParseNode) -> tree.InForce | None:
     result = branches(node, "in_force")
     return in_force(values, result[0]) if result else None
 

@@ -115,7 +115,7 @@ class _Block:
 
     def _add_comments(self, comments: Sequence[Comment], blanks: Sequence[bool]) -> None:
         for comment, blank in zip(comments, blanks):  # noqa: B905 - what follows may have one more
-            self._add_row(Row(" " * self.indent + comment.text), blank=blank)
+            self._add_row(LaidOutLine(" " * self.indent + comment.text), blank=blank)
 
     def _add_row(self, row: LaidOutLine, *, blank: bool) -> None:
         if blank and self.rows and not self.rows[-1].opens:
