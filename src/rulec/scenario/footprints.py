@@ -26,9 +26,9 @@ def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float]
     """Each time the middle moved: from when to when, and how far along and across the road."""
     steps = []
     for k in range(len(motion.times) - 1):
-        one, other = motion.boxes[k : k + 2]
-        if one is not None and other is not None:
-            ahead, left = _shift(one, other)
+        before, after = motion.boxes[k : k + 2]
+        if before is not None and after is not None:
+            ahead, left = _shift(before, after)
             if (ahead, left) != (0.0, 0.0):
                 steps.append((motion.times[k], motion.times[k + 1], ahead, left))
     return tuple(steps)
@@ -40,10 +40,10 @@ def displacement_within(motion: Footprints, start: float, end: float) -> tuple[f
     return _shift(boxes[0], boxes[-1]) if boxes else (0.0, 0.0)
 
 
-def _shift(left: Box, right: Box) -> tuple[float, float]:
+def _shift(before: Box, after: Box) -> tuple[float, float]:
     return (
-        (right.s_min + right.s_max - left.s_min - left.s_max) / 2,
-        (right.d_min + right.d_max - left.d_min - left.d_max) / 2,
+        (after.s_min + after.s_max - before.s_min - before.s_max) / 2,
+        (after.d_min + after.d_max - before.d_min - before.d_max) / 2,
     )
 
 
@@ -62,13 +62,13 @@ def _at(motion: Footprints, time: float) -> Box | None:
         return None
     if times[after] == time:
         return boxes[after]
-    one, other = (boxes[after - 1], boxes[after]) if after else (None, None)
-    if one is None or other is None:
+    earlier, later = (boxes[after - 1], boxes[after]) if after else (None, None)
+    if earlier is None or later is None:
         return None
     part = (time - times[after - 1]) / (times[after] - times[after - 1])
     return Box(
-        one.s_min + part * (other.s_min - one.s_min),
-        one.s_max + part * (other.s_max - one.s_max),
-        one.d_min + part * (other.d_min - one.d_min),
-        one.d_max + part * (other.d_max - one.d_max),
+        earlier.s_min + part * (later.s_min - earlier.s_min),
+        earlier.s_max + part * (later.s_max - earlier.s_max),
+        earlier.d_min + part * (later.d_min - earlier.d_min),
+        earlier.d_max + part * (later.d_max - earlier.d_max),
     )

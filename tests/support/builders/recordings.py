@@ -65,17 +65,17 @@ def lanelet(number, centre, width=4.0, **more):
     for along in ("successors", "predecessors"):
         more[along] = tuple(map(str, more.get(along, ())))
     plain = Lanelet(
-        str(number),
-        centre + half,
-        centre - half,
-        centre,
-        (),
-        (),
-        None,
-        None,
-        frozenset(),
-        frozenset(),
-        None,
+        id=str(number),
+        left=centre + half,
+        right=centre - half,
+        centre=centre,
+        successors=(),
+        predecessors=(),
+        left_of=None,
+        right_of=None,
+        types=frozenset(),
+        signs=frozenset(),
+        limit_mps=None,
     )
     return replace(plain, **more)
 

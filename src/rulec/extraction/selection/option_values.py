@@ -27,7 +27,11 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
     for text in texts:
         name, value = _pair(text, "built_up=true")
         declaration = vocabulary.declarations.get(name)
-        known = [x.name for x in vocabulary.declarations.values() if not x.parameters]
+        known = [
+            declared.name
+            for declared in vocabulary.declarations.values()
+            if not declared.parameters
+        ]
         if declaration is None:
             hint = did_you_mean(name, known)
             message = f"vocabulary `{vocabulary.name}` has no `{name}`"
@@ -79,7 +83,7 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
         ValueError: with what is wrong, for people.
     """
     known = {field.name: field.default for field in fields(Thresholds)}
-    result: dict[str, float | int] = {}
+    numbers: dict[str, float | int] = {}
     for text in texts:
         name, value = _pair(text, "near_m=200")
         if name not in known:
@@ -96,5 +100,5 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
             raise ValueError(f"`{name}` is a number from 0 on, not `{value}`")
         if isinstance(known[name], int) and number != int(number):
             raise ValueError(f"`{name}` is a whole number, not `{value}`")
-        result[name] = int(number) if isinstance(known[name], int) else number
-    return replace(Thresholds(), **result)  # type: ignore[arg-type]
+        numbers[name] = int(number) if isinstance(known[name], int) else number
+    return replace(Thresholds(), **numbers)  # type: ignore[arg-type]

@@ -20,7 +20,7 @@ from rulec.scenario.recorded.route import extended_route, lanes_beside
 from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DrivenRoad:
     """Ego's own lanelets lie one behind the other, from ``borders[i]`` to ``borders[i + 1]``.
 
@@ -46,8 +46,8 @@ class DrivenRoad:
 
     def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""
-        result = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
-        return np.clip(result, 0, len(self.rows) - 1)
+        pieces = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
+        return np.clip(pieces, 0, len(self.rows) - 1)
 
     def lanes_at(self, s: Floats) -> Flags:
         """Which lanes there are at places: the last axis is that of the lanes, from the right."""
@@ -57,8 +57,8 @@ class DrivenRoad:
     def lane_of(self, d: Floats) -> NDArray[intp]:
         """The lanes at straightened offsets; who is beside the road counts to the nearest."""
         straight = self.lanes.straight
-        result = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
-        return np.clip(result, 0, len(straight) - 2)
+        lanes = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
+        return np.clip(lanes, 0, len(straight) - 2)
 
 
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
@@ -71,23 +71,25 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     """
     whole = extended_route(recording, way)
     lanelets = tuple(recording.lanelets[number] for number in whole)
-    line = reference_line(np.concatenate([lanelet.centre for lanelet in lanelets]))
+    line = reference_line(np.concatenate([part.centre for part in lanelets]))
     borders = borders_along(lanelets, line)
     first = whole.index(way[0])
     middle = float(borders[first] + borders[first + len(way)]) / 2
     lanes = lanes_along(recording, whole, line, middle)
     outline = Box(0.0, line.length, float(lanes.straight[0]), float(lanes.straight[-1]))
-    view = TrafficView(recording, line, lanes, 0.0, 0.0, outline)
+    view = TrafficView(
+        recording=recording, line=line, lanes=lanes, ego_s=0.0, at_s=0.0, road=outline
+    )
     ((_, own_d),) = lanes.straightened(np.array([[middle, 0.0]])).tolist()
     own = int(np.clip(np.searchsorted(lanes.straight, own_d) - 1, 0, len(lanes.straight) - 2))
     return DrivenRoad(
-        tuple(_row(recording, number, own, len(lanes.straight) - 1) for number in whole),
-        own,
-        borders,
-        line,
-        lanes,
-        tuple(road_crossing.s for road_crossing in road_crossings(view)),
-        tuple(_runs(borders, [number in junctions for number in whole])),
+        rows=tuple(_row(recording, number, own, len(lanes.straight) - 1) for number in whole),
+        own_lane=own,
+        borders=borders,
+        line=line,
+        lanes=lanes,
+        crossings=tuple(part.s for part in road_crossings(view)),
+        junctions=tuple(_runs(borders, [number in junctions for number in whole])),
     )
 
 

@@ -26,9 +26,9 @@ def mirrored_recording(recording: Recording) -> Recording:
     """With ``y`` turned round, and left and right of everything exchanged. Its own inverse."""
     return replace(
         recording,
-        lanelets={number: _lanelet(lanelet) for number, lanelet in recording.lanelets.items()},
-        participants=tuple(_participant(participant) for participant in recording.participants),
-        problems=tuple(_problem(problem) for problem in recording.problems),
+        lanelets={number: _lanelet(item) for number, item in recording.lanelets.items()},
+        participants=tuple(_participant(item) for item in recording.participants),
+        problems=tuple(_problem(item) for item in recording.problems),
         side=_OTHER[recording.side],
     )
 

@@ -88,8 +88,8 @@ def _quiet() -> Iterator[None]:
     disabled = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        said = io.StringIO()
-        with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
+        output = io.StringIO()
+        with warnings.catch_warnings(), redirect_stdout(output), redirect_stderr(output):
             warnings.simplefilter("ignore")
             yield
     finally:
@@ -101,8 +101,8 @@ def _unreadable(path: Path, reason: Exception) -> RulecError:
     # Where something is missing the library stumbles over Python's None, which helps nobody
     if not words or "NoneType" in words:
         return COMMONROAD.refused(path, "something in it is missing or has an unknown name")
-    said = f"something in it does not fit (commonroad-io says {type(reason).__name__}: {words})"
-    return COMMONROAD.refused(path, said)
+    why = f"something in it does not fit (commonroad-io says {type(reason).__name__}: {words})"
+    return COMMONROAD.refused(path, why)
 
 
 def _recording(name: str, scenario: Any, problems: Any) -> Recording:
@@ -113,7 +113,8 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
         if light.active
     }
     lanelets = {
-        str(x.lanelet_id): _lanelet(x, signs, lights) for x in scenario.lanelet_network.lanelets
+        str(lanelet.lanelet_id): _lanelet(lanelet, signs, lights)
+        for lanelet in scenario.lanelet_network.lanelets
     }
     step_s = float(scenario.dt)
     if not 0 < step_s < inf:
@@ -132,10 +133,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
 
 
 def _light(cycle: Any) -> Light:
-    phases = tuple(
-        (cycle_element.state.value, int(cycle_element.duration))
-        for cycle_element in cycle.cycle_elements
-    )
+    phases = tuple((phase.state.value, int(phase.duration)) for phase in cycle.cycle_elements)
     if not phases or min(duration for _, duration in phases) <= 0:
         raise ValueError("a traffic light has a phase that does not last")
     return Light(int(cycle.time_offset), phases)
@@ -154,20 +152,20 @@ def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]
         if element.traffic_sign_element_id.name == "MAX_SPEED" and element.additional_values
     ]
     return Lanelet(
-        str(lanelet.lanelet_id),
-        _points(lanelet.left_vertices),
-        _points(lanelet.right_vertices),
-        _points(lanelet.center_vertices),
-        tuple(map(str, lanelet.successor or ())),
-        tuple(map(str, lanelet.predecessor or ())),
-        _id(lanelet.adj_left) if lanelet.adj_left_same_direction else None,
-        _id(lanelet.adj_right) if lanelet.adj_right_same_direction else None,
-        frozenset(kind.value for kind in lanelet.lanelet_type or ()),
-        frozenset(element.traffic_sign_element_id.name for element in elements),
-        min(limits, default=None),
-        tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
-        _MARKS.get(lanelet.line_marking_left_vertices.value),
-        _MARKS.get(lanelet.line_marking_right_vertices.value),
+        id=str(lanelet.lanelet_id),
+        left=_points(lanelet.left_vertices),
+        right=_points(lanelet.right_vertices),
+        centre=_points(lanelet.center_vertices),
+        successors=tuple(map(str, lanelet.successor or ())),
+        predecessors=tuple(map(str, lanelet.predecessor or ())),
+        left_of=_id(lanelet.adj_left) if lanelet.adj_left_same_direction else None,
+        right_of=_id(lanelet.adj_right) if lanelet.adj_right_same_direction else None,
+        types=frozenset(kind.value for kind in lanelet.lanelet_type or ()),
+        signs=frozenset(element.traffic_sign_element_id.name for element in elements),
+        limit_mps=min(limits, default=None),
+        lights=tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
+        left_mark=_MARKS.get(lanelet.line_marking_left_vertices.value),
+        right_mark=_MARKS.get(lanelet.line_marking_right_vertices.value),
     )
 
 

@@ -24,15 +24,19 @@ from rulec.scenario.recorded.track import rectangles
 
 def commonroad_participants(scenario: Any) -> Iterator[Participant]:
     """All obstacles of a scenario of the library's, in its order."""
-    for static_obstacle in scenario.static_obstacles:
-        yield _participant(static_obstacle, [static_obstacle.initial_state], standing=True)
-    for dynamic_obstacle in scenario.dynamic_obstacles:
-        yield _participant(dynamic_obstacle, _states_of(dynamic_obstacle), standing=False)
-    for one in scenario.environment_obstacle:
-        outline = _corners(one.occupancy_at_time(0))
-        yield Participant(str(one.obstacle_id), one.obstacle_type.value, True, {}, {0: outline})
-    for one in scenario.phantom_obstacle:
-        yield Participant(str(one.obstacle_id), "unknown", False, {}, dict(_predicted(one)))
+    for obstacle in scenario.static_obstacles:
+        yield _participant(obstacle, [obstacle.initial_state], standing=True)
+    for obstacle in scenario.dynamic_obstacles:
+        yield _participant(obstacle, _states_of(obstacle), standing=False)
+    for obstacle in scenario.environment_obstacle:
+        outline = _corners(obstacle.occupancy_at_time(0))
+        yield Participant(
+            str(obstacle.obstacle_id), obstacle.obstacle_type.value, True, {}, {0: outline}
+        )
+    for obstacle in scenario.phantom_obstacle:
+        yield Participant(
+            str(obstacle.obstacle_id), "unknown", False, {}, dict(_predicted(obstacle))
+        )
 
 
 def _states_of(obstacle: Any) -> list[Any]:

@@ -76,14 +76,16 @@ def check_form(path: Path) -> None:
         )
 
     def end(name: str) -> None:
-        one = open_ones.pop()
+        element = open_ones.pop()
         for child in _CHILDREN.get(name, ()):
-            if child not in one.children:
-                raise COMMONROAD.refused(path, f"the element `{name}` has no `{child}`", one.line)
+            if child not in element.children:
+                raise COMMONROAD.refused(
+                    path, f"the element `{name}` has no `{child}`", element.line
+                )
         fewest = _FEWEST_POINTS.get(name, 0)
-        if one.children.count("point") < fewest:
+        if element.children.count("point") < fewest:
             why = f"the element `{name}` has fewer than {fewest} points"
-            raise COMMONROAD.refused(path, why, one.line)
+            raise COMMONROAD.refused(path, why, element.line)
 
     scan(path, COMMONROAD, begin, end=end)
     if is_packed(path):

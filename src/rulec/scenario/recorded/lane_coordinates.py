@@ -114,10 +114,10 @@ def lanes_along(
         ],
         axis=1,
     )
-    some = np.flatnonzero(there.any(axis=0))
-    if not len(some):
+    existing = np.flatnonzero(there.any(axis=0))
+    if not len(existing):
         raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
-    kept = slice(some[0], some[-1] + 1)
+    kept = slice(existing[0], existing[-1] + 1)
     widths = np.stack([width for width, _ in columns], axis=1)
     first = right - widths[:, : len(on_the_right)].sum(axis=1)
     bounds = np.cumsum(np.column_stack((first, widths)), axis=1)
@@ -145,7 +145,7 @@ class _Strip:
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
     """Where along the line lanelets begin, and the last one ends."""
-    ends = np.array([lanelets[0].centre[0], *(x.centre[-1] for x in lanelets)])
+    ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
     places = np.nan_to_num(line.coordinates(ends)[:, 0])
     borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
     borders[-1] = line.length
@@ -167,7 +167,7 @@ def _usual_widths(
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
     """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
-    result = []
+    columns = []
     for k in range(max(map(len, rows))):
         present = np.array([len(row) > k for row in rows])
         own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
@@ -177,21 +177,21 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
         if known.any():
             width = np.interp(strip.grid, strip.grid[known], width[known])
         inner = inner + width if left else inner - width
-        result.append((width, present))
-    return result
+        columns.append((width, present))
+    return columns
 
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
     """The offset of the lanelets' left or right bound at the places of the grid."""
-    result = [np.empty((0, 2))]
+    parts = [np.empty((0, 2))]
     for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:
             continue
         bound = densified(lanelet.left if left else lanelet.right, _EVERY_M)
         places = strip.line.coordinates(bound)
         near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
-        result.append(places[near])
-    places = np.concatenate(result)
+        parts.append(places[near])
+    places = np.concatenate(parts)
     if not len(places):
         raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]

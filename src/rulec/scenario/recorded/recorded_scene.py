@@ -50,10 +50,12 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
     bounds = tuple(lanes.straight.tolist())
     road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
-    view = TrafficView(recording, line, lanes, ego_s, at_s, road.outline)
-    obstacles = tuple(traffic_obstacles(view, start.participant, choice.prediction))
-    told = {
-        **_traffic_signals(view, obstacles, choice),
+    view = TrafficView(
+        recording=recording, line=line, lanes=lanes, ego_s=ego_s, at_s=at_s, road=road.outline
+    )
+    on_road = tuple(traffic_obstacles(view, start.participant, choice.prediction))
+    derived = {
+        **_traffic_signals(view, on_road, choice),
         **_map_signals(view, way, own, start.step),
     }
     others = sum(participant.id != start.participant for participant in recording.participants)
@@ -61,27 +63,27 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         recording.name,
         replace(road, surfaces=road_crossings(view)),
         Ego(0.0, d, *ego_size(recording, start, choice)),
-        obstacles,
-        {name: value for name, (value, _) in told.items()},
+        on_road,
+        {name: value for name, (value, _) in derived.items()},
         step_s=STEP_S,
         about=f"{recording.form} {recording.name}",
         account=Account(
-            own,
-            others,
-            others - len(obstacles),
-            view.until_s,
-            {name: how for name, (_, how) in told.items()},
-            recording.remarks,
+            reference=own,
+            recorded=others,
+            left_out=others - len(on_road),
+            until_s=view.until_s,
+            derived={name: how for name, (_, how) in derived.items()},
+            remarks=recording.remarks,
         ),
     )
 
 
 def _traffic_signals(
-    view: TrafficView, found: Sequence[Obstacle], choice: Choice
+    view: TrafficView, on_road: Sequence[Obstacle], choice: Choice
 ) -> dict[str, tuple[SignalValue, str]]:
     # The paper's word and that of the vocabulary `road`
-    told = congested(found, view.road, choice.congested_below_kmh)
-    return {"CONGESTED": told, "congested": told}
+    derived = congested(on_road, view.road, choice.congested_below_kmh)
+    return {"CONGESTED": derived, "congested": derived}
 
 
 def _map_signals(

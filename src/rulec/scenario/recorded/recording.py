@@ -49,7 +49,7 @@ class Light:
         raise AssertionError("a remainder is smaller than what it is the remainder of")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Lanelet:
     """A piece of a lane. ``left`` and ``right`` are its bounds in the direction of travel.
 

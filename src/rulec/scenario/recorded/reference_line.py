@@ -29,7 +29,7 @@ _HAIR = 1e-9
 _Values = NDArray[float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ReferenceLine:
     """A line of straight pieces: for each where it begins, and how it and the direction run on.
 
@@ -129,15 +129,22 @@ def reference_line(corners: Points) -> ReferenceLine:
     halves = _turn(angles[:-1], angles[1:]) / 2
     first, last = np.tan(np.append(0.0, -halves)), np.tan(np.append(halves, 0.0))
     arc = np.concatenate(([0.0], np.cumsum(lengths)[:-1])) - BEYOND_M
-    return ReferenceLine(arc, extended[:-1], steps / lengths[:, None], lengths, first, last - first)
+    return ReferenceLine(
+        arc=arc,
+        start=extended[:-1],
+        ahead=steps / lengths[:, None],
+        lengths=lengths,
+        first=first,
+        change=last - first,
+    )
 
 
 def densified(points: Points, every_m: float) -> Points:
     """A line of straight pieces with further points, so that no two are farther apart."""
     parts = [points[:1]]
-    for one, other in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(other - one)) / every_m)))
-        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    for start, end in pairwise(points):
+        count = max(1, int(np.ceil(np.hypot(*(end - start)) / every_m)))
+        parts.append(start + (end - start) * (np.arange(1, count + 1) / count)[:, None])
     return np.concatenate(parts)
 
 

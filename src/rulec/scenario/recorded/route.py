@@ -51,9 +51,9 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
     """
     place = shapely.Point(state.x, state.y)
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    far = {x.id: float(shapely.distance(lanelet_area(x), place)) for x in lanes}
-    near = [x for x in lanes if far[x.id] <= _NEAR_M]
-    inside = [x for x in near if far[x.id] == 0.0]
+    far = {lanelet.id: float(shapely.distance(lanelet_area(lanelet), place)) for lanelet in lanes}
+    near = [lanelet for lanelet in lanes if far[lanelet.id] <= _NEAR_M]
+    inside = [lanelet for lanelet in near if far[lanelet.id] == 0.0]
 
     def rank(lanelet: Lanelet) -> tuple[float, float, tuple[int, str]]:
         error = abs(_turn(float(directions_beside(lanelet, np.array([place]))[0]), state.heading))
@@ -65,34 +65,34 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
 def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
     """The lanes that hold one of the places, and those beside them that lead the same way."""
     points = shapely.points(places)
-    names = {
+    holding = {
         lanelet.id
         for lanelet in recording.lanelets.values()
         if is_lane(lanelet) and bool(shapely.intersects(lanelet_area(lanelet), points).any())
     }
     return frozenset(
-        y
-        for x in names
-        for y in (
-            x,
-            *lanes_beside(recording, x, left=True),
-            *lanes_beside(recording, x, left=False),
+        own
+        for number in holding
+        for own in (
+            number,
+            *lanes_beside(recording, number, left=True),
+            *lanes_beside(recording, number, left=False),
         )
     )
 
 
 def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
     """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
-    names: list[str] = []
+    lanes: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
         number = lanelet.left_of if left else lanelet.right_of
-        if number is None or number in (start, *names) or number not in recording.lanelets:
-            return tuple(names)
+        if number is None or number in (start, *lanes) or number not in recording.lanelets:
+            return tuple(lanes)
         lanelet = recording.lanelets[number]
         if not is_lane(lanelet):
-            return tuple(names)
-        names.append(number)
+            return tuple(lanes)
+        lanes.append(number)
 
 
 def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[str, ...]:
@@ -102,20 +102,26 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     """
     lanelets = recording.lanelets
     ahead = _way_to(lanelets, start, targets)
-    ahead = _straight_on(lanelets, ahead, lambda x: x.successors, backwards=False)
-    behind = _straight_on(lanelets, [start], lambda x: x.predecessors, backwards=True, taken=ahead)
+    ahead = _straight_on(lanelets, ahead, lambda lanelet: lanelet.successors, backwards=False)
+    behind = _straight_on(
+        lanelets, [start], lambda lanelet: lanelet.predecessors, backwards=True, taken=ahead
+    )
     return (*behind[:0:-1], *ahead)
 
 
 def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
     """A way with the road before and after it, as straight as possible where that branches."""
     ahead = _straight_on(
-        recording.lanelets, [way[-1]], lambda x: x.successors, backwards=False, taken=way
+        recording.lanelets,
+        [way[-1]],
+        lambda lanelet: lanelet.successors,
+        backwards=False,
+        taken=way,
     )
     behind = _straight_on(
         recording.lanelets,
         [way[0]],
-        lambda x: x.predecessors,
+        lambda lanelet: lanelet.predecessors,
         backwards=True,
         taken=(*way, *ahead),
     )
@@ -160,13 +166,18 @@ def _straight_on(
         leaving = _end_heading(here, backwards)
         # A road does not turn back by itself, though one may turn around at its end
         options = [
-            x for x in options if abs(_turn(leaving, _end_heading(x, backwards))) < _TURNS_BACK
+            option
+            for option in options
+            if abs(_turn(leaving, _end_heading(option, backwards))) < _TURNS_BACK
         ]
         if not options:
             break
         chosen = min(
             options,
-            key=lambda x: (abs(_turn(leaving, _heading_ahead(x, backwards))), id_order(x.id)),
+            key=lambda option: (
+                abs(_turn(leaving, _heading_ahead(option, backwards))),
+                id_order(option.id),
+            ),
         )
         way.append(chosen.id)
         seen.add(chosen.id)
@@ -189,14 +200,14 @@ def _heading_ahead(lanelet: Lanelet, backwards: bool) -> float:
     centre = lanelet.centre[::-1] if backwards else lanelet.centre
     line = shapely.LineString(centre)
     end = min(line.length, _LOOK_M)
-    one, other = (line.interpolate(s) for s in (max(end - 1.0, 0.0), end))
-    return _direction((one.x, one.y), (other.x, other.y))
+    before, after = (line.interpolate(s) for s in (max(end - 1.0, 0.0), end))
+    return _direction((before.x, before.y), (after.x, after.y))
 
 
-def _direction(one: Iterable[float], other: Iterable[float]) -> float:
-    (x0, y0), (x1, y1) = one, other
+def _direction(start: Iterable[float], end: Iterable[float]) -> float:
+    (x0, y0), (x1, y1) = start, end
     return atan2(y1 - y0, x1 - x0)
 
 
-def _turn(left: float, right: float) -> float:
-    return (right - left + pi) % (2 * pi) - pi
+def _turn(before: float, after: float) -> float:
+    return (after - before + pi) % (2 * pi) - pi

@@ -37,21 +37,21 @@ def map_signals(
     each other, ``step`` the one at which time 0 is.
     """
     own = ahead[0]
-    result: dict[str, tuple[SignalValue, str]] = {}
+    signals: dict[str, tuple[SignalValue, str]] = {}
     here = f"lanelet {own.id}"
     if own.limit_mps is not None:
-        result["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
+        signals["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
     for sign, signal in _SIGNS.items():
         if sign in own.signs:
-            result[signal] = True, f"the sign of {here}"
+            signals[signal] = True, f"the sign of {here}"
     if own.types & _MOTORWAYS:
-        result["road_class"] = "motorway", f"the type of {here}"
+        signals["road_class"] = "motorway", f"the type of {here}"
     count = _COUNTS.get(lanes, "three_or_more_lanes")
-    result["lanes"] = count, f"{lanes} at ego's place that lead its way"
+    signals["lanes"] = count, f"{lanes} at ego's place that lead its way"
     lit = next((lanelet for lanelet in ahead[:LANELETS_TO_A_LIGHT] if lanelet.lights), None)
     if lit is not None:
         steps = range(step, step + round(LIGHT_FOR_S / step_s) + 1)
         shown = {light.colour_at(k) for light in lit.lights for k in steps}
         if len(shown) == 1 and (colour := shown.pop()) in _COLOURS:
-            result["light"] = _COLOURS[colour], f"the traffic lights of lanelet {lit.id}"
-    return result
+            signals["light"] = _COLOURS[colour], f"the traffic lights of lanelet {lit.id}"
+    return signals

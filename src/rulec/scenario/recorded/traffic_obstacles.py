@@ -34,7 +34,7 @@ _SPEED_OVER_S = 0.5
 _AT_ONCE = 20_000
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficView:
     """From where a recording is looked at: along which line, where ego is on it, since when."""
 
@@ -82,28 +82,30 @@ def traffic_obstacles(
     """Those that are on the road at some time from time 0 on, in the order of the file."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [participant for participant in view.recording.participants if participant.id != ego]
-    for one, steps, own in _laid_out(view, others):
+    for participant, steps, own in _laid_out(view, others):
         motions = [
             (weight, motion)
             for kind, weight in predictions.items()
-            if (motion := _motion(view, one, steps, own, kind)) is not None
+            if (motion := _motion(view, participant, steps, own, kind)) is not None
         ]
         if not motions:
             continue
         expected = weighted(motions)
         first = next(box for box in own if box is not None)
-        words = OBSTACLE_TYPES.get(one.type, OBSTACLE_TYPES["unknown"])
+        words = OBSTACLE_TYPES.get(participant.type, OBSTACLE_TYPES["unknown"])
         yield Obstacle(
-            one.id,
-            words[0],
-            first.s_max - first.s_min,
-            first.d_max - first.d_min,
-            expected.motion,
-            _walking_direction(view, one) if words[0] == PEDESTRIAN else None,
-            _signals(one),
-            words[1:],
-            expected.weight,
-            expected.alternatives,
+            id=participant.id,
+            type=words[0],
+            length=first.s_max - first.s_min,
+            width=first.d_max - first.d_min,
+            motion=expected.motion,
+            walking_direction=_walking_direction(view, participant)
+            if words[0] == PEDESTRIAN
+            else None,
+            signals=_signals(participant),
+            broader=words[1:],
+            weight=expected.weight,
+            alternatives=expected.alternatives,
         )
 
 
@@ -120,9 +122,9 @@ def _laid_out(
         waiting.append((participant, steps))
         count += len(steps)
         if count >= _AT_ONCE or number == len(others):
-            boxes = iter(view.boxes([x.outlines[k] for x, known in waiting for k in known]))
-            for each, known in waiting:
-                yield each, known, [next(boxes) for _ in known]
+            boxes = iter(view.boxes([body.outlines[k] for body, known in waiting for k in known]))
+            for participant, known in waiting:
+                yield participant, known, [next(boxes) for _ in known]
             waiting, count = [], 0
 
 
@@ -185,7 +187,7 @@ def _moved(box: Box, along: float) -> Box:
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
     """Where a pedestrian looks who never moves; nothing if motion tells."""
     state = next(iter(participant.states.values()), None)
-    if state is None or len({(x.x, x.y) for x in participant.states.values()}) > 1:
+    if state is None or len({(own.x, own.y) for own in participant.states.values()}) > 1:
         return None
     place = view.line.coordinates(np.array([[state.x, state.y]]))
     turn = state.heading - view.line.heading_at(float(np.nan_to_num(place[0, 0])))

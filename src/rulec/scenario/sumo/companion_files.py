@@ -46,11 +46,11 @@ def net_beside(path: Path, head: FcdHead) -> Path:
     written = _beside(path, head.net) if head.net else None
     if written is not None:
         return written
-    paths = [*path.parent.glob("*.net.xml"), *path.parent.glob("*.net.xml.gz")]
-    if len(paths) == 1:
-        return paths[0]
-    if paths:
-        why = f"there are several nets beside it: {named(sorted(path.name for path in paths))}"
+    nets = [*path.parent.glob("*.net.xml"), *path.parent.glob("*.net.xml.gz")]
+    if len(nets) == 1:
+        return nets[0]
+    if nets:
+        why = f"there are several nets beside it: {named(sorted(net.name for net in nets))}"
     elif head.net:
         why = f"`{_name(head.net)}`, which it was made with, is not beside it"
     else:
@@ -64,7 +64,7 @@ def net_beside(path: Path, head: FcdHead) -> Path:
 
 def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
     """The files beside floating-car data that may describe the types of vehicles."""
-    written = [result for name in head.demand if (result := _beside(path, name)) is not None]
+    written = [file for name in head.demand if (file := _beside(path, name)) is not None]
     if written:
         return tuple(written)
     only = [*path.parent.glob("*.rou.xml"), *path.parent.glob("*.rou.xml.gz")]

@@ -49,7 +49,7 @@ class FloatingCarData:
 
     head: FcdHead = field(default_factory=FcdHead)
     moments: list[int] = field(default_factory=list)
-    courses: dict[str, FcdTrack] = field(default_factory=dict)
+    tracks: dict[str, FcdTrack] = field(default_factory=dict)
     on: dict[str, tuple[str, int]] = field(default_factory=dict)
 
 
@@ -117,26 +117,26 @@ def _add(
     # NaN is not below anything
     if not (max(map(abs, row)) < FARTHEST_M and sum(row) == sum(row)):
         raise _wrong(name, attributes, parser, path)
-    course = data.courses.get(key)
-    if course is not None and course.element != name:
+    track = data.tracks.get(key)
+    if track is not None and track.element != name:
         # SUMO lets a person be called like a vehicle; here ids are one for all
         key = f"{name} {key}"
-        course = data.courses.get(key)
+        track = data.tracks.get(key)
     moment = len(data.moments) - 1
-    if course is None:
+    if track is None:
         if not 0 < len(key) <= LONGEST_ID:
             element = XmlElement(name, attributes, parser, path, FCD)
             raise element.wrong(f"the id of a `{name}` is empty, or longer than {LONGEST_ID}")
-        course = data.courses[key] = FcdTrack(name, attributes.get("type", ""))
-    elif course.moments[-1] == moment:
+        track = data.tracks[key] = FcdTrack(name, attributes.get("type", ""))
+    elif track.moments[-1] == moment:
         element = XmlElement(name, attributes, parser, path, FCD)
         raise element.wrong(f"`{short(key)}` is twice in one time step")
-    course.moments.append(moment)
-    course.rows.extend(row)
-    course.accelerations.append(acceleration if abs(acceleration) < FARTHEST_M else float("nan"))
+    track.moments.append(moment)
+    track.rows.extend(row)
+    track.accelerations.append(acceleration if abs(acceleration) < FARTHEST_M else float("nan"))
     if "signals" in attributes:
         number = XmlElement(name, attributes, parser, path, FCD).number("signals")
-        course.lamps[moment] = int(number)
+        track.lamps[moment] = int(number)
     place = attributes.get("lane") or attributes.get("edge")
     if place and place not in data.on:
         data.on[place] = ("lane" if attributes.get("lane") else "edge", parser.CurrentLineNumber)

@@ -63,23 +63,30 @@ def time_step(path: Path, moments: list[int]) -> float:
 
 
 def fcd_participants(
-    key: str, course: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
+    key: str, track_rows: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
 ) -> Iterator[Participant]:
     """A vehicle, person or container; who vanishes and comes back is another one then.
 
     ``steps``: the time step of every moment of the file.
     """
-    own = steps[np.array(course.moments, dtype=int64)]
-    rows = _centres(np.array(course.rows, dtype=float).reshape(-1, 4), kind.length)
-    rows = np.column_stack((rows, _accelerations(course, rows[:, 3], own, step_s)))
-    lamps = {int(steps[moment]): _lit(bits) for moment, bits in course.lamps.items()}
+    own = steps[np.array(track_rows.moments, dtype=int64)]
+    rows = _centres(np.array(track_rows.rows, dtype=float).reshape(-1, 4), kind.length)
+    rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
+    lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
     starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
         name = key if number == 1 else f"{key}_{number}"
         states = TrackStates(track)
         own_lamps = _between(lamps, track)
-        yield Participant(name, kind.kind, False, states, TrackOutlines(track), own_lamps)
+        yield Participant(
+            id=name,
+            type=kind.kind,
+            standing=False,
+            states=states,
+            outlines=TrackOutlines(track),
+            lamps=own_lamps,
+        )
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
@@ -92,12 +99,12 @@ def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
 
 
 def _accelerations(
-    course: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
+    track_rows: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
 ) -> NDArray[float64]:
     """As the file says; where it does not, the change of speed since the step before."""
-    said = np.array(course.accelerations, dtype=float)
+    stated = np.array(track_rows.accelerations, dtype=float)
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
-    return np.where(np.isnan(said), changes, said)
+    return np.where(np.isnan(stated), changes, stated)
 
 
 def _lit(bits: int) -> frozenset[Lamp]:

@@ -53,27 +53,29 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     for connection in net.connections:
         links[connection.start].append(connection)
         entries[connection.end].append(connection)
-    result = {}
+    lanelets = {}
     for lane in net.lanes.values():
         if lane.id not in there:
             continue
         left, right, centre = _lines(lane, shapes[lane.id])
         towards_left = 1 if net.side == "right" else -1
-        result[lane.id] = Lanelet(
-            lane.id,
-            left,
-            right,
-            centre,
-            tuple(after[lane.id]),
-            tuple(before[lane.id]),
-            _neighbour(lane, towards_left, there),
-            _neighbour(lane, -towards_left, there),
-            frozenset(_types(lane, junctions, entries[lane.id])),
-            frozenset({"STOP"} if any(x.state in _STOPS for x in links[lane.id]) else ()),
-            limits.get(lane.id),
-            tuple(lights.get(lane.id, ())),
+        lanelets[lane.id] = Lanelet(
+            id=lane.id,
+            left=left,
+            right=right,
+            centre=centre,
+            successors=tuple(after[lane.id]),
+            predecessors=tuple(before[lane.id]),
+            left_of=_neighbour(lane, towards_left, there),
+            right_of=_neighbour(lane, -towards_left, there),
+            types=frozenset(_types(lane, junctions, entries[lane.id])),
+            signs=frozenset(
+                {"STOP"} if any(link.state in _STOPS for link in links[lane.id]) else ()
+            ),
+            limit_mps=limits.get(lane.id),
+            lights=tuple(lights.get(lane.id, ())),
         )
-    return result
+    return lanelets
 
 
 def _shape(lane: NetLane) -> Points:
@@ -131,7 +133,9 @@ def _limits(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, float]:
     for lane in net.lanes.values():
         origin, seen = lane, {lane.id}
         while origin.edge.function == "internal":
-            earlier = next((x for x in before.get(origin.id, ()) if x not in seen), None)
+            earlier = next(
+                (start for start in before.get(origin.id, ()) if start not in seen), None
+            )
             if earlier is None:
                 break
             origin = net.lanes[earlier]
@@ -161,7 +165,7 @@ def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> 
     permitted = _permitted(lane)
     if lane.edge.function == "crossing":
         # Where walkers have to give way there is no crossing that gives them priority
-        waits = entries and all(x.state == _GIVES_WAY and not x.light for x in entries)
+        waits = entries and all(entry.state == _GIVES_WAY and not entry.light for entry in entries)
         yield "sidewalk" if waits else "crosswalk"
     elif lane.edge.function == "walkingarea" or (permitted and permitted <= _WALKERS):
         yield "sidewalk"
@@ -178,7 +182,7 @@ def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> 
 
 
 def _rails() -> frozenset[str]:
-    return frozenset(one for one in _ALL if one.startswith("rail")) | {"tram", "subway", "ship"}
+    return frozenset(name for name in _ALL if name.startswith("rail")) | {"tram", "subway", "ship"}
 
 
 def _permitted(lane: NetLane) -> frozenset[str]:

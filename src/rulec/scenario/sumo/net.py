@@ -32,7 +32,7 @@ class NetEdge:
     end: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NetLane:
     """``index`` counts from the kerb on; ``shape`` is the middle, of a walking area the outline."""
 
@@ -46,7 +46,7 @@ class NetLane:
     disallow: str | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NetConnection:
     """From a lane to the next one, over ``via`` within a junction; ``light`` and link number."""
 
@@ -148,14 +148,14 @@ def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
     if width > WIDEST_M:
         raise element.wrong(f"a lane is {width:g} m wide", f"{WIDEST_M:g} m at most")
     return NetLane(
-        element.text("id"),
-        edge,
-        int(element.number("index")),
-        np.array(places, dtype=float),
-        width,
-        element.positive("speed"),
-        element.attributes.get("allow"),
-        element.attributes.get("disallow"),
+        id=element.text("id"),
+        edge=edge,
+        index=int(element.number("index")),
+        shape=np.array(places, dtype=float),
+        width=width,
+        speed=element.positive("speed"),
+        allow=element.attributes.get("allow"),
+        disallow=element.attributes.get("disallow"),
     )
 
 
@@ -165,7 +165,12 @@ def _connection(element: XmlElement) -> NetConnection:
     known = element.attributes
     link = int(element.number("linkIndex", -1.0))
     return NetConnection(
-        start, end, known.get("via", ""), known.get("state", ""), known.get("tl", ""), link
+        start=start,
+        end=end,
+        via=known.get("via", ""),
+        state=known.get("state", ""),
+        light=known.get("tl", ""),
+        link=link,
     )
 
 

@@ -38,7 +38,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     if data.head.geographic:
         why = "its places are geographic, degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
-    if not data.courses:
+    if not data.tracks:
         raise FCD.refused(path, "nobody is in it")
     net_path = net_beside(path, data.head) if net_path is None else net_path
     net = read_net(net_path)
@@ -50,14 +50,14 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     lanelets = net_lanelets(net, step_s)
     _check_near(path, participants, lanelets.values())
     return Recording(
-        path.name.split(".")[0] or path.name,
-        step_s,
-        lanelets,
-        participants,
-        (),
-        "SUMO data",
-        net.side,
-        tuple(_remarks(unknown, net)),
+        name=path.name.split(".")[0] or path.name,
+        step_s=step_s,
+        lanelets=lanelets,
+        participants=participants,
+        problems=(),
+        form="SUMO data",
+        side=net.side,
+        remarks=tuple(_remarks(unknown, net)),
     )
 
 
@@ -66,11 +66,11 @@ def _participants(
 ) -> Iterator[Participant]:
     step = round(step_s * _MICROSECONDS)
     steps = np.array(data.moments, dtype=int64) // step
-    for key, course in data.courses.items():
-        kind, known = vehicle_type(course.type, course.element, types)
+    for key, track in data.tracks.items():
+        kind, known = vehicle_type(track.type, track.element, types)
         if not known:
-            unknown.add(f"`{short(course.type)}` ({kind.kind}, {kind.length:g} m)")
-        yield from fcd_participants(key, course, kind, steps, step_s)
+            unknown.add(f"`{short(track.type)}` ({kind.kind}, {kind.length:g} m)")
+        yield from fcd_participants(key, track, kind, steps, step_s)
 
 
 def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
@@ -110,8 +110,8 @@ def _check_near(
         if (place < low).any() or (place > high).any():
             raise OTHER_NET.error(
                 SourceLocation(str(path)),
-                f"`{short(participant.id)}` is at x = {state.x:g}, y = {state.y:g}, "
-                "far from all roads of the net",
+                f"`{short(participant.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all "
+                "roads of the net",
                 help="have SUMO write places in the net's own metres, without "
                 "--fcd-output.geo and --fcd-output.utm",
             )

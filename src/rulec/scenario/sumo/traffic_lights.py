@@ -26,16 +26,16 @@ def lane_lights(net: SumoNet, step_s: float) -> dict[str, list[Light]]:
 
     A light that reacts to traffic, or has several programmes, has none that the net could tell.
     """
-    result: dict[str, list[Light]] = {}
+    lights: dict[str, list[Light]] = {}
     for connection in net.connections:
         programmes = net.programmes.get(connection.light, [])
         if len(programmes) != 1 or programmes[0] is None:
             continue
         light = _light(programmes[0], connection.link, step_s)
-        known = result.setdefault(connection.start, [])
+        known = lights.setdefault(connection.start, [])
         if light is not None and light not in known:
             known.append(light)
-    return result
+    return lights
 
 
 def unknown_lights(net: SumoNet) -> list[str]:

@@ -84,7 +84,7 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
     Raises:
         RulecError: R0610 if a file is broken.
     """
-    vehicle_types: dict[str, VehicleType] = {}
+    types: dict[str, VehicleType] = {}
     for path in files:
         root = root_of(path, DEMAND)
         if root in _ROOTS:
@@ -99,10 +99,10 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
             ) -> None:
                 if name == "vType":
                     element = XmlElement(name, attributes, parser, path, form)
-                    vehicle_types[element.text("id")] = _described(element)
+                    types[element.text("id")] = _described(element)
 
             scan(path, form, begin)
-    return vehicle_types
+    return types
 
 
 def _described(element: XmlElement) -> VehicleType:

@@ -51,15 +51,15 @@ def to_scenario(raw: Mapping[str, object], name: str, findings: Findings) -> Sce
     if findings.errors or top is None or road is None or ego is None:
         raise RulecError(findings.errors)
     return Scenario(
-        top.name or name,
-        road,
-        ego,
-        tuple(obstacle for obstacle, _ in obstacles),
-        signals,
-        goal,
-        top.horizon_s,
-        top.step_s,
-        top.about,
+        name=top.name or name,
+        road=road,
+        ego=ego,
+        obstacles=tuple(obstacle for obstacle, _ in obstacles),
+        signals=signals,
+        goal=goal,
+        horizon_s=top.horizon_s,
+        step_s=top.step_s,
+        about=top.about,
     )
 
 

@@ -48,11 +48,11 @@ class TomlText:
         excerpt = self.source.line(line)
         start = len(excerpt) - len(excerpt.lstrip())
         end = len(excerpt.rstrip())
-        return SourceLocation(self.source.name, line, start + 1, line, end + 1, excerpt)
+        return SourceLocation(self.source.name, line, start + 1, line, end + 1, excerpt=excerpt)
 
     @cached_property
     def _lines(self) -> dict[tuple[str, int, str | None], int]:
-        result: dict[tuple[str, int, str | None], int] = {}
+        lines: dict[tuple[str, int, str | None], int] = {}
         counts: dict[str, int] = {}
         heading, number = "", 0
         for line, text in enumerate(self.source.text.split("\n"), start=1):
@@ -62,7 +62,7 @@ class TomlText:
                     counts[heading] = counts.get(heading, 0) + 1
                 owner = heading if heading in counts else heading.rpartition(".")[0]
                 number = counts.get(owner, 0)
-                result.setdefault((heading, number, None), line)
+                lines.setdefault((heading, number, None), line)
             elif match := _KEY.match(text):
-                result.setdefault((heading, number, match.group(2)), line)
-        return result
+                lines.setdefault((heading, number, match.group(2)), line)
+        return lines

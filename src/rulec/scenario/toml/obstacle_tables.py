@@ -34,19 +34,21 @@ def read_obstacles(raw: object, findings: Findings) -> tuple[LocatedObstacle, ..
             _check_unique(name, number, numbers, place, findings)
         if table is None:
             continue
-        expected = read_predictions(table, item, place, ahead, findings, _motion)
+        expected = read_predictions(
+            table, item, place, before=ahead, findings=findings, motion_of=_motion
+        )
         signals = TomlTable("obstacle.signals", number, place.words)
         values = check_signals(table.signals, signals, findings)
         if expected is None:
             continue
         obstacle = Obstacle(
-            table.id,
-            table.type,
-            table.length,
-            table.width,
-            expected.motion,
-            table.walking_direction,
-            values,
+            id=table.id,
+            type=table.type,
+            length=table.length,
+            width=table.width,
+            motion=expected.motion,
+            walking_direction=table.walking_direction,
+            signals=values,
             weight=expected.weight,
             alternatives=expected.alternatives,
         )
@@ -119,7 +121,14 @@ def _motion(
             way_out="change the sign of `lateral_speed`, or leave `until_d` out",
         )
         return None
-    return ConstantAcceleration(table.s, table.d, table.speed, table.acceleration, sideways, until)
+    return ConstantAcceleration(
+        s=table.s,
+        d=table.d,
+        speed=table.speed,
+        acceleration=table.acceleration,
+        lateral_speed=sideways,
+        until_d=until,
+    )
 
 
 def _trajectory(

@@ -22,6 +22,7 @@ def read_predictions(
     table: RawObstacle,
     item: Mapping[str, object],
     place: TomlTable,
+    *,
     before: int,
     findings: Findings,
     motion_of: ReadMotion,
@@ -43,7 +44,7 @@ def read_predictions(
             way_out="give each prediction a `trajectory` of its own",
         )
         return None
-    result: list[tuple[Fraction, Motion]] = []
+    motions: list[tuple[Fraction, Motion]] = []
     for number, raw in enumerate(table.prediction, start=1):
         words = f"{place.words}, prediction {number}"
         here = TomlTable("obstacle.prediction", before + number, words)
@@ -57,10 +58,10 @@ def read_predictions(
         values = {name: getattr(prediction, name) for name in own}
         motion = motion_of(msgspec.structs.replace(table, **values), own, here, findings)
         if motion is not None:
-            result.append((Fraction(str(prediction.weight)), motion))
-    if len(result) < len(table.prediction):
+            motions.append((Fraction(str(prediction.weight)), motion))
+    if len(motions) < len(table.prediction):
         return None
-    total = sum((weight for weight, _ in result), Fraction(0))
+    total = sum((weight for weight, _ in motions), Fraction(0))
     if not is_distribution(total):
         findings.add(
             INCONSISTENT_SCENARIO,
@@ -69,4 +70,4 @@ def read_predictions(
             expected="weights that add up to 1",
         )
         return None
-    return weighted(result)
+    return weighted(motions)
