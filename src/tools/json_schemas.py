@@ -10,7 +10,7 @@ import msgspec
 
 from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.monitoring.online.snapshot import SavedMonitor
-from rulec.report.findings.code_pages import CodeData
+from rulec.report.findings.code_json import CodeData
 from rulec.report.findings.diagnostics_json import FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_json import ManeuversDocument

@@ -36,7 +36,10 @@ def command(code: str | None, every: bool, output_format: str) -> None:
     codes = [*all_codes().values()] if named is None else [named]
     match output_format:
         case "json":
-            print_result(code_pages.as_json(codes))
+            # Only this format needs msgspec, 8 of the 54 ms that the command takes.
+            from rulec.report.findings.code_json import as_json
+
+            print_result(as_json(codes))
         case "markdown" if named is not None:
             print_result(f"# {named.code}: {named.title}\n\n{code_pages.as_markdown(named)}")
         case "markdown":

@@ -1,13 +1,12 @@
-"""Explanations of codes as text, Markdown and JSON, and the page docs/codes.md."""
+"""Explanations of codes as text and Markdown, and the page docs/codes.md."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from textwrap import fill, indent
 
 from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.findings.code_registry import STAGES, codes_of_stage
-from rulec.report.json_document import Document, as_indented
 
 _KINDS: dict[ExampleKind, str] = {
     "rules": "to check",
@@ -66,34 +65,6 @@ def as_markdown(code: Code) -> str:
             f"{head}:\n\n```{_FENCES[code.kind]} {head.split()[0].lower()}\n{example}\n```"
         )
     return "\n\n".join(parts)
-
-
-class CodeData(Document, frozen=True, kw_only=True):
-    """A message's code with its explanation; examples are empty where there can be none."""
-
-    code: str
-    title: str
-    why: str
-    kind: ExampleKind
-    bad: str
-    good: str
-
-
-def as_json(codes: Iterable[Code]) -> str:
-    """Write a list with an object for each code."""
-    return as_indented(
-        [
-            CodeData(
-                code=code.code,
-                title=code.title,
-                why=code.why,
-                kind=code.kind,
-                bad=code.bad,
-                good=code.good,
-            )
-            for code in codes
-        ]
-    )
 
 
 def as_page() -> str:

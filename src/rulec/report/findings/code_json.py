@@ -1,0 +1,36 @@
+"""Explanations of codes as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rulec.diagnostics.code import Code, ExampleKind
+from rulec.report.json_document import Document, as_indented
+
+
+class CodeData(Document, frozen=True, kw_only=True):
+    """A message's code with its explanation; examples are empty where there can be none."""
+
+    code: str
+    title: str
+    why: str
+    kind: ExampleKind
+    bad: str
+    good: str
+
+
+def as_json(codes: Iterable[Code]) -> str:
+    """Write a list with an object for each code."""
+    return as_indented(
+        [
+            CodeData(
+                code=code.code,
+                title=code.title,
+                why=code.why,
+                kind=code.kind,
+                bad=code.bad,
+                good=code.good,
+            )
+            for code in codes
+        ]
+    )
