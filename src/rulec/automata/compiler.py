@@ -131,13 +131,13 @@ def build_all(
         # Facts that contradict each other do so in every rule.
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
-        rulebook.name,
-        rulebook.vocabulary,
-        tuple(compiled),
-        rulebook.title,
-        rulebook.law,
-        rulebook.as_of,
-        rulebook.sources,
+        name=rulebook.name,
+        vocabulary=rulebook.vocabulary,
+        rules=tuple(compiled),
+        title=rulebook.title,
+        law=rulebook.law,
+        as_of=rulebook.as_of,
+        sources=rulebook.sources,
         rulec=__version__,
         spot=spot,
         semantics=rulebook.semantics,
@@ -213,19 +213,27 @@ def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
     reads = reads_of(formula, vocabulary)
     instances = axiom_instances(rule.variables, rulebook.axioms, vocabulary)
     groups = axiom_groups(propositions_of(formula), instances, vocabulary)
-    return Job(rule.name, formula, reads, tuple(remarks), rulebook.semantics, groups, cpu_limit_s)
+    return Job(
+        name=rule.name,
+        formula=formula,
+        reads=reads,
+        remarks=tuple(remarks),
+        semantics=rulebook.semantics,
+        groups=groups,
+        cpu_s=cpu_limit_s,
+    )
 
 
 def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
     return CompiledRule(
-        rule.name,
-        rule.strength,
-        rule.variables,
-        rule.cite,
-        rule.says,
-        rule.formula,
-        done.machine,
-        done.hoa,
+        name=rule.name,
+        strength=rule.strength,
+        variables=rule.variables,
+        cite=rule.cite,
+        says=rule.says,
+        formula=rule.formula,
+        machine=done.machine,
+        hoa=done.hoa,
         step_s=step,
         level=rule.level,
         weight=rule.weight,

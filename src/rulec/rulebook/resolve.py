@@ -84,21 +84,21 @@ def resolve(
         return None, tuple(mistakes)
     semantics = [book.semantics.kind for book in books if book.semantics]
     rulebook = Rulebook(
-        file.name.text,
-        symbols.vocabulary(file.name.text),
-        tuple(good),
-        file.title.text.value if file.title else "",
-        file.law.text.value if file.law else "",
-        file.law.as_of if file.law else "",
-        sources,
-        semantics[-1] if semantics else "stutter",
-        constants.traffic,
-        tuple(base.name.text for base in reversed(bases) if base.name),
-        levels,
-        priorities,
-        tuple(laid.remarks),
-        at,
-        tuple(axioms),
+        name=file.name.text,
+        vocabulary=symbols.vocabulary(file.name.text),
+        rules=tuple(good),
+        title=file.title.text.value if file.title else "",
+        law=file.law.text.value if file.law else "",
+        as_of=file.law.as_of if file.law else "",
+        sources=sources,
+        semantics=semantics[-1] if semantics else "stutter",
+        traffic=constants.traffic,
+        extends=tuple(base.name.text for base in reversed(bases) if base.name),
+        levels=levels,
+        priorities=priorities,
+        remarks=tuple(laid.remarks),
+        at=at,
+        axioms=tuple(axioms),
     )
     return rulebook, tuple(mistakes)
 

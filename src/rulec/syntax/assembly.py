@@ -61,27 +61,27 @@ def assemble_rule(
 
     certainty = value("certainty", str)
     rule = tree.RuleItem(
-        head.strength,
-        head.name,
-        head.variables,
-        formula("require"),
-        value("cite", tree.Text),
-        value("says", tree.Text),
-        tuple(part for part in parts if isinstance(part, tree.ExampleItem)),
-        complete,
-        span,
-        head.level,
-        head.weight,
-        head.override,
-        tuple(
+        strength=head.strength,
+        name=head.name,
+        variables=head.variables,
+        require=formula("require"),
+        cite=value("cite", tree.Text),
+        says=value("says", tree.Text),
+        examples=tuple(part for part in parts if isinstance(part, tree.ExampleItem)),
+        complete=complete,
+        span=span,
+        level=head.level,
+        weight=head.weight,
+        override=head.override,
+        unless=tuple(
             part[1]
             for part in parts
             if isinstance(part, tuple) and isinstance(part[1], tree.Unless)
         ),
-        formula("when"),
-        value("source", tree.Text),
-        cast('Literal["", "verified", "secondary", "unverified"]', certainty or ""),
-        value("in", tree.InForce),
+        when=formula("when"),
+        source=value("source", tree.Text),
+        certainty=cast('Literal["", "verified", "secondary", "unverified"]', certainty or ""),
+        in_force=value("in", tree.InForce),
     )
     return rule, mistakes
 
@@ -107,19 +107,19 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
         mistakes += [diagnostic for diagnostic in _misplaced(parts) if diagnostic.place not in said]
         mistakes += _no_rule(parts)
     file = tree.File(
-        kind,
-        None if file_line is None else file_line.name,
-        _first(parts, tree.TitleLine),
-        _first(parts, tree.LawLine),
-        tuple(part for part in parts if isinstance(part, tree.UseLine)),
-        tuple(part for part in parts if not isinstance(part, _Header)),
-        not any(isinstance(part, tree.BrokenItem) and _may_use(part) for part in parts),
-        Span(source, 0, len(source.text)),
-        _first(parts, tree.ExtendsLine),
-        _first(parts, tree.TrafficLine),
-        _first(parts, tree.SemanticsLine),
-        _first(parts, tree.StepLine),
-        tuple(part for part in parts if isinstance(part, tree.PriorityLine)),
+        kind=kind,
+        name=None if file_line is None else file_line.name,
+        title=_first(parts, tree.TitleLine),
+        law=_first(parts, tree.LawLine),
+        uses=tuple(part for part in parts if isinstance(part, tree.UseLine)),
+        items=tuple(part for part in parts if not isinstance(part, _Header)),
+        complete=not any(isinstance(part, tree.BrokenItem) and _may_use(part) for part in parts),
+        span=Span(source, 0, len(source.text)),
+        extends=_first(parts, tree.ExtendsLine),
+        traffic=_first(parts, tree.TrafficLine),
+        semantics=_first(parts, tree.SemanticsLine),
+        step=_first(parts, tree.StepLine),
+        priorities=tuple(part for part in parts if isinstance(part, tree.PriorityLine)),
     )
     return file, mistakes
 

@@ -76,29 +76,29 @@ def translate_rule(
         return None, [_with_change(mistake, entry) for mistake in mistakes]
     dates = item.in_force or tree.InForce()
     rule = Rule(
-        item.name.text,
-        item.strength or "hard",
-        tuple(
+        name=item.name.text,
+        strength=item.strength or "hard",
+        variables=tuple(
             Variable(variable.name.text, variable.type.text)
             for variable in item.variables
             if variable.type
         ),
-        formula,
-        item.cite.value if item.cite else "",
-        item.says.value if item.says else "",
-        tuple(examples),
-        item.span,
-        item.level.text if item.level else "",
-        weight,
-        item.source.value if item.source else "",
-        item.certainty,
-        dates.since,
-        dates.until,
-        entry.book.name.text if entry.book.name else "",
-        step,
-        parts.required if parts.exemptions or parts.condition else None,
-        parts.exemptions,
-        parts.condition,
+        formula=formula,
+        cite=item.cite.value if item.cite else "",
+        says=item.says.value if item.says else "",
+        examples=tuple(examples),
+        span=item.span,
+        level=item.level.text if item.level else "",
+        weight=weight,
+        source=item.source.value if item.source else "",
+        certainty=item.certainty,
+        in_force_from=dates.since,
+        in_force_until=dates.until,
+        book=entry.book.name.text if entry.book.name else "",
+        step_s=step,
+        required=parts.required if parts.exemptions or parts.condition else None,
+        exemptions=parts.exemptions,
+        condition=parts.condition,
     )
     if rule.examples:
         try:

@@ -45,16 +45,16 @@ def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope)
             if scope.symbols.items[what.name].default is None:
                 needed.setdefault((what.name, what.arguments), what)
     return Example(
-        example.accepts,
-        tuple(_state(state, needed, inside) for state in example.states),
-        example.label,
-        tuple(
+        accepts=example.accepts,
+        states=tuple(_state(state, needed, inside) for state in example.states),
+        label=example.label,
+        objects=tuple(
             Variable(object_.name.text, object_.type.text)
             for object_ in example.objects
             if object_.type
         ),
-        example.span,
-        tuple(state.span for state in example.states),
+        span=example.span,
+        state_spans=tuple(state.span for state in example.states),
     )
 
 

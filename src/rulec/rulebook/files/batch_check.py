@@ -77,7 +77,9 @@ def _findings(
     place = "" if path is _STANDARD_INPUT else str(path)
     folders = tuple(str(folder) for folder in search_path)
     today = date.today().isoformat()  # noqa: DTZ011 - the reader's own day
-    question = CheckQuestion(str(path), place, data, folders, at, today)
+    question = CheckQuestion(
+        name=str(path), path=place, data=data, search_path=folders, at=at, day=today
+    )
     known = recall(question) if recalls else None
     if known is not None:
         return known

@@ -140,14 +140,14 @@ def _diagnostic(data: dict[str, Any]) -> Diagnostic:
     place = data["place"]
     labels = tuple(Label(SourceLocation(**one["place"]), one["message"]) for one in data["labels"])
     return Diagnostic(
-        data["code"],
-        data["message"],
-        None if place is None else SourceLocation(**place),
-        data["expected"],
-        data["help"],
-        labels,
-        tuple(data["notes"]),
-        data["severity"],
+        code=data["code"],
+        message=data["message"],
+        place=None if place is None else SourceLocation(**place),
+        expected=data["expected"],
+        help=data["help"],
+        labels=labels,
+        notes=tuple(data["notes"]),
+        severity=data["severity"],
     )
 
 

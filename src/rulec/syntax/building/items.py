@@ -133,7 +133,12 @@ def declaration(values: NodeValues, node: ParseNode) -> tree.Declaration:
                 number = -number
             unit = leaf_of(node, "UNIT")
             return tree.QuantityItem(
-                names[0], parameters(values, node), unit.text, number, span, values.span(unit)
+                name=names[0],
+                parameters=parameters(values, node),
+                unit=unit.text,
+                default=number,
+                span=span,
+                unit_span=values.span(unit),
             )
         case "fact_item":
             return tree.FactItem(value_of(values, node), span)

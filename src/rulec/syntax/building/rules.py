@@ -50,12 +50,12 @@ def rule_head(values: NodeValues, node: ParseNode) -> RuleHead:
     name, *level = values.names(node)
     hard, soft = leaves(node, "HARD"), leaves(node, "SOFT")
     return RuleHead(
-        "hard" if hard else "soft" if soft else None,
-        name,
-        parameters(values, node),
-        level[0] if level else None,
-        weight(values, node),
-        bool(leaves(node, "OVERRIDE")),
+        strength="hard" if hard else "soft" if soft else None,
+        name=name,
+        variables=parameters(values, node),
+        level=level[0] if level else None,
+        weight=weight(values, node),
+        override=bool(leaves(node, "OVERRIDE")),
     )
 
 
