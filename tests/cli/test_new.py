@@ -6,7 +6,7 @@ from datetime import date
 import pytest
 
 from rulec.cli.main import main
-from rulec.rulebook.files.template import new_rulebook
+from rulec.rulebook.template import new_rulebook
 
 
 def test_what_it_writes_checks_tests_and_compiles(tmp_path, monkeypatch, capsys):

@@ -93,7 +93,7 @@ def test_diagnostics_are_made_by_codes():
     made = {path.relative_to(ROOT).as_posix() for path in TREES if calls(TREES[path], "Diagnostic")}
     assert made == {
         "src/rulec/diagnostics/code.py",
-        "src/rulec/rulebook/files/check_cache.py",  # reads what one has made
+        "src/rulec/rulebook/batch/check_cache.py",  # reads what one has made
     }
 
 

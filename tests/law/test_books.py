@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.rulebook.files.batch_format import formatted
+from rulec.rulebook.batch.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 

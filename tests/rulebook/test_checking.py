@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.files.batch_check import check, find_sources
+from rulec.rulebook.batch.batch_check import check, find_sources
 from rulec.rulebook.loader import diagnose, read_rulebook
 from rulec.syntax import decode, parse
 

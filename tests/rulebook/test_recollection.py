@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from rulec.rulebook import loader
-from rulec.rulebook.files import batch_check, check_cache
-from rulec.rulebook.files.check_cache import CheckQuestion, cache_folder, recall, remember
+from rulec.rulebook.batch import batch_check, check_cache
+from rulec.rulebook.batch.check_cache import CheckQuestion, cache_folder, recall, remember
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require p }\n"

@@ -6,7 +6,7 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.files.template import new_rulebook
+from rulec.rulebook.template import new_rulebook
 from rulec.syntax import decode
 from rulec.syntax.formatting import format_source
 

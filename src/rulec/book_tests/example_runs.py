@@ -14,8 +14,8 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import columns_of, run
-from rulec.rulebook.examples.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.model import Example, Rule, Rulebook
+from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
 
 

@@ -34,7 +34,7 @@ def command(
     from rulec.files import MAX_SOURCE_BYTES
     from rulec.report.findings.finding_formats import render
     from rulec.report.text.console import print_diagnostics, print_result, wants_color
-    from rulec.rulebook.files.batch_check import check
+    from rulec.rulebook.batch.batch_check import check
     from rulec.settings import search_path
 
     def standard_input() -> bytes:

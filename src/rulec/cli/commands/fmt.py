@@ -11,7 +11,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 
 if TYPE_CHECKING:
-    from rulec.rulebook.files.batch_format import Formatted
+    from rulec.rulebook.batch.batch_format import Formatted
 
 
 @click.command()
@@ -31,7 +31,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
     formatted.
     """
     from rulec.report.text.console import print_aside, print_diagnostics
-    from rulec.rulebook.files.batch_format import format_files, replace_files
+    from rulec.rulebook.batch.batch_format import format_files, replace_files
     from rulec.settings import search_path
 
     if "-" in paths:
@@ -58,7 +58,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
 
 def _standard_input(*, check: bool, diff: bool) -> int:
     from rulec.files import MAX_SOURCE_BYTES
-    from rulec.rulebook.files.batch_format import formatted
+    from rulec.rulebook.batch.batch_format import formatted
 
     file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
     if not (check or diff):

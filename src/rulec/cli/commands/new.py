@@ -36,7 +36,7 @@ def command(name: str, output: str, base: str | None) -> None:
     from rulec.file_messages import UNWRITABLE_FILE
     from rulec.files import make_folder, written_whole
     from rulec.report.text.console import print_result
-    from rulec.rulebook.files.template import new_rulebook, new_rulebook_upon
+    from rulec.rulebook.template import new_rulebook, new_rulebook_upon
     from rulec.settings import search_path
 
     name = name.removesuffix(".rules")

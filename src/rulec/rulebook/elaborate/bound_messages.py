@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
 

@@ -7,10 +7,10 @@ from fractions import Fraction
 from typing import Literal
 
 from rulec.logic.formula import Bound
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate import bound_messages as say
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.literals import exact_value
-from rulec.rulebook.names.scope import Scope
+from rulec.rulebook.elaborate.scope import Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 

@@ -17,9 +17,7 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.logic.printing import term_text
-from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.bounds import bound_of
-from rulec.rulebook.elaborate.linear_arithmetic import (
+from rulec.rulebook.arithmetic.linear_arithmetic import (
     Linear,
     NumberByCases,
     TooManyCasesError,
@@ -33,13 +31,15 @@ from rulec.rulebook.elaborate.linear_arithmetic import (
     opposite,
     scaled,
 )
+from rulec.rulebook.arithmetic.size_limits import exceeded_limit
+from rulec.rulebook.elaborate import constant_messages
+from rulec.rulebook.elaborate import elaboration_messages as say
+from rulec.rulebook.elaborate.bounds import bound_of
 from rulec.rulebook.elaborate.literals import literal
 from rulec.rulebook.elaborate.macro_expansion import expand_macro
+from rulec.rulebook.elaborate.parameter_values import parameter
 from rulec.rulebook.elaborate.quantifiers import aggregate
-from rulec.rulebook.elaborate.size_limits import exceeded_limit
-from rulec.rulebook.names.scope import AnyArgument, Scope
-from rulec.rulebook.overlay import constant_messages
-from rulec.rulebook.overlay.parameter_values import parameter
+from rulec.rulebook.elaborate.scope import AnyArgument, Scope
 from rulec.syntax import tree
 
 _TEMPORAL = frozenset(

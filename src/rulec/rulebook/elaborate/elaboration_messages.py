@@ -8,10 +8,11 @@ from itertools import chain
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
-from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE, UNUSED_VARIABLE
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE
+from rulec.rulebook.elaborate.scope import SIDES, Scope
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
-from rulec.rulebook.names.scope import SIDES, Scope
 from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula

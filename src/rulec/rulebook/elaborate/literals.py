@@ -6,10 +6,10 @@ import math
 import re
 from fractions import Fraction
 
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, constant
 from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases, constant
+from rulec.rulebook.elaborate.scope import Scope
 from rulec.rulebook.names.declaration_messages import unknown_unit
-from rulec.rulebook.names.scope import Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from rulec.rulebook.names.scope import SIDES, AnyArgument, BoundVariable, Call, Scope
-from rulec.rulebook.overlay import constant_messages as say
+from rulec.rulebook.elaborate import constant_messages as say
+from rulec.rulebook.elaborate.scope import SIDES, AnyArgument, BoundVariable, Call, Scope
 from rulec.syntax import tree
 
 _Meaning = TypeVar("_Meaning")

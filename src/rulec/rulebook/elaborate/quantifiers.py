@@ -8,8 +8,7 @@ from fractions import Fraction
 
 from rulec.logic.formula import Comparison, Count, Formula, Relation
 from rulec.logic.printing import formula_text, term_text
-from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.linear_arithmetic import (
+from rulec.rulebook.arithmetic.linear_arithmetic import (
     NumberByCases,
     TooManyCasesError,
     compared,
@@ -17,9 +16,10 @@ from rulec.rulebook.elaborate.linear_arithmetic import (
     measured,
     negated,
 )
-from rulec.rulebook.elaborate.size_limits import exceeded_limit
+from rulec.rulebook.arithmetic.size_limits import exceeded_limit
+from rulec.rulebook.elaborate import elaboration_messages as say
+from rulec.rulebook.elaborate.scope import BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
-from rulec.rulebook.names.scope import BoundVariable, Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 

@@ -9,7 +9,8 @@ from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
-from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
@@ -66,20 +67,6 @@ NOT_ABOVE_ZERO = Code(
     "of examples are apart in time.",
     bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require not wet }\n",
     good="rulebook example\nsignal wet\nsoft rule r weight 1 { require not wet }\n",
-)
-
-FORMULA_TOO_LARGE = Code(
-    "R0323",
-    title="a formula grows too large when definitions, conditions and exceptions are put in",
-    why="Each is put in the place where it is used. Definitions that use others twice, conditional "
-    "numbers beside each other, and exceptions that hold throughout multiply.",
-    bad="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a throughout unless b throughout unless c throughout\n"
-    "  unless d throughout unless e throughout\n}\n",
-    good="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a or b or c or d or e throughout\n}\n",
 )
 
 NOT_A_MULTIPLE = Code(

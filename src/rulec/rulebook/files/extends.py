@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.rulebook.elaborate.rule_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.files.reference_messages import (
     extends_circle,
     vocabulary_for_rulebook,

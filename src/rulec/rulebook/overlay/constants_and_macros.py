@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
-from rulec.rulebook.elaborate.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
 from rulec.rulebook.model import Traffic
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
 from rulec.syntax import tree

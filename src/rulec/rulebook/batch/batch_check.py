@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE
-from rulec.rulebook.files.check_cache import CheckQuestion, recall, remember
+from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.search_path import (
     BY_PATH,

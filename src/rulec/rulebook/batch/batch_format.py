@@ -10,7 +10,7 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
 from rulec.files import written_whole
-from rulec.rulebook.files.batch_check import find_sources
+from rulec.rulebook.batch.batch_check import find_sources
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.syntax import decode
 from rulec.syntax.formatting import format_source

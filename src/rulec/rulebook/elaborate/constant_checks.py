@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.diagnostics import Diagnostic
+from rulec.rulebook.arithmetic.size_limits import TooDeepError, TooLargeError
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate.elaboration import elaborate, number
-from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError
+from rulec.rulebook.elaborate.parameter_values import parameter
+from rulec.rulebook.elaborate.rule_variables import variables_of
+from rulec.rulebook.elaborate.scope import AnyArgument, Call, Scope
 from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.names.rule_variables import variables_of
-from rulec.rulebook.names.scope import AnyArgument, Call, Scope
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
-from rulec.rulebook.overlay.parameter_values import parameter
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 

@@ -13,10 +13,10 @@ from rulec.logic.formula import (
 )
 from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.literals import literal
-from rulec.rulebook.examples import example_messages as say
+from rulec.rulebook.elaborate.scope import BoundVariable, Scope
 from rulec.rulebook.model import Example, ExampleState, Variable
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
-from rulec.rulebook.names.scope import BoundVariable, Scope
+from rulec.rulebook.rules import example_messages as say
 from rulec.syntax import tree
 
 Key = tuple[str, tuple[str, ...]]

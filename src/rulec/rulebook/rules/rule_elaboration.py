@@ -9,26 +9,26 @@ from fractions import Fraction
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.rulebook.arithmetic.linear_arithmetic import negated
+from rulec.rulebook.arithmetic.size_limits import TooDeepError, TooLargeError, exceeded_limit
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate import rule_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
-from rulec.rulebook.elaborate.exemptions import (
+from rulec.rulebook.elaborate.literals import exact_value
+from rulec.rulebook.elaborate.rule_messages import no_multiple
+from rulec.rulebook.elaborate.rule_variables import variables_of
+from rulec.rulebook.elaborate.scope import Scope
+from rulec.rulebook.model import Exemption, Rule, Variable
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
+from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
+from rulec.rulebook.rules.example_elaboration import example_of
+from rulec.rulebook.rules.exemptions import (
     BoundedPhaseError,
     NoStretchError,
     TooManyExceptionsError,
     exempted,
 )
-from rulec.rulebook.elaborate.linear_arithmetic import negated
-from rulec.rulebook.elaborate.literals import exact_value
-from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.elaborate.size_limits import TooDeepError, TooLargeError, exceeded_limit
-from rulec.rulebook.examples.example_elaboration import example_of
-from rulec.rulebook.model import Exemption, Rule, Variable
-from rulec.rulebook.names.rule_variables import variables_of
-from rulec.rulebook.names.scope import Scope
-from rulec.rulebook.names.symbol_table import SymbolTable
-from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
-from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 

@@ -16,7 +16,7 @@ from itertools import combinations
 from math import comb
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
-from rulec.rulebook.elaborate.linear_arithmetic import all_of, any_of, negated
+from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.model import Exemption, ExemptionScope
 
 _AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
+from rulec.rulebook.elaborate.scope import BoundVariable
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
-from rulec.rulebook.names.scope import BoundVariable
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
 

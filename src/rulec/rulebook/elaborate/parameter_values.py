@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
-from rulec.rulebook.names.scope import Call, Scope
-from rulec.rulebook.overlay import constant_messages as say
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.elaborate import constant_messages as say
+from rulec.rulebook.elaborate.scope import Call, Scope
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.rulebook.overlay.rulebook_overlay import Value, never_in_force
 from rulec.syntax import tree

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
 from rulec.vocabulary.units import Dimension
 
 if TYPE_CHECKING:
-    from rulec.rulebook.names.scope import Scope
+    from rulec.rulebook.elaborate.scope import Scope
 
 CIRCULAR_DEFINITION = Code(
     "R0316",

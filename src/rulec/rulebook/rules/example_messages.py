@@ -6,7 +6,7 @@ from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom, Quantity
 from rulec.logic.printing import term_text
-from rulec.rulebook.elaborate.linear_arithmetic import NumberByCases
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree

@@ -1,0 +1,1 @@
+"""Numbers of expressions: sums of terms in cases, and how large they may become."""

@@ -1,0 +1,1 @@
+"""Many files checked or formatted at once, and the cache of checks."""
