@@ -1,4 +1,4 @@
-"""One drive as the signal passes see it: ego, its road and the others, state by state."""
+"""One drive, state by state: ego, its road and the other participants."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The drives of a recording: for every vehicle the roads that it drove, and what it did there."""
+"""The drives of a recording: each vehicle along each road that it drove."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an obstacle may do: one motion, or several with their probabilities."""
+"""Alternative motions of an obstacle, with their probabilities."""
 
 from __future__ import annotations
 
@@ -38,5 +38,5 @@ def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
 
 
 def is_distribution(total: Fraction) -> bool:
-    """Is it 1, as far as weights are written, such as three times 0.333?"""
+    """Whether weights add up to 1, rounding allowed, as in three times 0.333."""
     return abs(total - 1) <= _ROUNDING

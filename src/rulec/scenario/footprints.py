@@ -1,4 +1,4 @@
-"""Where an obstacle is that is known by what it occupies from time to time."""
+"""The place of an obstacle that is known by footprints at some times."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
 
 
 def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float], ...]:
-    """Each time the middle moved: from when to when, and how far along and across the road."""
+    """The movements of the middle: first and last time, way along and across the road."""
     steps = []
     for k in range(len(motion.times) - 1):
         before, after = motion.boxes[k : k + 2]
@@ -35,7 +35,7 @@ def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float]
 
 
 def displacement_within(motion: Footprints, start: float, end: float) -> tuple[float, float]:
-    """How far along and across the road the middle moved between two times (s)."""
+    """The way of the middle along and across the road between two times (s)."""
     boxes = list(_boxes(motion, start, end))
     return _shift(boxes[0], boxes[-1]) if boxes else (0.0, 0.0)
 
@@ -48,7 +48,7 @@ def _shift(before: Box, after: Box) -> tuple[float, float]:
 
 
 def _boxes(motion: Footprints, start: float, end: float) -> Iterator[Box]:
-    """What is occupied at both times and at all between at which that is known."""
+    """The footprints at both times and at all known times between."""
     times = motion.times
     first, last = bisect_left(times, start), bisect_right(times, end)
     ends = (_at(motion, start), *motion.boxes[first:last], _at(motion, end))

@@ -21,7 +21,7 @@ class Box:
         return f"s {self.s_min:g} to {self.s_max:g}, d {self.d_min:g} to {self.d_max:g}"
 
     def overlaps(self, other: Box) -> bool:
-        """Do the interiors meet, not only the borders?"""
+        """Whether the interiors meet, not only the borders."""
         return (
             self.s_min < other.s_max
             and other.s_min < self.s_max
@@ -30,7 +30,7 @@ class Box:
         )
 
     def covers(self, s: float, d: float) -> bool:
-        """Does the closed rectangle hold the point?"""
+        """Whether the closed rectangle holds the point."""
         return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max
 
 

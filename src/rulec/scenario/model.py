@@ -1,4 +1,4 @@
-"""A scenario as data: the road, ego, what else is on the road, and what is known about it.
+"""A scenario as data: the road, ego, obstacles and their prediction.
 
 Lengths are metres, times seconds, speeds m/s, accelerations m/s². ``s`` runs along the road in
 ego's direction, ``d`` across it, positive to the left.
@@ -32,7 +32,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class MissingLane:
-    """Where a lane (counted from the right, from 1) has ended or has not begun."""
+    """An interval in which a lane, counted from the right from 1, does not exist."""
 
     lane: int
     s: Interval
@@ -92,7 +92,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Footprints:
-    """What is occupied at ascending times: bounds that move in straight lines in between.
+    """Bounds at ascending times that move in straight lines in between.
 
     None where it is nowhere near the road. Before the first time and after the last one the
     obstacle is not there. Unlike a trajectory's, its extent may change, as when a vehicle turns.
@@ -107,7 +107,7 @@ Motion = ConstantAcceleration | Trajectory | Footprints
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """What else an obstacle may do, and how probable that is."""
+    """A less likely motion of an obstacle, with its probability."""
 
     weight: Fraction
     motion: Motion
@@ -138,13 +138,13 @@ class Obstacle:
 
     @property
     def walks(self) -> bool:
-        """Are its regions those of its own frame (paper, section II-B, for pedestrians)?"""
+        """Whether its regions are those of its own frame (paper, section II-B, for pedestrians)."""
         return self.type == PEDESTRIAN or self.walking_direction is not None
 
 
 @dataclass(frozen=True, slots=True)
 class Ego:
-    """Where ego's centre is at time 0; its size only tells whether it stands in something."""
+    """Ego's centre at time 0; its size only tells whether it stands in something."""
 
     s: float
     d: float
@@ -153,13 +153,13 @@ class Ego:
 
     @property
     def body(self) -> Box:
-        """What ego occupies at time 0; a point if its size is not known."""
+        """The rectangle of ego at time 0; a point if its size is not known."""
         return centred(self.s, self.d, self.length, self.width)
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """What became of a recorded scene on its way to a scenario.
+    """The provenance of a scenario that was made of a recorded scene.
 
     ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
     lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still

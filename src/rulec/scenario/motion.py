@@ -1,4 +1,4 @@
-"""Where an obstacle is: at an instant, and everything that it sweeps in an interval."""
+"""The place of an obstacle at an instant, and all that it sweeps in an interval."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
 
 
 def stands_forever(motion: Motion) -> bool:
-    """Does the obstacle never move, so that its motion shows no direction?"""
+    """Whether the obstacle never moves, so that its motion shows no direction."""
     return _heading(motion, 0.0, 0.0) == (0.0, 0.0)
 
 
@@ -104,7 +104,7 @@ def _nearest_step(
     meanwhile: tuple[float, float],
     end: float,
 ) -> tuple[float, float]:
-    """How far it went meanwhile; if it stood, in the last of its steps before, else the next."""
+    """The way within an interval; at rest that of the last step before, else of the next."""
     if meanwhile != (0.0, 0.0) or not steps:
         return meanwhile
     before = [step for step in steps if step[1] <= end]

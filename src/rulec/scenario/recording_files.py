@@ -1,4 +1,4 @@
-"""Recorded traffic from a file of any format; which one it is tells the file's root element."""
+"""Recorded traffic from a file of any format, known by its root element."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RECORDING = XmlFormat(
 
 
 def read_recording(path: Path, net: Path | None = None) -> Recording:
-    """What a file of recorded traffic says; ``net`` is for SUMO's data, which have none.
+    """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it seems to be, R0611 without the
@@ -27,6 +27,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
             missing or wrong one, R0701 if a file cannot be opened.
     """
     root = root_of(path, RECORDING)
+    # Imports within functions: NumPy and Shapely take longer to import than a small file to read
     if root == "fcd-export":
         from rulec.scenario.sumo.sumo_recording import read_sumo
 
@@ -50,7 +51,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
 
 
 def is_recording(file: str) -> bool:
-    """Does a file hold recorded traffic, by its name or its first bytes?"""
+    """Whether a file holds recorded traffic, by its name or its first bytes."""
     return is_xml(Path(file))
 
 

@@ -1,4 +1,4 @@
-"""XML read as a stream, so that no file can do harm: whatever its size, it takes little memory.
+"""XML as a stream, so that no file can do harm or take much memory.
 
 Documents that define entities are refused at the definition, before anything is expanded or
 fetched. Packed files (gzip) are unpacked on the way, up to the same limit.
@@ -45,7 +45,7 @@ class XmlFormat:
         expected: str = "",
         help_text: str = "",
     ) -> RulecError:
-        """Why a file is none of these (R0610), and on which line that shows, if on one."""
+        """The error (R0610) that a file is not of this format, with its line if known."""
         place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
         message = f"the file cannot be read as {self.words}: {why}"
         return NOT_A_RECORDING.error(place, message, expected=expected, help=help_text or self.help)
@@ -152,7 +152,7 @@ def root_of(path: Path, form: XmlFormat) -> str:
 
 
 def is_xml(path: Path) -> bool:
-    """Is a file, by its name or its first bytes, XML, packed or not?"""
+    """Whether a file is XML, packed or not, by its name or its first bytes."""
     if path.name.lower().endswith(_SUFFIXES):
         return True
     try:
@@ -167,13 +167,13 @@ def is_xml(path: Path) -> bool:
 
 
 def is_packed(path: Path) -> bool:
-    """Is it a gzip file? Raises RulecError R0701."""
+    """Whether it is a gzip file. Raises RulecError R0701."""
     with opened(path) as stream:
         return stream.read(len(_PACKED)) == _PACKED
 
 
 def short(text: str) -> str:
-    """What a file says, for a message: not too long, and nothing that a terminal acts upon."""
+    """A file's text for a message: short, and without control characters."""
     return "".join(c if c.isprintable() else "?" for c in text[:40])
 
 

@@ -56,6 +56,7 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
     if is_xml(path):
+        # Scenarios in TOML start without NumPy and Shapely, which recordings need
         from rulec.scenario.recording_files import read_scene
 
         return read_scene(path, choice or Choice())

@@ -1,1 +1,1 @@
-"""TODO extraction/selection."""
+"""The choice of drives, thresholds, and participants that count for ego."""

@@ -1,4 +1,4 @@
-"""What is said about recordings on the command line, read: assumptions and thresholds."""
+"""Assumptions and thresholds from texts of the command line."""
 
 from __future__ import annotations
 

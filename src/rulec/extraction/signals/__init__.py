@@ -1,1 +1,1 @@
-"""TODO extraction/signals."""
+"""Signals of a drive, derived from tracks, extents and the map."""

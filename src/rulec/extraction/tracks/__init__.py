@@ -1,1 +1,1 @@
-"""TODO extraction/tracks."""
+"""Tracks of participants, map matching, and the road that ego drove."""

@@ -1,4 +1,4 @@
-"""The road that ego drives along: street-wise coordinates, lanes, and what the map says of it."""
+"""The road that ego drives along: Frenet coordinates, lanes, crossings, junctions."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class DrivenRoad:
         return np.clip(pieces, 0, len(self.rows) - 1)
 
     def lanes_at(self, s: Floats) -> Flags:
-        """Which lanes there are at places: the last axis is that of the lanes, from the right."""
+        """Whether lanes exist at places; the last axis is that of the lanes, from the right."""
         at = np.searchsorted(self.lanes.s, np.nan_to_num(s), "right") - 1
         return self.lanes.there[np.clip(at, 0, len(self.lanes.there) - 1)]
 
@@ -101,7 +101,7 @@ def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanel
 
 
 def _runs(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
-    """From where to where pieces with a flag follow each other."""
+    """The extents along the road of consecutive pieces that have a flag."""
     for flag, pieces in groupby(range(len(flags)), key=lambda piece: flags[piece]):
         if flag:
             run = list(pieces)

@@ -1,4 +1,4 @@
-"""The presence of participants in a trace, each as one object while it is relevant for ego.
+"""The presence of participants in a trace, as objects.
 
 Who comes back after an absence is another object, ``id_2``, as everywhere in rulec: a rule is
 judged on one contiguous presence.

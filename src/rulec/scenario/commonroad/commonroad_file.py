@@ -51,7 +51,7 @@ _MARKS: Mapping[str, LaneMark] = MappingProxyType(
 
 
 def read_commonroad(path: Path) -> Recording:
-    """What the file says.
+    """Read the recording in a CommonRoad file.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
@@ -70,6 +70,7 @@ def read_commonroad(path: Path) -> Recording:
 
 
 def _library(path: Path) -> Callable[[Path], Any]:
+    # The library is optional, and takes a second to import
     try:
         from commonroad.common.file_reader import CommonRoadFileReader
     except ImportError:

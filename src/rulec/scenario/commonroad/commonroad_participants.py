@@ -1,4 +1,4 @@
-"""What the library says of obstacles and planning problems, as a recording has it.
+"""Obstacles and planning problems of the library's, as a recording has them.
 
 Places and headings in a file may be areas and intervals. What an obstacle occupies then is all that
 it may occupy; where only one number can be used it is the middle.
@@ -62,7 +62,7 @@ def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Par
 
 
 def _predicted(obstacle: Any) -> Iterator[tuple[int, Points]]:
-    """What a prediction without states says is occupied."""
+    """The outlines of a prediction without states, by step."""
     for occupancy in getattr(obstacle.prediction, "occupancy_set", None) or ():
         shape = getattr(occupancy, "shape", occupancy)
         yield int(occupancy.time_step), _corners(shape)

@@ -1,4 +1,4 @@
-"""What a CommonRoad file has to have, looked at before the library does, which has no words for it.
+"""Check that a CommonRoad file has the elements that the library fails without.
 
 Only what the library fails on without is asked for; what it makes of the rest it says itself.
 """

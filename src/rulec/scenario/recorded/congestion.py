@@ -1,4 +1,4 @@
-"""Is traffic congested? No CommonRoad file says so; this is how it is told from the vehicles.
+"""Congestion, found from the speeds of vehicles: no CommonRoad file states it.
 
 Traffic is congested where the median speed of the vehicles on ego's road that go ego's way is below
 a threshold. Speeds are those at which they cover the road from time 0 on, for a second if the
@@ -22,7 +22,7 @@ _KMH = 3.6
 
 
 def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
-    """Is it, and how was that found?"""
+    """Whether traffic is congested, and how that was found."""
     speeds = [
         speed * _KMH
         for obstacle in obstacles
@@ -41,7 +41,7 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
 
 
 def _speed(obstacle: Obstacle, road: Box) -> float | None:
-    """The speed along the road (m/s); None if it is not on the road, or comes towards ego."""
+    """The speed along the road (m/s); None off the road, or for oncoming traffic."""
     now = swept(obstacle, 0.0, 0.0)
     then = swept(obstacle, _FOR_S, _FOR_S)
     if now is None or then is None or not now.overlaps(road):

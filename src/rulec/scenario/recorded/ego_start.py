@@ -1,4 +1,4 @@
-"""Whose maneuvers are sought: where ego is at time 0, and on which lanelet."""
+"""Ego's state and lanelet at time 0."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SAME_PLACE_M = 0.1
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
-    """Ego at time 0, which is a step of the file, and places that it goes to.
+    """Ego's state at time 0, a step of the file, and the places that it goes to.
 
     ``participant`` is the one whose part it takes over, if any.
     """
@@ -37,7 +37,7 @@ class EgoStart:
 
 
 def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
-    """Where the chosen ego is. Raises RulecError R0612 if it is not there."""
+    """The start of the chosen ego. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
         participant.id: participant.states
@@ -139,5 +139,5 @@ def named_ids(ids: Iterable[str]) -> str:
 
 
 def choice_error(message: str, way_out: str, file: str) -> RulecError:
-    """What is chosen is not in the file."""
+    """The error (R0612) that a choice is not in the file."""
     return NOT_IN_RECORDING.error(SourceLocation(file), message, help=way_out)

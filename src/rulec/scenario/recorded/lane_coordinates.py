@@ -1,4 +1,4 @@
-"""The lanes of ego's road side by side, and places on it as if every lane had straight bounds.
+"""The lanes of ego's road, and places on it between straightened lane bounds.
 
 Lanes get wider and narrower, begin and end; the road of a scenario has lanes of one width. So
 across the road a place is put in proportion between the bounds of its lane: the middle of a lane
@@ -61,12 +61,12 @@ class Lanes:
         return np.stack((places[:, 0], np.where(inside, stretched, beyond)), axis=1)
 
     def count_at(self, s: float) -> int:
-        """How many lanes there are at a place."""
+        """The number of lanes at a place."""
         piece = int(np.clip(np.searchsorted(self.s, s, "right") - 1, 0, len(self.there) - 1))
         return int(self.there[piece].sum())
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
-        """Where lanes are not there between two places, ``shift`` taken from each ``s``."""
+        """The gaps of lanes between two places, ``shift`` subtracted from each ``s``."""
         return tuple(
             MissingLane(lane + 1, (low - shift, high - shift))
             for lane in range(self.there.shape[1])
@@ -130,7 +130,7 @@ def lanes_along(
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """What all lanes have in common: the way, where its lanelets meet, places to look at."""
+    """The data that all lanes share: the route, the borders of its lanelets, sample places."""
 
     recording: Recording
     way: Sequence[Lanelet]
@@ -144,7 +144,7 @@ class _Strip:
 
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
-    """Where along the line lanelets begin, and the last one ends."""
+    """The places along the line at which lanelets begin, and the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
     places = np.nan_to_num(line.coordinates(ends)[:, 0])
     borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
@@ -155,7 +155,7 @@ def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
 def _usual_widths(
     grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
 ) -> Iterator[float]:
-    """The width of each lane where ego is, or if it is not there what it mostly is elsewhere."""
+    """The width of each lane at ego's place, its median where it does not exist there."""
     at = int(np.clip(np.searchsorted(grid, ego_s, "right") - 1, 0, len(there) - 1))
     for width, own in zip(widths.T, there.T, strict=True):
         if own[at]:
@@ -165,7 +165,7 @@ def _usual_widths(
 
 
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    """For every lane on one side, the nearest first: its width, and at which lanelets it is."""
+    """Width and existence by lanelet of every lane on one side, the nearest first."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     columns = []
     for k in range(max(map(len, rows))):

@@ -1,4 +1,4 @@
-"""What CommonRoad calls its obstacles, and the words of vocabularies for them.
+"""CommonRoad's obstacle types, and the object types of vocabularies for them.
 
 For each the most specific word first, then more and more general ones: a rulebook that does not
 tell cars from other vehicles judges a car as a vehicle. What is not a road user is an obstacle at

@@ -1,4 +1,4 @@
-"""What a recording of traffic says, as data: lanelets, participants, and whose maneuver is sought.
+"""A recording of traffic as data: lanelets, participants, planning problems.
 
 Places are in the file's own frame, x and y in metres; angles are radians, counter-clockwise.
 """
@@ -28,7 +28,7 @@ Lamp = Literal["left_indicator", "right_indicator", "brake_light"]
 
 
 def id_order(identifier: str) -> tuple[int, str]:
-    """A key by which ids come in an order, and those that are numbers in that of the numbers."""
+    """A sort key for ids that puts numbers in their order."""
     return len(identifier), identifier
 
 
@@ -76,7 +76,7 @@ class Lanelet:
 
 @dataclass(frozen=True, slots=True)
 class TrackState:
-    """Where a centre is, its heading, and its motion along that heading."""
+    """A centre (m), its heading (rad), and its motion along that heading."""
 
     x: float
     y: float
@@ -103,7 +103,7 @@ class Participant:
 
 @dataclass(frozen=True, slots=True)
 class PlanningProblem:
-    """A planning problem: where ego is at a time step, and places where it wants to go."""
+    """A planning problem: ego's state at a time step, and places that it goes to."""
 
     id: str
     step: int

@@ -1,4 +1,4 @@
-"""Street-wise coordinates: the arc length ``s`` along a reference line, the offset ``d`` from it.
+"""Frenet coordinates: the arc length ``s`` along a reference line, the offset ``d`` from it.
 
 The foot of a place is where the place is perpendicular to the line. On a line of straight pieces
 that leaves gaps at the outside of every bend and overlaps at the inside; so directions are
@@ -31,7 +31,7 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferenceLine:
-    """A line of straight pieces: for each where it begins, and how it and the direction run on.
+    """A line of straight pieces: start, direction and length of each.
 
     ``first`` and ``change``: the slope of the interpolated direction at its beginning, as seen from
     the piece, and by how much it changes up to the end.
@@ -62,7 +62,7 @@ class ReferenceLine:
         return np.concatenate(parts) if parts else np.empty((0, 2))
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
-        """As ``coordinates``, of feet on pieces not farther than ``reach`` from an ``s`` each.
+        """The coordinates of feet not farther than ``reach`` from a given ``s`` each.
 
         So a body is not torn apart where the road comes near itself.
         """
@@ -82,7 +82,7 @@ class ReferenceLine:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
 
     def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
-        """The nearest feet of places on those pieces: a row for each place, or one for all."""
+        """The nearest feet of places on pieces: a row of these for each place, or one for all."""
         ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
         dx = places[:, :1] - self.start[pieces, 0]
         dy = places[:, 1:] - self.start[pieces, 1]

@@ -1,4 +1,4 @@
-"""The lanelets that ego follows: the one it is on, those that led to it, those that lie ahead."""
+"""The lanelets along ego's road, behind and ahead of its own."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _Next = Callable[[Lanelet], Iterable[str]]
 
 
 def is_lane(lanelet: Lanelet) -> bool:
-    """Is it a part of the carriageway?"""
+    """Whether a lanelet is a part of the carriageway."""
     return not lanelet.types & NO_LANES
 
 
@@ -45,7 +45,7 @@ def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The lanelet that a vehicle is on: of those in its place the one that leads its way best.
+    """The lanelet under a vehicle; of several the one that leads its way best.
 
     The nearest one if it is beside all of them by no more than 3 m.
     """

@@ -1,4 +1,4 @@
-"""What can be chosen about a recorded scene, which has many vehicles, roads and moments."""
+"""The choice of ego, time, road and prediction in a recorded scene."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CONGESTED_BELOW_KMH = 30.0
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Whose maneuvers are sought, from when on, along which road, and what is expected of others.
+    """A choice of ego, time, road and prediction.
 
     ``ego``: a planning problem or a participant; None is the first planning problem. ``at_s``: the
     time of the file that becomes time 0; None is the planning problem's, the participant's first.

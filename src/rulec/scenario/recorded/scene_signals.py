@@ -1,4 +1,4 @@
-"""What the map tells: signs, traffic lights, and the number of ego's lanes, as signals.
+"""Signals that the map supplies: signs, traffic lights, the number of lanes.
 
 The words are those of the vocabulary ``road``. What the file does not say is not made up: such a
 signal is missing, and the rulebook's own default holds.

@@ -1,4 +1,4 @@
-"""A rigid body's recorded way: one row for each moment, as one array instead of many objects.
+"""The track of a rigid body as one array, a row for each moment.
 
 A recording of some minutes has a hundred thousand states. Here they take 48 bytes each, and become
 objects only when somebody looks at them.
@@ -22,7 +22,7 @@ _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1
 def rectangles(
     centres: Points, headings: NDArray[float64], length: float, width: float, shift: float = 0.0
 ) -> NDArray[float64]:
-    """Corners and middles of the sides of a rectangle in several places: place, point, x and y.
+    """Corners and side middles of a rectangle in several places: axes place, point, x and y.
 
     ``shift``: how far the centre lies ahead of the rectangle's middle.
     """
@@ -70,7 +70,7 @@ class TrackStates(Mapping[int, TrackState]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackOutlines(Mapping[int, Points]):
-    """The rectangle on a track by time step; all of them are laid out when the first is wanted."""
+    """The rectangle on a track by time step; all are computed when the first is asked for."""
 
     track: Track
     _laid_out: list[NDArray[float64]] = field(default_factory=list, repr=False)

@@ -27,7 +27,7 @@ from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.scene_choice import Prediction
 
 GOES_ON_S = 600.0
-"""So long after the end of a recording who was there then is taken to go on."""
+"""The time (s) for which those present at the end of a recording go on after it."""
 
 _FAR_M = 10.0
 _SPEED_OVER_S = 0.5
@@ -36,7 +36,7 @@ _AT_ONCE = 20_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficView:
-    """From where a recording is looked at: along which line, where ego is on it, since when."""
+    """A recording seen along a line from ego's place at time 0."""
 
     recording: Recording
     line: ReferenceLine
@@ -79,7 +79,7 @@ class TrafficView:
 def traffic_obstacles(
     view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
 ) -> Iterator[Obstacle]:
-    """Those that are on the road at some time from time 0 on, in the order of the file."""
+    """The obstacles that are on the road at some time from time 0 on, in the file's order."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [participant for participant in view.recording.participants if participant.id != ego]
     for participant, steps, own in _laid_out(view, others):
@@ -112,7 +112,7 @@ def traffic_obstacles(
 def _laid_out(
     view: TrafficView, others: Sequence[Participant]
 ) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
-    """Everybody's steps from time 0 on, and the bounds in them: many at once, but not all."""
+    """The steps of participants from time 0 on, and their bounds; computed in batches."""
     waiting: list[tuple[Participant, list[int]]] = []
     count = 0
     for number, participant in enumerate(others, 1):
@@ -135,7 +135,7 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: Prediction,
 ) -> Motion | None:
-    """None if it is never on the road, or not there at time 0 where that decides."""
+    """The motion; None off the road, or if a constant one is not there at time 0."""
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
@@ -168,7 +168,7 @@ def _constant(
 
 
 def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
-    """The mean speed along the road in the last half second in which it was near the road."""
+    """The mean speed along the road in the last half second near it (m/s)."""
     last = boxes[-1]
     first, since = last, times[-1]
     for time, box in zip(reversed(times), reversed(boxes), strict=True):
@@ -185,7 +185,7 @@ def _moved(box: Box, along: float) -> Box:
 
 
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
-    """Where a pedestrian looks who never moves; nothing if motion tells."""
+    """The direction of a pedestrian that never moves (degrees); None if motion tells."""
     state = next(iter(participant.states.values()), None)
     if state is None or len({(own.x, own.y) for own in participant.states.values()}) > 1:
         return None
@@ -195,7 +195,7 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
 
 
 def _signals(participant: Participant) -> dict[str, SignalValue]:
-    """What the file says about a participant for good; what changes is left to the rulebook."""
+    """The constant signals of a participant; what changes is left to the rulebook."""
     signals: dict[str, SignalValue] = {"two_wheeled": participant.type in ("motorcycle", "bicycle")}
     if participant.type == "parkedVehicle":
         signals["parked"] = True

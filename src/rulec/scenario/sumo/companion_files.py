@@ -1,4 +1,4 @@
-"""The files that belong to floating-car data: named in their head, or the only ones beside them."""
+"""The files that belong to floating-car data, by name or beside them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\
 
 @dataclass(frozen=True, slots=True)
 class FcdHead:
-    """What SUMO's configuration says, which it writes into a comment at the head of its output."""
+    """SUMO's configuration, a comment at the head of its output."""
 
     net: str = ""
     demand: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""Lines beside a line of straight pieces: the borders of a lane, of which SUMO has the middle."""
+"""The borders of a lane, of which SUMO has the middle."""
 
 from __future__ import annotations
 

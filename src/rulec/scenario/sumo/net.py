@@ -68,7 +68,7 @@ class SignalProgramme:
 
 @dataclass(slots=True)
 class SumoNet:
-    """What a net says. A light has several programmes, or None for one that reacts to traffic."""
+    """The content of a net. A light's programme is None if it reacts to traffic."""
 
     side: Side = "right"
     edges: dict[str, NetEdge] = field(default_factory=dict)

@@ -28,7 +28,7 @@ _NAMED = 5
 
 
 def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
-    """What the data say, on the roads of a net: the one given, or the one that belongs to them.
+    """Read floating-car data on the roads of a net: the one given, or the one beside them.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it should be, R0614 if there is no
@@ -88,7 +88,7 @@ def _some(names: list[str]) -> str:
 
 
 def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
-    """Has the net all lanes and edges that the data name? Raises RulecError R0615."""
+    """Check that the net has all lanes and edges of the data. Raises RulecError R0615."""
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):
             raise OTHER_NET.error(
@@ -101,7 +101,7 @@ def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNe
 def _check_near(
     path: Path, participants: Iterable[Participant], lanelets: Iterable[Lanelet]
 ) -> None:
-    """Is everybody near the roads? Raises RulecError R0615."""
+    """Check that all participants are near the roads. Raises RulecError R0615."""
     roads = np.concatenate([lanelet.centre for lanelet in lanelets])
     low, high = roads.min(axis=0) - NEAR_M, roads.max(axis=0) + NEAR_M
     for participant in participants:

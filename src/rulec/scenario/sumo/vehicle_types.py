@@ -1,4 +1,4 @@
-"""What SUMO's vehicle types are, and how large: as a file says, else by SUMO's defaults."""
+"""SUMO's vehicle types and their sizes, from a file or by SUMO's defaults."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _described(element: XmlElement) -> VehicleType:
 def vehicle_type(
     name: str, element: str, known: Mapping[str, VehicleType]
 ) -> tuple[VehicleType, bool]:
-    """What a participant of this type is, and whether that is known rather than taken to be so.
+    """The type of a participant, and whether it is known rather than assumed.
 
     ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
     """

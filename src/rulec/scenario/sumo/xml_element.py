@@ -36,7 +36,7 @@ class XmlElement:
         return self.as_number(key, self.text(key))
 
     def positive(self, key: str, default: float | None = None) -> float:
-        """As ``number``, for one that has to be above 0."""
+        """A number above 0. Raises RulecError R0610."""
         value = self.number(key, default)
         if value <= 0:
             raise self.wrong(f"`{key}` of a `{self.name}` is {value:g}", "a number above 0")
@@ -54,6 +54,6 @@ class XmlElement:
         return value
 
     def wrong(self, why: str, expected: str = "") -> RulecError:
-        """What is wrong with the element."""
+        """The error (R0610) for this element."""
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.parser.CurrentLineNumber, expected=expected)

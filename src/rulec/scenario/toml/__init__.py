@@ -1,1 +1,1 @@
-"""TODO scenario/toml."""
+"""Scenarios from TOML files, every mistake with its source location."""

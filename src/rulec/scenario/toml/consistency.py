@@ -1,4 +1,4 @@
-"""What a schema cannot say: parts of a scenario that contradict each other."""
+"""Checks of a scenario's consistency that a schema cannot express."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RESERVED = ("position", "surface", "station", "lateral")
 def check_interval(
     value: tuple[float, float] | None, table: TomlTable, key: str, findings: Findings
 ) -> bool:
-    """Is ``from`` before ``to``, by more than a hair?"""
+    """Check that ``from`` is before ``to``, by more than a hair."""
     if value is None or value[1] - value[0] >= NARROWEST_M:
         return True
     findings.add(
@@ -36,7 +36,7 @@ def check_interval(
 
 
 def check_lanes(lanes: Sequence[float], table: TomlTable, findings: Findings) -> bool:
-    """Do the bounds ascend from right to left?"""
+    """Check that the bounds ascend from right to left."""
     for right, left in pairwise(lanes):
         if left - right < NARROWEST_M:
             findings.add(
@@ -53,7 +53,7 @@ def check_lanes(lanes: Sequence[float], table: TomlTable, findings: Findings) ->
 
 
 def check_ego(ego: Ego, road: Road, table: TomlTable, findings: Findings) -> None:
-    """Is ego on the road?"""
+    """Check that ego is on the road."""
     if not road.outline.covers(ego.s, ego.d):
         findings.add(
             INCONSISTENT_SCENARIO,
@@ -73,7 +73,7 @@ def check_ego(ego: Ego, road: Road, table: TomlTable, findings: Findings) -> Non
 
 
 def check_collision(ego: Ego, obstacle: Obstacle, table: TomlTable, findings: Findings) -> None:
-    """Do ego and the obstacle stand in the same place at time 0?"""
+    """Check that ego and the obstacle are apart at time 0."""
     body = swept(obstacle, 0.0, 0.0)
     if body is not None and body.overlaps(ego.body):
         findings.add(

@@ -1,4 +1,4 @@
-"""From the tables of a scenario file to a Scenario, with everything that is wrong with them."""
+"""Conversion of a scenario file's tables into a ``Scenario``."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ def _short(text: str) -> str:
 
 
 def words_of(kind: object) -> str:
-    """What a field is, in words: the description nearest to the outside of its type."""
+    """A field's description in words, the one nearest to the outside of its type."""
     for part in (*getattr(kind, "__metadata__", ()), *get_args(kind)):
         if isinstance(part, msgspec.Meta):
             if part.description:

@@ -1,4 +1,4 @@
-"""Where a field stands in a TOML file, so that a message can point at it.
+"""Source locations of the fields of a TOML file.
 
 TOML readers hand out values without positions. Headings and keys that stand on lines of their own,
 as everybody writes them, are found again here; for others the message names the field in words.
@@ -25,7 +25,7 @@ class TomlTable:
     words: str
 
     def remedy(self, key: str) -> str:
-        """How to supply a missing field."""
+        """The advice for a missing field."""
         if not self.heading and key in ("road", "ego"):
             return f"add a table `[{key}]`"
         return f"add a line `{key} = …`"

@@ -1,4 +1,4 @@
-"""What an obstacle of a scenario file may do: one thing, or one or another."""
+"""The predictions of an obstacle in a scenario file."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def read_predictions(
     findings: Findings,
     motion_of: ReadMotion,
 ) -> Weighted | None:
-    """What the obstacle may do; None if there were mistakes, which are then in ``findings``.
+    """The obstacle's motions; None after mistakes, which are then in ``findings``.
 
     So many predictions stand ``before`` these in the file.
     """
