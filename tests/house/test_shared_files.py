@@ -189,3 +189,20 @@ def test_the_lock_has_a_release_of_all_that_tests_need():
         ):
             continue
         assert requirement.specifier.contains(locked[canonicalize_name(requirement.name)])
+
+
+CONTRIBUTING = (ROOT / ".github" / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+MADE_BY_TASKS = {"docs/_build", "htmlcov/"}
+NAMED = set(re.findall(r"`([\w.-]+/[\w./-]*)`", CONTRIBUTING)) - MADE_BY_TASKS
+
+
+@pytest.mark.parametrize("name", sorted(NAMED))
+def test_the_contributing_guide_names_what_is_there(name):
+    assert (ROOT / name).exists() or (ROOT / "src/rulec" / name).exists()
+
+
+def test_the_contributing_guide_has_every_task():
+    tasks = re.findall(r"^#   \.ci/task (\w+)", (ROOT / ".ci/task").read_text(), re.MULTILINE)
+    assert set(re.findall(r"^\| `(\w+)` \|", CONTRIBUTING, re.MULTILINE)) == set(tasks)
