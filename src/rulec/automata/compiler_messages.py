@@ -6,7 +6,6 @@ from rulec.automata.axiom_instances import AxiomInstance
 from rulec.automata.spot_worker import Failed
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import formula_text
 from rulec.rulebook.model import Rule
@@ -66,12 +65,11 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
 
     Raises RuntimeError for a bug.
     """
-    place = at(rule.span)
     if failed is not None and failed.why == "bug":
         raise RuntimeError(f"while compiling rule {rule.name}:\n{failed.traceback}")
     if failed is not None and failed.why == "check":
         return FAILED_CHECK.at(
-            place,
+            rule.span,
             f"the automaton of rule `{rule.name}` is not equivalent to its formula",
             help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
         )
@@ -83,7 +81,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
         else f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     )
     return AUTOMATON_TOO_LARGE.at(
-        place,
+        rule.span,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
         "rules beside each other do not" + _bounds_help(rule),

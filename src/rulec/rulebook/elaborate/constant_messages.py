@@ -51,7 +51,7 @@ def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} and about no object",
         expected="expected no parentheses",
         help=f"write `{use.name.text}`",
-        labels=tuple(origins(use, scope)),
+        labels=origins(scope, use),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain
 
 from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
 from rulec.diagnostics.code import Code
@@ -70,27 +69,24 @@ def what_of(operand: object) -> str:
     return "true or false" if isinstance(operand, Formula) else "an object"
 
 
-def origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
-    """Where the names in an expression come from."""
+def origins(scope: Scope, *nodes: tree.Formula) -> tuple[Label, ...]:
+    """Labels on the declarations of the names in expressions, each once."""
+    return tuple(dict.fromkeys(label for node in nodes for label in _origins(node, scope)))
+
+
+def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
     match node:
         case tree.AtomUse(name):
-            symbols = scope.symbols.spans.get(name.text)
-            laid = scope.constants.overlay
-            provision = laid.changed_at.get(name.text) or laid.declared_at.get(name.text)
-            span = symbols or (provision.span if provision else None)
+            overlay = scope.constants.overlay
+            changed = overlay.changed_at.get(name.text) or overlay.declared_at.get(name.text)
+            span = scope.symbols.spans.get(name.text) or (changed.span if changed else None)
             if span is not None:
                 yield Label(span.place, f"`{name.text}` is declared here")
         case tree.Arithmetic(_, left, right):
-            yield from origins(left, scope)
-            yield from origins(right, scope)
+            yield from _origins(left, scope)
+            yield from _origins(right, scope)
         case tree.Minus(operand):
-            yield from origins(operand, scope)
-        case _:
-            return
-
-
-def _once(labels: Iterator[Label]) -> tuple[Label, ...]:
-    return tuple(dict.fromkeys(labels))
+            yield from _origins(operand, scope)
 
 
 def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
@@ -105,7 +101,7 @@ def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) ->
         f"`{short(node)}` is {kind_of(number.dimension)}{inside} and cannot be true or false",
         expected="expected something that is true or false",
         help=f"compare it, such as `{short(node)} {test}`",
-        labels=_once(origins(node, scope)),
+        labels=origins(scope, node),
     )
 
 
@@ -127,7 +123,7 @@ def no_number(node: tree.Formula, operand: object, scope: Scope) -> Diagnostic:
         f"`{short(node)}` is {what_of(operand)}, not a number",
         expected="expected a number",
         help="a number is a quantity, a parameter, a count, or such as `1.5 m`",
-        labels=_once(origins(node, scope)),
+        labels=origins(scope, node),
     )
 
 
@@ -174,7 +170,7 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
         f"both sides of `{node.relation}` are true or false, not numbers",
         expected="expected two numbers",
         help=way_out,
-        labels=_once(chain(origins(node.left, scope), origins(node.right, scope))),
+        labels=origins(scope, node.left, node.right),
     )
 
 
@@ -187,7 +183,7 @@ def not_comparable(
         f"`{short(node)}` is {what_of(operand)}, not a number",
         expected=f"expected a number beside `{around.relation}`",
         help="numbers are compared, and objects by `=` and `!=`",
-        labels=_once(origins(node, scope)),
+        labels=origins(scope, node),
     )
 
 
@@ -203,11 +199,6 @@ def two_dimensions(
     else:
         first, second = node.left, node.right
         sign = node.relation if isinstance(node, tree.Compare) else node.operator
-    labels = [
-        Label(first.span.place, f"this is {kind_of(left.dimension)}"),
-        *origins(first, scope),
-        *origins(second, scope),
-    ]
     first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
     verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
     message = f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}"
@@ -218,7 +209,10 @@ def two_dimensions(
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
         or _kind_help(first, left, second, right),
-        labels=_once(iter(labels)),
+        labels=(
+            Label(first.span.place, f"this is {first_kind}"),
+            *origins(scope, first, second),
+        ),
     )
 
 
@@ -257,7 +251,7 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
         f"{what_of(otherwise)}: they cannot stand for each other",
         expected=f"this is {what_of(otherwise)}",
         help="both sides of `if … else` are numbers, or both are true or false",
-        labels=_once(origins(node.value, scope)),
+        labels=origins(scope, node.value),
     )
 
 
