@@ -24,6 +24,7 @@ from rulec.monitoring.batch.sum_thresholds import digits_of_sum
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
@@ -190,7 +191,7 @@ def test_three_hundred_objects():
 
 
 def test_any_number_of_traces_and_what_is_none(monkeypatch):
-    monkeypatch.setattr(batch_verify, "MOST_STATES", 1000)
+    monkeypatch.setattr(batch_verify, "LIMITS", MonitoringLimits(states_together=1000))
     compiled = crowded("stutter")
     broken = RulecError(Diagnostic("R0501", "this is not a trace"))
     states = tuple(state_of(Random(1), ()) for _ in range(3))

@@ -9,7 +9,8 @@ from hypothesis import assume, given
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
-from rulec.monitoring.explain.explanation import MOST_STATES, explain
+from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
@@ -83,7 +84,7 @@ def test_a_long_trace_is_shown_around_the_decisive_state():
     explained = explain(violation, trace, rules)
     assert violation.step == explained.decisive == 40
     assert explained.states == (0, *range(33, 42))
-    assert len(explained.states) == MOST_STATES
+    assert len(explained.states) == LIMITS.states_shown
     assert explained.facts[0].values == ("far",) * 8 + ("near", "far")
 
 

@@ -12,7 +12,8 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.explain.nearest_satisfying import MOST_WAYS, nearest_kept
+from rulec.monitoring.explain.nearest_satisfying import nearest_satisfying
+from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
@@ -61,7 +62,7 @@ def test_no_word_that_holds_is_nearer(semantics, formula, chosen):
         for other in product(every, repeat=len(word))
         if holds(formula, [atoms_in(machine, one) for one in other], semantics)
     }
-    changes = nearest_kept(machine, word)
+    changes = nearest_satisfying(machine, word)
     if not holding:
         assert changes is None
         return
@@ -75,7 +76,7 @@ def test_no_word_that_holds_is_nearer(semantics, formula, chosen):
         # Then nothing that does is left out.
         nearest = {one for one in holding if distances(word, one) == best[1]}
         listed = set(mendings(machine, word, changes))
-        assert listed == nearest or len(changes[0].cubes) == MOST_WAYS
+        assert listed == nearest or len(changes[0].cubes) == LIMITS.repairs_listed
 
 
 def mendings(machine, word, changes):

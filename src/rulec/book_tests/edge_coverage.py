@@ -12,7 +12,7 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_tr
 from rulec.logic.formula import Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.verify import columns_of
+from rulec.monitoring.verify import letter_reader_of
 from rulec.rulebook.model import Rule
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
@@ -130,8 +130,8 @@ def _moments(
 ) -> Iterator[StateView]:
     for outcome in outcomes:
         trace = example_trace(rule, outcome.example)
-        columns = columns_of(trace, rulebook)
-        yield from (columns.moment(number) for number in range(len(trace.states)))
+        columns = letter_reader_of(trace, rulebook)
+        yield from (columns.view(number) for number in range(len(trace.states)))
 
 
 def _edges(

@@ -13,7 +13,7 @@ from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
-from rulec.monitoring.verify import columns_of, run
+from rulec.monitoring.verify import letter_reader_of, run
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
@@ -95,10 +95,10 @@ def _outcome(
     """The verdict for the binding that gives every variable its own name."""
     trace = example_trace(rule, example)
     where = "this state".format
-    columns = columns_of(trace, compiled, where)
+    columns = letter_reader_of(trace, compiled, where)
     last = len(trace.states) - 1
     try:
-        check_counting_axioms(compiled, last + 1, columns.moment, where, trace.place)
+        check_counting_axioms(compiled, last + 1, columns.view, where, trace.place)
         word = columns.word(machine, own_names(rule), 0, last)
     except ImpossibleStateError as error:
         raise _no_state(rule, example, error) from None

@@ -1,4 +1,4 @@
-"""States that cannot be: which fact they contradict."""
+"""Axioms: states that contradict what the vocabulary knows of every state."""
 
 from __future__ import annotations
 
@@ -34,92 +34,104 @@ class ImpossibleStateError(RulecError):
 
 
 @dataclass(frozen=True, slots=True)
-class _Said:
-    """A fact, said of objects."""
+class _AxiomInstance:
+    """An axiom about certain objects."""
 
-    fact: CompiledAxiom
+    axiom: CompiledAxiom
     bound: Mapping[str, str]
 
     def __str__(self) -> str:
-        return f"`{formula_text(rename_variables(self.fact.formula, self.bound))}`"
+        return f"`{formula_text(rename_variables(self.axiom.formula, self.bound))}`"
+
+    def truth(self, view: StateView) -> bool | Unknown:
+        """Whether the axiom holds in a state."""
+        return holds(self.axiom.formula, self.bound, view)
 
 
-def impossible(
+def impossible_state(
     rule: CompiledRule,
     objects: Mapping[str, str],
     axioms: Sequence[CompiledAxiom],
-    moment: StateView,
+    view: StateView,
+    *,
     number: int,
     where: str,
     place: SourceLocation | None,
 ) -> ImpossibleStateError:
-    """The error about a state whose letter the rule's machine cannot meet.
+    """The error about a state whose letter no axiom-abiding state has.
 
     ``objects`` are those of the rule's variables, ``where`` names the state.
     """
     types = {objects[variable.name]: variable.type for variable in rule.variables}
-    said = list(_instances([one for one in axioms if not counts(one.formula)], types, moment))
-    truths = [holds(one.fact.formula, one.bound, moment) for one in said]
-    broken = [one for one, truth in zip(said, truths, strict=True) if truth is False][:1]
+    about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
+    instances = list(_instances(about_letters, types, view))
+    truths = [instance.truth(view) for instance in instances]
+    broken = [one for one, truth in zip(instances, truths, strict=True) if truth is False][:1]
     if not broken:
-        # Each may hold by itself: what is not said cannot be so that all of them do.
-        broken = [one for one, truth in zip(said, truths, strict=True) if truth is not True]
-    return _error(broken, moment, number, where, place, f"rule `{rule.name}` depends on it")
+        # Each may hold by itself: what is unknown cannot be so that all of them do.
+        broken = [one for one, truth in zip(instances, truths, strict=True) if truth is not True]
+    why = f"rule `{rule.name}` depends on it"
+    return _error(broken, view, number=number, where=where, place=place, why=why)
 
 
 def check_counting_axioms(
     rulebook: CompiledRulebook,
     n_states: int,
-    moment: Callable[[int], StateView],
+    view: Callable[[int], StateView],
     where: Callable[[int], str],
     place: SourceLocation | None,
 ) -> None:
-    """Facts that count hold in every state, of the objects that are there, if a rule needs to know.
+    """Check the axioms that count, in every state, of the objects that are present.
 
-    It does if it reads something that the fact speaks of. Machines know nothing of such facts.
+    Only those that speak of something that a rule reads: machines know nothing of such axioms.
 
     Raises:
         RulecError: R0508.
     """
-    counting = [one for one in rulebook.axioms if counts(one.formula)]
+    counting = [axiom for axiom in rulebook.axioms if counts(axiom.formula)]
     if not counting:
         return
     read = {name for rule in rulebook.rules for name in names_in(rule.formula)}
-    counting = [one for one in counting if not read.isdisjoint(names_in(one.formula))]
+    counting = [axiom for axiom in counting if not read.isdisjoint(names_in(axiom.formula))]
     for number in range(n_states):
-        there = moment(number)
-        for said in _instances(counting, there.objects, there):
-            if holds(said.fact.formula, said.bound, there) is False:
-                raise _error([said], there, number, where(number), place, "")
+        state = view(number)
+        for instance in _instances(counting, state.objects, state):
+            if instance.truth(state) is False:
+                raise _error(
+                    [instance], state, number=number, where=where(number), place=place, why=""
+                )
 
 
 def _instances(
-    axioms: Sequence[CompiledAxiom], types: Mapping[str, str], moment: StateView
-) -> Iterator[_Said]:
-    for fact in axioms:
-        wanted = [variable.type for variable in fact.variables]
-        for chosen in choices(wanted, types, moment.vocabulary):
-            names = [variable.name for variable in fact.variables]
-            yield _Said(fact, dict(zip(names, chosen, strict=True)))
+    axioms: Sequence[CompiledAxiom], types: Mapping[str, str], view: StateView
+) -> Iterator[_AxiomInstance]:
+    for axiom in axioms:
+        parameters = [variable.type for variable in axiom.variables]
+        for chosen in choices(parameters, types, view.vocabulary):
+            names = [variable.name for variable in axiom.variables]
+            yield _AxiomInstance(axiom, dict(zip(names, chosen, strict=True)))
 
 
 def _error(
-    broken: Sequence[_Said],
-    moment: StateView,
+    broken: Sequence[_AxiomInstance],
+    view: StateView,
+    *,
     number: int,
     where: str,
     place: SourceLocation | None,
     why: str,
 ) -> ImpossibleStateError:
-    said = " and ".join(map(str, broken))
-    places = dict.fromkeys(one.fact.place for one in broken if one.fact.place is not None)
-    values = dict.fromkeys(value for one in broken for value in _values(one, moment))
+    stated = " and ".join(map(str, broken))
+    places = dict.fromkeys(
+        instance.axiom.place for instance in broken if instance.axiom.place is not None
+    )
+    values = dict.fromkeys(value for instance in broken for value in _values(instance, view))
     # A compiled rulebook has no text to show.
     unseen = [f"the fact is in {one.file}, line {one.line}" for one in places if not one.excerpt]
     return ImpossibleStateError(
         VIOLATED_AXIOM.at(
             place,
-            f"{where} cannot be: {said} {'holds' if len(broken) == 1 else 'hold'} in every state",
+            f"{where} cannot be: {stated} {'holds' if len(broken) == 1 else 'hold'} in every state",
             help="correct the state; or the fact, if there can be such states",
             labels=tuple(Label(one, "what holds in every state") for one in places if one.excerpt),
             notes=(f"here {', '.join(values)}", *unseen, *([why] if why else [])),
@@ -128,21 +140,22 @@ def _error(
     )
 
 
-def _values(said: _Said, moment: StateView) -> Iterator[str]:
-    """The values of what a fact speaks of, in words; of what is known of it."""
-    for one in atoms_of(said.fact.formula):
-        for read in (one,) if isinstance(one, Atom) else (term for _, term in one.terms):
-            value = _value(read, said.bound, moment)
+def _values(instance: _AxiomInstance, view: StateView) -> Iterator[str]:
+    """The known values of all that an axiom speaks of, in words."""
+    for proposition in atoms_of(instance.axiom.formula):
+        terms = [] if isinstance(proposition, Atom) else [term for _, term in proposition.terms]
+        for read in (proposition,) if isinstance(proposition, Atom) else terms:
+            value = _value(read, instance.bound, view)
             if value is not None:
                 yield value
 
 
-def _value(read: Atom | Term, bound: Mapping[str, str], moment: StateView) -> str | None:
+def _value(read: Atom | Term, bound: Mapping[str, str], view: StateView) -> str | None:
     if isinstance(read, Count):
-        number = number_of(read, bound, moment)
+        number = number_of(read, bound, view)
         return None if isinstance(number, Unknown) else f"`{term_text(read)}` is {number}"
-    items = tuple(bound[one] for one in read.arguments)
-    value = moment.value(read.name, items)
+    items = tuple(bound[variable] for variable in read.arguments)
+    value = view.value(read.name, items)
     if isinstance(value, Unknown):
         return None
     return (

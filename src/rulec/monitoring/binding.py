@@ -1,4 +1,4 @@
-"""Which objects a rule speaks of, and when they are there."""
+"""Bindings: choices of objects for a rule's variables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.vocabulary.object_choices import choices
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """Objects for a rule's variables, judged from state ``first`` to ``last`` (inclusive)."""
+    """Objects for a rule's variables, from state ``first`` to ``last`` (inclusive)."""
 
     objects: Mapping[str, str]
     first: int
@@ -28,8 +28,8 @@ def bindings(
 ) -> Iterator[Binding]:
     """Every way to bind the rule's variables to distinct objects of their types.
 
-    A binding is judged on the stretch in which all its objects are present; one whose objects are
-    never there together is left out. A rule without variables has one binding, the empty one.
+    A binding counts on the stretch in which all its objects are present; one whose objects are
+    never present together is left out. A rule without variables has one binding, the empty one.
     """
     names = [variable.name for variable in rule.variables]
     for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):

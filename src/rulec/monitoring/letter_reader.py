@@ -1,4 +1,4 @@
-"""Which letters a rule's machine reads, for the objects that it is bound to."""
+"""Letters that a rule's machine reads, for the objects that it is bound to."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.axioms import impossible
+from rulec.monitoring.axioms import impossible_state
 from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
 from rulec.vocabulary import Vocabulary
 
-NOBODY: Mapping[str, str] = MappingProxyType({})
-ALWAYS_THERE: Mapping[str, tuple[int, int]] = MappingProxyType({})
+NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
+ALWAYS_PRESENT: Mapping[str, tuple[int, int]] = MappingProxyType({})
 
 
 Digits = int | list[int]
-"""What one read contributes to the letter of every state; a number if it is one for all."""
+"""The digit of one read in the letter of every state; a number if it is one for all."""
 
 
 class LetterReader:
-    """States that have passed ``check_state``, read column by column.
+    """A reader of states that have passed ``check_state``, column by column.
 
-    What some objects contribute to letters is looked up once, whatever rules and bindings ask.
+    The digits of some objects are looked up once, whatever rules and bindings ask for them.
     ``where`` names a state in messages, ``place`` is where they were read. ``objects`` and
-    ``present`` are a trace's, ``facts`` what the rulebook knows of every state.
+    ``present`` are a trace's, ``axioms`` the rulebook's.
     """
 
     def __init__(
@@ -38,9 +38,10 @@ class LetterReader:
         states: Sequence[State],
         vocabulary: Vocabulary,
         where: Callable[[int], str],
+        *,
         place: SourceLocation | None = None,
-        objects: Mapping[str, str] = NOBODY,
-        present: Mapping[str, tuple[int, int]] = ALWAYS_THERE,
+        objects: Mapping[str, str] = NO_OBJECTS,
+        present: Mapping[str, tuple[int, int]] = ALWAYS_PRESENT,
         axioms: Sequence[CompiledAxiom] = (),
     ) -> None:
         self._states = states
@@ -49,19 +50,19 @@ class LetterReader:
         self._place = place
         self._objects = objects
         self._present = present
-        self._facts = axioms
+        self._axioms = axioms
         self._values: dict[tuple[object, ...], list[Value]] = {}
-        self._known: dict[tuple[object, ...], Digits] = {}
+        self._digits_of_reads: dict[tuple[object, ...], Digits] = {}
         self._given: dict[str, list[Any]] = {}
-        self._one: dict[str, bool] = {}
-        self._moments: dict[int, StateView] = {}
+        self._constant: dict[str, bool] = {}
+        self._views: dict[int, StateView] = {}
 
-    def moment(self, number: int) -> StateView:
-        """A state with the objects that are there."""
-        if number not in self._moments:
-            there = present_in(number, self._objects, self._present)
-            self._moments[number] = StateView(self._states[number], there, self._vocabulary)
-        return self._moments[number]
+    def view(self, number: int) -> StateView:
+        """A state with the objects that are present."""
+        if number not in self._views:
+            present = present_in(number, self._objects, self._present)
+            self._views[number] = StateView(self._states[number], present, self._vocabulary)
+        return self._views[number]
 
     def word(
         self, rule: CompiledRule, objects: Mapping[str, str], first: int, last: int
@@ -79,7 +80,7 @@ class LetterReader:
                 items = tuple([objects[variable] for variable in read.variables])
                 digits = self._digits(read, items, first, last, rule.name)
             else:
-                digits = self._counted_off(scale(read), objects, first, last, rule.name)
+                digits = self._number_digits(scale(read), objects, first, last, rule.name)
             if isinstance(digits, int):
                 same += stride * digits
             elif varying is None:
@@ -93,9 +94,15 @@ class LetterReader:
             word = tuple([machine.letters[same + number] for number in varying])
         if IMPOSSIBLE in word:
             number = first + word.index(IMPOSSIBLE)
-            where = self._where(number)
-            there = self.moment(number)
-            raise impossible(rule, objects, self._facts, there, number, where, self._place)
+            raise impossible_state(
+                rule,
+                objects,
+                self._axioms,
+                self.view(number),
+                number=number,
+                where=self._where(number),
+                place=self._place,
+            )
         return word
 
     def _digits(
@@ -103,70 +110,73 @@ class LetterReader:
     ) -> Digits:
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
         key = (read.name, read.values, items, first, last)
-        if key not in self._known:
-            values = self._told(read.name, items, first, last, rule)
+        if key not in self._digits_of_reads:
+            values = self._values_of(read.name, items, first, last, rule)
             digits = {value: read.digit(value) for value in set(values)}
-            self._known[key] = _digits([digits[value] for value in values])
-        return self._known[key]
+            self._digits_of_reads[key] = _digits([digits[value] for value in values])
+        return self._digits_of_reads[key]
 
-    def _told(
+    def _values_of(
         self, name: str, items: tuple[str, ...], first: int, last: int, rule: str
     ) -> list[Value]:
-        """What states say of a name; one value for all, if they say the very same."""
+        """The values of a name in each state; one for all, if all give the very same."""
         key = (name, items, first, last)
         if key not in self._values:
-            numbers = self._telling((name,), first, last)
-            found: Iterable[Any] = self._said(name)[numbers.start : numbers.stop]
+            numbers = self._numbers_of((name,), first, last)
+            given: Iterable[Any] = self._given_by_states(name)[numbers.start : numbers.stop]
             for item in items:
-                found = [None if inner is None else inner.get(item) for inner in found]
+                given = [None if inner is None else inner.get(item) for inner in given]
             default = self._vocabulary.declarations[name].default
-            values: list[Any] = [default if value is None else value for value in found]
+            values: list[Any] = [default if value is None else value for value in given]
             if None in values:
                 raise self._missing(name, items, numbers[values.index(None)], rule)
             self._values[key] = values
         return self._values[key]
 
-    def _said(self, name: str) -> list[Any]:
-        """What each state gives for a name, None if nothing."""
+    def _given_by_states(self, name: str) -> list[Any]:
+        """The value that each state gives for a name, None if nothing."""
         if name not in self._given:
             self._given[name] = [state.get(name) for state in self._states]
         return self._given[name]
 
-    def _counted_off(
+    def _number_digits(
         self, read: ThresholdScale, objects: Mapping[str, str], first: int, last: int, rule: str
     ) -> Digits:
-        """The digits of a number: how many thresholds it passes."""
+        """The digits of a number, which are how many thresholds it passes."""
         items = tuple([objects[variable] for variable in read.variables])
         key = (read, items, first, last)
-        if key not in self._known:
+        if key not in self._digits_of_reads:
             if read.quantity is None:
-                numbers = self._telling(read.names, first, last)
+                numbers = self._numbers_of(read.names, first, last)
                 bound = dict(zip(read.variables, items, strict=True))
-                self._known[key] = _digits(self._digit(read, bound, n, rule) for n in numbers)
+                self._digits_of_reads[key] = _digits(
+                    self._digit(read, bound, n, rule) for n in numbers
+                )
             else:
                 name = read.quantity.name
                 arguments = tuple([objects[variable] for variable in read.quantity.arguments])
-                values = self._told(name, arguments, first, last, rule)
-                self._known[key] = _digits(read.digit(value) for value in values)
-        return self._known[key]
+                values = self._values_of(name, arguments, first, last, rule)
+                self._digits_of_reads[key] = _digits(read.digit(value) for value in values)
+        return self._digits_of_reads[key]
 
-    def _telling(self, names: Sequence[str], first: int, last: int) -> range:
-        """Of these states enough to know what all say of some names: one, if it is in all."""
-        if self._present or not all(self._is_one(name) for name in names):
+    def _numbers_of(self, names: Sequence[str], first: int, last: int) -> range:
+        """The states to look at for some names: the first, if all give the very same values."""
+        if self._present or not all(self._is_constant(name) for name in names):
             return range(first, last + 1)
         return range(first, last + 1)[:1]
 
-    def _is_one(self, name: str) -> bool:
-        """Do all states say the very same of a name, or nothing? As cells do of a whole scene."""
-        if name not in self._one:
-            self._one[name] = len(set(map(id, self._said(name)))) <= 1
-        return self._one[name]
+    def _is_constant(self, name: str) -> bool:
+        """Whether all states give the same object for a name, as cells do for a whole scene."""
+        if name not in self._constant:
+            given = self._given_by_states(name)
+            self._constant[name] = all(value is given[0] for value in given)
+        return self._constant[name]
 
     def _digit(self, read: ThresholdScale, bound: Mapping[str, str], number: int, rule: str) -> int:
-        found = weighted_sum(read.read.terms, bound, self.moment(number))
-        if isinstance(found, Unknown):
-            raise self._missing(found.name, found.objects, number, rule)
-        return read.read.digit(found)
+        total = weighted_sum(read.read.terms, bound, self.view(number))
+        if isinstance(total, Unknown):
+            raise self._missing(total.name, total.objects, number, rule)
+        return read.read.digit(total)
 
     def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
         of = f" of `{', '.join(items)}`" if items else ""
@@ -178,14 +188,14 @@ class LetterReader:
 
 
 def _digits(column: Iterable[int]) -> Digits:
-    found = list(column)
-    return found[0] if len(set(found)) == 1 else found
+    digits = list(column)
+    return digits[0] if len(set(digits)) == 1 else digits
 
 
 def present_in(
     number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
 ) -> Mapping[str, str]:
-    """The objects that are there in a state, with their types; ``present`` as in a trace."""
+    """The objects that are present in a state, with their types; ``present`` as in a trace."""
     if not present:
         return objects
     return {

@@ -1,4 +1,4 @@
-"""One state as a rule reads it: who is there, what is the case, and what the numbers are.
+"""Views of single states: valuations, with the objects that are present.
 
 A value that a state does not give, and that has no default, is unknown.
 """
@@ -18,7 +18,7 @@ from rulec.vocabulary import Declaration, Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """A state that has passed ``check_state``, and the objects that are there, with their types."""
+    """A state that has passed ``check_state``, and the objects present, with their types."""
 
     state: State
     objects: Mapping[str, str]

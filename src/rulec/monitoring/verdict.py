@@ -25,14 +25,14 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What a rulebook says of a trace: the violations in the order of rules and objects."""
+    """A rulebook's verdict on a trace: the violations in the order of rules and objects."""
 
     trace: str
     violations: tuple[Violation, ...]
 
     @property
     def satisfied(self) -> bool:
-        """Is every hard rule kept? Soft rules may yield."""
+        """Whether every hard rule is kept; soft rules may yield."""
         return all(violation.strength != "hard" for violation in self.violations)
 
 

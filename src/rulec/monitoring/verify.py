@@ -1,4 +1,4 @@
-"""A compiled rulebook's verdict on a trace."""
+"""Verification of a single trace by a compiled rulebook."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rulec.trace.trace_validation import check_trace
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
-    """Judge a trace by every rule, for every binding of its variables.
+    """Verify a trace against every rule, for every binding of its variables.
 
     Raises:
         RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
@@ -27,25 +27,23 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
             a fact that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
-    rulebook = made_for(trace, rulebook)
+    rulebook = rulebook_for_trace(trace, rulebook)
     for rule in rulebook.rules:
         if rule.step_s is not None:
             check_step(rule, exact(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     validator = StateValidator(rulebook.vocabulary, trace.objects)
     validator.check(trace.states, "state {}".format, trace.place)
-    columns = columns_of(trace, rulebook)
-    check_counting_axioms(
-        rulebook, len(trace.states), columns.moment, "state {}".format, trace.place
-    )
+    reader = letter_reader_of(trace, rulebook)
+    check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
     violations = []
     for rule in rulebook.rules:
-        # Objects that did the same are judged once.
+        # Bindings with equal words share a run.
         verdicts: dict[tuple[int, ...], tuple[bool, int | None]] = {}
         for binding in bindings(
             rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
         ):
-            word = columns.word(rule, binding.objects, binding.first, binding.last)
+            word = reader.word(rule, binding.objects, binding.first, binding.last)
             if word not in verdicts:
                 verdicts[word] = run(rule.machine, word)
             accepted, step = verdicts[word]
@@ -55,31 +53,31 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     return Verdict(trace.id, tuple(violations))
 
 
-def columns_of(
+def letter_reader_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
 ) -> LetterReader:
-    """The columns of a trace that has been checked; ``where`` names a state in messages."""
+    """The reader of a trace that has been checked; ``where`` names a state in messages."""
     vocabulary = rulebook.vocabulary
     return LetterReader(
         trace.states,
         vocabulary,
         where,
-        trace.place,
-        trace.objects,
-        trace.present,
-        rulebook.axioms,
+        place=trace.place,
+        objects=trace.objects,
+        present=trace.present,
+        axioms=rulebook.axioms,
     )
 
 
-def made_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
+def rulebook_for_trace(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook with the machines for a trace's step. Raises RulecError."""
-    return made_for_step(trace.step_s, rulebook, trace.place)
+    return rulebook_for_step(trace.step_s, rulebook, trace.place)
 
 
-def made_for_step(
+def rulebook_for_step(
     step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
-    """The same for the step of a trace at some place."""
+    """The rulebook with the machines for the step of a trace at some place."""
     try:
         return rulebook.fitted_to(step_s)
     except RulecError as error:
@@ -95,7 +93,7 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
 
 
 def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
-    """As ``verify``, for one of many: what cannot be judged is an answer too.
+    """Verify one trace of many; an error is an answer too.
 
     ``item`` may be, in place of a trace, the error that kept it from being read.
     """

@@ -54,7 +54,7 @@ def trace(
     """
     from rulec.api.workflow import machines
     from rulec.diagnostics import named
-    from rulec.monitoring.verify import made_for, verify
+    from rulec.monitoring.verify import rulebook_for_trace, verify
     from rulec.report.pictures.drawing.picture_formats import Drawing
     from rulec.report.pictures.picture_titles import trace_title
     from rulec.report.pictures.trace_picture import ribbon_picture
@@ -69,7 +69,7 @@ def trace(
             raise click.UsageError(
                 f"trace `{chosen.id}` has no object `{item}`; it has {named(list(chosen.objects))}."
             )
-    used = _only(made_for(chosen, rules), patterns)
+    used = _only(rulebook_for_trace(chosen, rules), patterns)
     verdict = verify(chosen, used)
     shown = ribbon(chosen, used, verdict, objects)
     title = trace_title(replace(verdict, violations=shown.violations), used, (*patterns, *objects))

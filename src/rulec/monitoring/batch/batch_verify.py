@@ -23,15 +23,13 @@ from rulec.monitoring.batch.trace_groups import group_traces, under_common_names
 from rulec.monitoring.batch.trace_shapes import Names, Shape, shape_of, under_own_names
 from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
+from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import made_for, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_frame, check_presence
-
-MOST_STATES = 1 << 18
-"""Traces with so many states together are read before they are judged."""
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
@@ -58,7 +56,7 @@ def verify_many(
     for item in traces:
         chunk.append(item)
         n_states += len(item.states) + 1 if isinstance(item, Trace) else 1
-        if n_states >= MOST_STATES:
+        if n_states >= LIMITS.states_together:
             yield from verify_chunk(chunk, rulebook)
             chunk, n_states = [], 0
     yield from verify_chunk(chunk, rulebook)
@@ -175,7 +173,7 @@ def _is_framed(trace: Trace) -> bool:
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
-    rules = made_for(trace, rulebook)
+    rules = rulebook_for_trace(trace, rulebook)
     for rule in rules.rules:
         check_step(rule, exact(trace.step_s))
     check_objects(trace.objects, rules.vocabulary)
@@ -190,8 +188,8 @@ def _fits(
     vocabulary = rulebook.vocabulary
     try:
         check_state(state, objects, vocabulary, "")
-        moment = StateView(state, there, vocabulary)
-        check_counting_axioms(rulebook, 1, lambda _: moment, str, None)
+        view = StateView(state, there, vocabulary)
+        check_counting_axioms(rulebook, 1, lambda _: view, str, None)
     except RulecError:
         return False
     return True

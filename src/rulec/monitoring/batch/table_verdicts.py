@@ -20,7 +20,7 @@ from rulec.monitoring.batch.engine import verify_columns
 from rulec.monitoring.batch.trace_shapes import under_own_names
 from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.verdict import Verdict
-from rulec.monitoring.verify import made_for, made_for_step, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.block_presence import outlined
 from rulec.trace.formats.table_blocks import Block, OddTableError
@@ -44,10 +44,10 @@ def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Seque
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook that one of ``verify_items`` was judged by."""
     if isinstance(items, Block):
-        return made_for_step(items.step_s(place), rulebook)
+        return rulebook_for_step(items.step_s(place), rulebook)
     trace = items[place]
     assert isinstance(trace, Trace)
-    return made_for(trace, rulebook)
+    return rulebook_for_trace(trace, rulebook)
 
 
 def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:

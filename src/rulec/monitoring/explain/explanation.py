@@ -1,4 +1,4 @@
-"""Why a rule is violated: what it read in each state, and how its formula came out in parts."""
+"""Explanations of violations: the values read in each state, and of the formula's parts."""
 
 from __future__ import annotations
 
@@ -25,16 +25,14 @@ from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
 from rulec.monitoring.binding import Binding, bindings
-from rulec.monitoring.explain.nearest_satisfying import Change, nearest_kept
+from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
+from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import columns_of
+from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Quantity as QuantityDeclaration
 from rulec.vocabulary import Vocabulary
-
-MOST_STATES = 10
-"""A longer stretch is shown by its first state and those up to the one behind the decisive one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +85,7 @@ class Explanation:
     decisive: int
     facts: tuple[Observation, ...]
     parts: tuple[Part, ...]
-    repair: tuple[Change, ...] | None
+    repair: tuple[Repair, ...] | None
     vocabulary: Vocabulary
 
 
@@ -95,17 +93,17 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     """Explain one of the violations that ``verify`` found in this trace by this rulebook."""
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     binding = _binding(violation, rule, trace, rulebook.vocabulary)
-    columns = columns_of(trace, rulebook)
+    columns = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)
     decisive = binding.last if violation.step is None else violation.step
     states = _shown(stretch, decisive)
-    seen = _Seen(
-        [columns.moment(number) for number in stretch],
+    observed = _ObservedStates(
+        [columns.view(number) for number in stretch],
         binding.objects,
         [number - binding.first for number in states],
         decisive - binding.first,
     )
-    truths = {atom: seen.truths(atom) for atom in dict.fromkeys(atoms_of(rule.formula))}
+    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(atoms_of(rule.formula))}
     word = [
         frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
     ]
@@ -118,109 +116,115 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
         violation,
         states,
         decisive,
-        tuple(_facts(truths, decides, seen)),
-        tuple(_parts(rule.formula, formula, values, decides, seen, 0)),
-        _repair(rule.machine, seen, binding.first),
+        tuple(_facts(truths, decides, observed)),
+        tuple(_parts(rule.formula, formula, values, decides, observed, 0)),
+        _repair(rule.machine, observed, binding.first),
         rulebook.vocabulary,
     )
 
 
-def _repair(machine: MealyMonitor, seen: _Seen, first: int) -> tuple[Change, ...] | None:
-    found = nearest_kept(machine, [seen.letter(machine, moment) for moment in seen.moments])
-    return found and tuple([replace(one, place=first + one.place) for one in found])
+def _repair(
+    machine: MealyMonitor, observed: _ObservedStates, first: int
+) -> tuple[Repair, ...] | None:
+    result = nearest_satisfying(
+        machine, [observed.letter(machine, view) for view in observed.views]
+    )
+    return result and tuple([replace(one, place=first + one.place) for one in result])
 
 
 def _binding(
     violation: Violation, rule: CompiledRule, trace: Trace, vocabulary: Vocabulary
 ) -> Binding:
-    everyone = bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
-    return next(found for found in everyone if found.objects == violation.binding)
+    candidates = bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
+    return next(binding for binding in candidates if binding.objects == violation.binding)
 
 
 def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
-    if len(stretch) <= MOST_STATES:
+    if len(stretch) <= LIMITS.states_shown:
         return tuple(stretch)
     last = min(decisive + 1, stretch[-1])
-    first = max(stretch[0], last - MOST_STATES + 2)
+    first = max(stretch[0], last - LIMITS.states_shown + 2)
     return tuple(sorted({stretch[0], *range(first, last + 1)}))
 
 
 @dataclass(frozen=True, slots=True)
-class _Seen:
-    """What a binding's states say; verify has read all of it, so nothing is unknown.
+class _ObservedStates:
+    """The states of a binding; verify has read all of their values, so none is unknown.
 
-    ``shown`` are the indices of the moments to show, ``decisive`` is one of them.
+    ``shown`` are the indices of the states to show, ``decisive`` is one of them.
     """
 
-    moments: Sequence[StateView]
+    views: Sequence[StateView]
     bound: Mapping[str, str]
     shown: Sequence[int]
     decisive: int
 
     def truths(self, proposition: Proposition) -> list[bool]:
-        """Is it the case, in each moment?"""
-        return [holds(proposition, self.bound, moment) is True for moment in self.moments]
+        """Whether a proposition holds in each state."""
+        return [holds(proposition, self.bound, view) is True for view in self.views]
 
     def values(self, name: str, arguments: Sequence[str]) -> list[Value]:
-        """The value of a declaration in each moment."""
+        """The value of a declaration in each state."""
         items = tuple(self.bound[variable] for variable in arguments)
-        found = [moment.value(name, items) for moment in self.moments]
-        return [value for value in found if not isinstance(value, Unknown)]
+        result = [view.value(name, items) for view in self.views]
+        return [value for value in result if not isinstance(value, Unknown)]
 
-    def letter(self, machine: MealyMonitor, moment: StateView) -> tuple[int, ...]:
-        """What a machine reads of a moment, digit by digit."""
+    def letter(self, machine: MealyMonitor, view: StateView) -> tuple[int, ...]:
+        """The letter that a machine reads of a state, digit by digit."""
         digits = []
         for read in machine.reads:
             if isinstance(read, NumberRead):
-                number = weighted_sum(read.terms, self.bound, moment)
+                number = weighted_sum(read.terms, self.bound, view)
                 assert not isinstance(number, Unknown), "verify has read it"
                 digits.append(read.digit(number))
             else:
                 items = tuple([self.bound[variable] for variable in read.variables])
-                value = moment.value(read.name, items)
+                value = view.value(read.name, items)
                 assert not isinstance(value, Unknown), "verify has read it"
                 digits.append(read.digit(value))
         return tuple(digits)
 
     def counted(self, term: Count) -> list[tuple[str, ...]]:
-        """The objects that count in each moment."""
-        found = [objects_counted(term, self.bound, moment) for moment in self.moments]
-        return [objects for objects in found if not isinstance(objects, Unknown)]
+        """The objects that count in each state."""
+        result = [objects_counted(term, self.bound, view) for view in self.views]
+        return [objects for objects in result if not isinstance(objects, Unknown)]
 
     def changes(self, values: Sequence[object]) -> bool:
-        """Is the value in the decisive moment another than in the one before?"""
+        """Whether the value in the decisive state is another than in the one before."""
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
 
 
 def _facts(
-    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], seen: _Seen
+    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], observed: _ObservedStates
 ) -> Iterator[Observation]:
-    """What is read, in the order in which the formula first speaks of it."""
+    """All that is read, in the order in which the formula first speaks of it."""
     readers: dict[Atom | Term, list[Proposition]] = {}
     for proposition in truths:
         for read in _read_by(proposition):
             readers.setdefault(read, []).append(proposition)
     for read, propositions in readers.items():
         # A number always changes a little; what counts is whether it passes a limit.
-        passes = isinstance(read, Atom) or any(seen.changes(truths[one]) for one in propositions)
+        passes = isinstance(read, Atom) or any(
+            observed.changes(truths[one]) for one in propositions
+        )
         decides = not deciding.isdisjoint(propositions)
         if isinstance(read, Count):
-            objects = seen.counted(read)
+            objects = observed.counted(read)
             yield Observation(
                 term_text(read),
-                tuple(len(objects[n]) for n in seen.shown),
-                passes and seen.changes([len(one) for one in objects]),
+                tuple(len(objects[n]) for n in observed.shown),
+                passes and observed.changes([len(one) for one in objects]),
                 decides,
-                objects=tuple(objects[n] for n in seen.shown),
+                objects=tuple(objects[n] for n in observed.shown),
             )
         else:
-            values = seen.values(read.name, read.arguments)
-            items = tuple(seen.bound[variable] for variable in read.arguments)
-            declaration = seen.moments[0].vocabulary.declarations[read.name]
+            values = observed.values(read.name, read.arguments)
+            items = tuple(observed.bound[variable] for variable in read.arguments)
+            declaration = observed.views[0].vocabulary.declarations[read.name]
             yield Observation(
                 str(Atom(read.name, items)),
-                tuple(values[n] for n in seen.shown),
-                passes and seen.changes(values),
+                tuple(values[n] for n in observed.shown),
+                passes and observed.changes(values),
                 decides,
                 declaration.unit if isinstance(declaration, QuantityDeclaration) else "",
             )
@@ -237,19 +241,19 @@ def _parts(
     stepped: Formula,
     truths: Mapping[Formula, list[bool]],
     deciding: Set[Formula],
-    seen: _Seen,
+    observed: _ObservedStates,
     depth: int,
 ) -> Iterator[Part]:
     """The parts as they are written, with the values of the same formula with bounds in steps."""
     values = truths[stepped]
-    shown = tuple(values[n] for n in seen.shown)
+    shown = tuple(values[n] for n in observed.shown)
     text, decides = formula_text(written), stepped in deciding
-    yield Part(written, text, depth, shown, seen.changes(values), decides)
+    yield Part(written, text, depth, shown, observed.changes(values), decides)
     match written, stepped:
         case Unary(_, operand), Unary(_, same):
-            yield from _parts(operand, same, truths, deciding, seen, depth + 1)
+            yield from _parts(operand, same, truths, deciding, observed, depth + 1)
         case Binary(_, left, right), Binary(_, same_left, same_right):
-            yield from _parts(left, same_left, truths, deciding, seen, depth + 1)
-            yield from _parts(right, same_right, truths, deciding, seen, depth + 1)
+            yield from _parts(left, same_left, truths, deciding, observed, depth + 1)
+            yield from _parts(right, same_right, truths, deciding, observed, depth + 1)
         case _:
             return

@@ -1,4 +1,4 @@
-"""The nearest trace that keeps a rule: how little would have had to be otherwise.
+"""Repairs: the nearest trace that satisfies a rule, found by dynamic programming.
 
 Of two traces the nearer one differs in fewer things that the rule reads, each of them counted once
 in every state; of equally near ones that one is nearer which is like the given one for longer.
@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
+from rulec.monitoring.limits import LIMITS
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]
 """The digit of each thing that a machine reads of a state, in its order."""
-
-MOST_WAYS = 8
-"""Of what a state might say instead no more is listed than changes to so many sets of reads."""
 
 _Near = tuple[NDArray[np.int64], NDArray[np.int64]]
 """For each class of letters how far it is from a letter, and the number of its nearest one."""
@@ -32,8 +30,8 @@ _FAR = 1 << 40
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """What a state would have had to say: the letters of any of the ``cubes`` do.
+class Repair:
+    """The values that a state would have had to have: the letters of any of the ``cubes`` do.
 
     ``place`` is the state's in the word. Of what need not be otherwise a cube has all digits.
     """
@@ -42,13 +40,13 @@ class Change:
     cubes: tuple[Cube, ...]
 
 
-def nearest_kept(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[Change, ...] | None:
-    """What to change so that a non-empty word is accepted, and the least of that.
+def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[Repair, ...] | None:
+    """The fewest changes after which a non-empty word is accepted.
 
     None if no word of this length is. Letters that cannot be, by the facts of the vocabulary or by
     what their numbers say of each other, are not used.
     """
-    alphabet = _Alphabet(machine)
+    alphabet = _LetterDistances(machine)
     given = [alphabet.number(letter) for letter in word]
     while True:
         letters = _nearest(machine, [alphabet.near(letter) for letter in word])
@@ -65,13 +63,13 @@ def nearest_kept(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[Change,
         if letters[place] != given[place]:
             rest = symbols[place + 1 :] if place == changed[-1] else None
             does = _as_good(machine, state, symbol, rest)
-            found.append(Change(place, alphabet.ways(word[place], letters[place], does)))
+            found.append(Repair(place, alphabet.ways(word[place], letters[place], does)))
         state = machine.successors[state][symbol]
     return tuple(found)
 
 
 def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
-    """The nearest accepted letters: from the last state back it is known how far they are."""
+    """The nearest accepted letters, by each state's distance from being accepted."""
     successors = np.array(machine.successors)
     # So far from being accepted is the rest of the word, by how much of it there is and the state.
     last = np.where(np.array(machine.outputs), near[-1][0], _FAR)
@@ -97,7 +95,7 @@ def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
 def _as_good(
     machine: MealyMonitor, state: int, symbol: int, rest: Sequence[int] | None
 ) -> NDArray[np.bool_]:
-    """Which classes do as well as one, read in a state.
+    """The classes that do as well as one, read in a state.
 
     Those that lead to the same state; where nothing else is changed in the ``rest`` of the word,
     those after which it is accepted.
@@ -116,8 +114,8 @@ def _accepts(machine: MealyMonitor, state: int, rest: Sequence[int]) -> bool:
     return machine.outputs[state][rest[-1]]
 
 
-class _Alphabet:
-    """All letters of a machine, as columns of digits."""
+class _LetterDistances:
+    """All letters of a machine, as columns of digits, and how far they are from a letter."""
 
     def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
@@ -139,7 +137,7 @@ class _Alphabet:
         return sum([stride * digit for stride, digit in zip(self._strides, letter, strict=True)])
 
     def near(self, letter: Letter) -> _Near:
-        """How far the classes are from a letter."""
+        """The distances of the classes from a letter."""
         if letter not in self._near:
             n_letters = len(self._classes)
             ranks = self._differ(letter).sum(axis=0) * n_letters + np.arange(n_letters)
@@ -154,14 +152,14 @@ class _Alphabet:
         return differ
 
     def exclude(self, letters: Sequence[int]) -> None:
-        """These letters cannot be, and none that says the same of all numbers."""
+        """Exclude these letters, and all with the same digits of numbers."""
         numbers = self._digits[self._is_number]
         for letter in letters:
             self._classes[(numbers == numbers[:, [letter]]).all(axis=0)] = IMPOSSIBLE
         self._near.clear()
 
     def can_be(self, number: int) -> bool:
-        """Are there numbers that are as this letter says?"""
+        """Whether there are numbers with the digits of this letter."""
         digits = tuple(self._digits[self._is_number, number].tolist())
         if digits not in self._can_be:
             reads = [one for one in self._reads if isinstance(one, NumberRead)]
@@ -184,7 +182,7 @@ class _Alphabet:
             reads = tuple(np.flatnonzero(differ[:, letter]).tolist())
             by_reads.setdefault(reads, []).append(letter)
         found = (self._cubes(reads, letters) for reads, letters in sorted(by_reads.items()))
-        return tuple(islice((cube for cubes in found for cube in cubes), MOST_WAYS))
+        return tuple(islice((cube for cubes in found for cube in cubes), LIMITS.repairs_listed))
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
         """Letters with the same changes: in one cube if they are all that it has."""

@@ -121,7 +121,7 @@ class BoundRules:
             objects=self.objects,
             axioms=self._rulebook.axioms,
         )
-        check_counting_axioms(self._rulebook, 1, reader.moment, lambda _: where, place)
+        check_counting_axioms(self._rulebook, 1, reader.view, lambda _: where, place)
         classes = {
             bound_rule.prepared.name: [
                 reader.word(bound_rule.prepared.rule, bound_rule.prepared.bound(items), 0, 0)[0]

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.monitoring.letter_reader import NOBODY
+from rulec.monitoring.letter_reader import NO_OBJECTS
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.monitor_state import (
@@ -59,7 +59,7 @@ class Monitor:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        start = initial_state(BoundRules(rulebook, rule_groups(rulebook), NOBODY))
+        start = initial_state(BoundRules(rulebook, rule_groups(rulebook), NO_OBJECTS))
         self._now: _Now = start, -1, (), TransitionCache()
         self._violations: list[Violation] = []
 
@@ -93,7 +93,10 @@ class Monitor:
         return tuple(self._violations[: self._now[0].n_violations])
 
     def step(
-        self, state: State, objects: Mapping[str, str] = NOBODY, place: SourceLocation | None = None
+        self,
+        state: State,
+        objects: Mapping[str, str] = NO_OBJECTS,
+        place: SourceLocation | None = None,
     ) -> SoFar:
         """Take the next state.
 

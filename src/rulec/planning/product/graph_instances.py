@@ -83,7 +83,7 @@ def instances(
     ]
     for layer, read in enumerate(columns):
         where = f"a cell of layer {layer}".format
-        check_counting_axioms(rulebook, len(graph.states[layer]), read.moment, where, None)
+        check_counting_axioms(rulebook, len(graph.states[layer]), read.view, where, None)
     result: list[GraphInstance] = []
     for rule in rules:
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
