@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rulec.analysis.diff.shared_vocabulary import shared_vocabulary
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.free_names import names_in

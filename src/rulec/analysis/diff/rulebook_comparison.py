@@ -9,9 +9,9 @@ from fractions import Fraction
 
 from rulec.analysis.counterexample import declarations_read
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
-from rulec.analysis.diff.shared_vocabulary import shared_vocabulary
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.rulebook.model import Remark, Rule, Rulebook
