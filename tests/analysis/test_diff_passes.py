@@ -1,0 +1,286 @@
+"""The passes of comparisons, one by one: reasons, matrices, pairs of rulebooks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rulec.analysis.counterexample import counterexample
+from rulec.analysis.diff.comparison_matrix import CONVERSE, comparison_matrix, pairs, steps
+from rulec.analysis.diff.diverse_witnesses import diverse_witnesses, non_default_names
+from rulec.analysis.diff.rule_comparison import common_types, compare, relation_of
+from rulec.analysis.diff.rulebook_comparison import (
+    diff_rulebooks,
+    rules_matching,
+    setting_pairs,
+)
+from rulec.analysis.lineage.rule_lineage import (
+    BookHeader,
+    BookLineage,
+    ConstantHistory,
+    ConstantValue,
+    LineageStep,
+    RuleHistory,
+)
+from rulec.logic.formula import Atom, Binary, BinaryOperator
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.model import Variable
+from rulec.trace import Trace
+from support.builders.rulebooks import always, no
+from support.generators.random_rule_pairs import ALONE, VOCABULARY, X, Y, allows, formulas, sides
+
+P = Atom("p")
+
+
+def either(*atoms):
+    whole = atoms[0]
+    for one in atoms[1:]:
+        whole = Binary(BinaryOperator.OR, whole, one)
+    return whole
+
+
+class TestDiverseWitnesses:
+    def test_each_reason_is_found(self):
+        reasons = [P, ALONE[3], Atom("follows", ("x", "y"))]
+        forbidding, allowing = sides([always(no(either(*reasons))), always(no(no(no(P))))], [X, Y])
+        _, allowing = sides([always(P), always(either(P, no(P)))], [X, Y])
+        first = counterexample(forbidding, [allowing])
+        found = diverse_witnesses(forbidding, allowing, first, 5)
+        names = [non_default_names(one, VOCABULARY) for one in found]
+        assert sorted(map(sorted, names)) == [["follows"], ["p"], ["speed"]]
+        assert found[0] is first
+        assert diverse_witnesses(forbidding, allowing, first, 2) == found[:2]
+        assert diverse_witnesses(forbidding, allowing, first, 1) == (first,)
+
+    def test_names_with_another_value_than_the_default(self):
+        trace = Trace(
+            "t", 1.0, {"x": "thing"}, ({"speed": 0.0}, {"p": True, "place": {"x": "near"}})
+        )
+        # Without a default nothing is as usual.
+        assert non_default_names(trace, VOCABULARY) == {"p"}
+
+
+class TestRuleComparison:
+    @pytest.mark.parametrize(
+        ("first", "second", "relation"),
+        [
+            (None, None, "equal"),
+            ("t", None, "stricter"),
+            (None, "t", "laxer"),
+            ("t", "t", "incomparable"),
+        ],
+    )
+    def test_relations(self, first, second, relation):
+        assert relation_of(first, second) == relation
+        assert relation_of(second, first) == CONVERSE[relation]
+
+    @given(st.tuples(*[formulas(ALONE[:3])] * 2))
+    @settings(max_examples=25)
+    def test_the_converse_is_the_other_way_around(self, pair):
+        one, other = sides(pair, [X])
+        assert compare(other, one).relation == CONVERSE[compare(one, other).relation]
+
+    @pytest.mark.parametrize(
+        ("first", "second", "expected"),
+        [
+            (["thing"], ["thing"], None),
+            (["thing"], ["car"], ("car",)),
+            (["car", "thing"], ["thing", "car"], None),
+            (["thing", "thing"], ["car", "thing"], ("car", "thing")),
+            (["thing"], ["thing", "thing"], None),
+        ],
+    )
+    def test_common_types(self, first, second, expected):
+        heads = [
+            [Variable(f"v{n}", kind) for n, kind in enumerate(kinds)] for kinds in (first, second)
+        ]
+        assert common_types(*heads, VOCABULARY) == expected
+
+    def test_the_same_law_is_not_searched(self):
+        one, other = sides([always(P), always(no(P))], [X])
+        assert compare(one, replace(other, law=one.law)).relation == "equal"
+
+
+HEAD = "signal p, q default false\n"
+
+
+def book(name, *rules, extra=""):
+    return parse_rulebook(
+        f"rulebook {name}\n{HEAD}{extra}"
+        + "".join(f"hard rule {rule} {{ require {text} }}\n" for rule, text in rules)
+    )
+
+
+BOOKS = [
+    book("a", ("r", "never p"), ("s", "never q"), ("only", "p")),
+    book("b", ("r", "always not p"), ("s", "never (p and q)")),
+    book("c", ("r", "never (p or q)"), extra='silent on s because "nobody knows"\n'),
+]
+
+
+class TestComparisonMatrix:
+    def test_laws_and_relations(self):
+        matrix = comparison_matrix(BOOKS)
+        by_name = {one.name: one for one in matrix.rules}
+        assert [one.name for one in matrix.rules] == ["r", "s", "only"]
+        assert [one.name for one in matrix.shared] == ["r", "s"]
+        assert [by_name["r"].letter(name) for name in "abc"] == ["A", "A", "B"]
+        assert [by_name["s"].letter(name) for name in "abc"] == ["A", "B", ""]
+        assert by_name["r"].relation("a", "b") == "equal"
+        assert by_name["r"].relation("c", "a") == "stricter"
+        assert by_name["s"].relation("b", "a") == "laxer"
+        assert by_name["s"].relation("a", "c") is None
+        assert by_name["s"].remarks["c"].because == "nobody knows"
+        assert by_name["only"].letter("a") == "A"
+        assert matrix.is_complete
+        assert not matrix.is_uniform
+        assert matrix.counts("a", "b") == {"equal": 1, "stricter": 1, "only": 1, "silent": 0}
+        assert matrix.counts("a", "c") == {"laxer": 1, "only": 2, "silent": 1}
+        assert comparison_matrix(BOOKS, ["only"]).is_uniform
+
+    def test_relations_of_laws_are_those_of_rules(self):
+        for shared in comparison_matrix(BOOKS).shared:
+            for one, other in product(shared.laws, repeat=2):
+                assert shared.relation(other, one) == CONVERSE[shared.relation(one, other)]
+
+    def test_progress(self):
+        told = []
+        comparison_matrix(BOOKS, tell=told.append)
+        assert told == [1, 2, 3, 4, 5, 6]
+        assert steps(BOOKS) == 6
+        assert steps(BOOKS, ["r"]) == 4
+
+    def test_more_laws_than_letters(self):
+        (one, *_) = comparison_matrix(BOOKS).rules
+        assert replace(one, laws={"a": 27}).letter("a") == "B1"
+
+    def test_pairs_are_in_both_orders(self):
+        assert pairs(BOOKS[:2]) == [("a", "b"), ("b", "a")]
+
+
+class TestRulebookComparison:
+    def test_rules_of_one_name_are_compared(self):
+        diff = diff_rulebooks(*BOOKS[:2])
+        assert [(one.name, one.relation) for one in diff.pairs] == [
+            ("r", "equal"),
+            ("s", "stricter"),
+        ]
+        assert [one.rule.name for one in diff.only_first] == ["only"]
+        assert diff.only_second == ()
+        assert diff.is_complete
+        assert not diff.is_none
+        (trace,) = diff.witnesses
+        assert trace.id == "s: a forbids, b allows"
+        ((forbids, allows_it, table),) = diff.tables(diff.pairs[1])
+        assert (forbids, allows_it) == ("a", "b")
+        assert [row.title for row in table.rows] == ["p", "q"]
+
+    def test_what_the_other_says_of_a_rule_that_it_lacks(self):
+        diff = diff_rulebooks(BOOKS[0], BOOKS[2])
+        remarks = {one.rule.name: one.remark for one in diff.only_first}
+        assert remarks["s"].because == "nobody knows"
+        assert remarks["only"] is None
+
+    def test_traces_are_numbered(self):
+        first = book("a", ("r", "never (p or q)"))
+        diff = diff_rulebooks(first, book("b", ("r", "true")), most=3)
+        assert [one.id for one in diff.witnesses] == [
+            "r: a forbids, b allows",
+            "r: a forbids, b allows (2)",
+        ]
+
+    def test_a_rulebook_is_as_itself(self):
+        diff = diff_rulebooks(BOOKS[0], BOOKS[0])
+        assert diff.is_none
+        assert list(diff.witnesses) == []
+
+    def test_softer_rules_are_not_the_same(self):
+        soft = replace(BOOKS[1], rules=(replace(BOOKS[1].rules[0], strength="soft", weight=2.0),))
+        hard = replace(BOOKS[1], rules=BOOKS[1].rules[:1])
+        diff = diff_rulebooks(hard, soft)
+        assert not diff.is_none
+        assert [one[0] for one in diff.pairs[0].notes] == ["strength", "weight"]
+
+    def test_patterns(self):
+        assert list(rules_matching(BOOKS[0], [])) == ["r", "s", "only"]
+        assert list(rules_matching(BOOKS[0], ["o*", "?"])) == ["r", "s", "only"]
+        assert list(rules_matching(BOOKS[0], ["o*"])) == ["only"]
+
+    def test_progress_and_steps(self):
+        told = []
+        timed = [
+            parse_rulebook(f"rulebook {name}\n{HEAD}hard rule r {{ require eventually[<= 2 s] p }}")
+            for name in "ab"
+        ]
+        diff = diff_rulebooks(*timed, step_s=Fraction(1, 2), tell=told.append)
+        assert told == [1]
+        assert diff.pairs[0].machines[0].step_s == Fraction(1, 2)
+
+
+def constants(*histories):
+    return BookLineage((BookHeader("b"),), (), histories)
+
+
+def history(name, *values, kind="parameter"):
+    settings_ = tuple(ConstantValue("b", text, current=current) for text, current in values)
+    return ConstantHistory(kind, name, name, settings_)
+
+
+class TestSettings:
+    def test_values_that_count_today(self):
+        first = constants(
+            history("limit", ("50 km/h", False), ("60 km/h", True)),
+            history("same", ("1 m", True)),
+            history("kind", ("on", True), kind="option"),
+            history("word", ("p", True), kind="definition"),
+            history("mine", ("1 m", True)),
+        )
+        second = constants(
+            history("limit", ("50 km/h", True)),
+            history("same", ("1 m", True)),
+            history("kind", ("1 m", True)),
+            history("word", ("q", True), kind="definition"),
+        )
+        (pair,) = setting_pairs(first, second)
+        assert (pair.kind, pair.name, pair.first, pair.second) == (
+            *("parameter", "limit"),
+            *("60 km/h", "50 km/h"),
+        )
+        outdated = constants(history("limit", ("50 km/h", False)))
+        assert setting_pairs(outdated, second)[0].first == ""
+
+
+class TestRuleHistory:
+    HISTORY = RuleHistory(
+        "r",
+        (
+            LineageStep("a", "declared", "first"),
+            LineageStep("b", "overridden", "second", ("cite", "says")),
+            LineageStep("c", "softened", "third", ("hard or soft",)),
+            LineageStep("d", "dropped", None),
+        ),
+    )
+
+    def test_the_last_step_counts(self):
+        assert self.HISTORY.last.deed == "dropped"
+        assert self.HISTORY.rule is None
+        assert self.HISTORY.cited_by == "b"
+
+    def test_what_a_book_has_inherited(self):
+        before = replace(self.HISTORY, steps=self.HISTORY.steps[:3])
+        assert before.before("c") == "second"
+        assert before.before("x") == "third"
+        assert replace(before, steps=before.steps[:1]).before("a") is None
+
+    def test_a_topic_has_no_citation(self):
+        silent = RuleHistory("s", (LineageStep("b", "silent", None),))
+        assert silent.cited_by == ""
+
+
+def test_allowed_traces_are_not_witnesses():
+    one, other = sides([always(no(P)), always(P)], [X])
+    found = compare(one, other)
+    assert all(allows(other, trace) for trace in found.first_forbids)
