@@ -18,7 +18,8 @@ from rulec.report.automata.automaton_layout import (
     text_width,
 )
 from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
-from rulec.report.automata.automaton_svg import as_svg
+from rulec.report.automata.automaton_picture import as_picture
+from rulec.report.pictures.drawing.svg import as_svg
 from support.builders.rulebooks import P, Q, book, compile_here, rule
 from support.generators.random_machines import VOCABULARY, machines
 
@@ -103,14 +104,15 @@ def test_too_large():
 
 def test_the_picture_has_every_state_and_condition():
     automaton = delayed(2)
-    picture = ElementTree.fromstring(as_svg(automaton, "a < b"))
+    picture = ElementTree.fromstring(as_svg(as_picture(automaton, "a < b")))
     space = "{http://www.w3.org/2000/svg}"
     words = {text.text for text in picture.iter(f"{space}text")}
     assert {"a < b", "violated for good", "otherwise"} <= words
     assert {str(state) for state in range(len(automaton.fates))} <= words
-    conditions = [one.text for path in picture.iter(f"{space}path") for one in path]
+    lines = list(picture.iter(f"{space}polyline"))
+    conditions = [tip.text for line in lines for tip in line]
     assert sorted(conditions) == sorted(one.condition for one in automaton.transitions)
-    dashed = [p for p in picture.iter(f"{space}path") if p.get("class") == "line rejected"]
+    dashed = [line for line in lines if line.get("class") == "rejected"]
     rejecting = [one for one in automaton.transitions if not one.accepted]
     assert len(dashed) == len(rejecting) + 1  # in the legend
 

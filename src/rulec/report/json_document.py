@@ -15,11 +15,11 @@ import msgspec
 Number = int | float
 
 
-class Part(msgspec.Struct, frozen=True, kw_only=True):
+class JsonPart(msgspec.Struct, frozen=True, kw_only=True):
     """An object inside of a document."""
 
 
-class Document(msgspec.Struct, frozen=True, kw_only=True):
+class JsonDocument(msgspec.Struct, frozen=True, kw_only=True):
     """A whole output, or a line of one.
 
     ``version`` grows with every change that a reader has to know of: a field that goes, or that
@@ -29,7 +29,7 @@ class Document(msgspec.Struct, frozen=True, kw_only=True):
     version: Literal[1] = 1
 
 
-def as_line(document: Document) -> str:
+def as_line(document: JsonDocument) -> str:
     """Write a document on one line."""
     return _ENCODER.encode(as_builtins(document))
 

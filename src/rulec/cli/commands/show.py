@@ -167,7 +167,13 @@ def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> 
 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
-    from rulec.report.automata import automaton_dot, automaton_layout, automaton_svg, automaton_text
+    from rulec.report.automata import (
+        automaton_dot,
+        automaton_layout,
+        automaton_picture,
+        automaton_text,
+    )
+    from rulec.report.pictures.drawing.svg import as_svg
 
     if output_format == "text":
         return automaton_text.as_text(automaton, width)
@@ -179,4 +185,4 @@ def _automaton(automaton: Automaton, output_format: str, name: str, width: int) 
             "transitions is too large to draw; see it with --automaton text, or lay it out "
             "yourself from --automaton dot"
         )
-    return automaton_svg.as_svg(automaton, name)
+    return as_svg(automaton_picture.as_picture(automaton, name))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,9 +10,8 @@ from textwrap import wrap
 
 from rulec.report.automata.automaton_model import Automaton, Transition
 from rulec.report.automata.layered_layout import LayoutBox, arrange
-
-CHARACTER = 7.3
-"""The width of a character in px, a little more than that of the usual fixed-width fonts."""
+from rulec.report.pictures.drawing.marks import Point
+from rulec.report.pictures.drawing.text_metrics import text_width
 
 LINE = 16.0
 STATE_HEIGHT = 34.0
@@ -30,8 +28,6 @@ MOST_LINES = 5
 MOST_STATES = 40
 MOST_TRANSITIONS = 80
 """Beyond this nobody finds their way through a picture."""
-
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,15 +73,6 @@ def is_too_large(automaton: Automaton) -> bool:
 def draw(automaton: Automaton) -> AutomatonDrawing:
     """Lay out an automaton from top to bottom."""
     return _AutomatonLayout(automaton).drawing()
-
-
-def text_width(lines: Sequence[str]) -> float:
-    """The width of lines of text in px."""
-    return max((sum(map(_columns, line)) for line in lines), default=0) * CHARACTER
-
-
-def _columns(character: str) -> int:
-    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
 
 
 def _broken(text: str) -> tuple[str, ...]:

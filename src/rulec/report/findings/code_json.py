@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rulec.diagnostics.code import Code, ExampleKind
-from rulec.report.json_document import Document, as_indented
+from rulec.report.json_document import JsonDocument, as_indented
 
 
-class CodeData(Document, frozen=True, kw_only=True):
+class CodeData(JsonDocument, frozen=True, kw_only=True):
     """A message's code with its explanation; examples are empty where there can be none."""
 
     code: str

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, SourceLocation
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 
 
-class PlaceData(Part, frozen=True, kw_only=True):
+class PlaceData(JsonPart, frozen=True, kw_only=True):
     """A place in a file, counted from 1 in Unicode code points; ``end_column`` is behind it."""
 
     file: str
@@ -19,14 +19,14 @@ class PlaceData(Part, frozen=True, kw_only=True):
     end_column: int | None
 
 
-class LabelData(Part, frozen=True, kw_only=True):
+class LabelData(JsonPart, frozen=True, kw_only=True):
     """A further place worth looking at."""
 
     place: PlaceData | None
     message: str
 
 
-class FindingData(Document, frozen=True, kw_only=True):
+class FindingData(JsonDocument, frozen=True, kw_only=True):
     """A mistake or a warning; what it does not have is empty."""
 
     code: str

@@ -9,7 +9,7 @@ from typing import IO, Any
 
 from rulec.partition import Envelope, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.json_document import Document, as_line
+from rulec.report.json_document import JsonDocument, as_line
 from rulec.scenario.model import Surface
 from rulec.trace import Value
 from rulec.trace.formats.trace_files import Format
@@ -33,7 +33,7 @@ COLUMNS = MappingProxyType(
 """The columns with the types of their values; in all rows of a maneuver the first three agree."""
 
 
-class EnvelopeLine(Document, frozen=True, kw_only=True):
+class EnvelopeLine(JsonDocument, frozen=True, kw_only=True):
     """A stretch of a layer of a maneuver on which the bounds are constant, in m and s."""
 
     maneuver: int

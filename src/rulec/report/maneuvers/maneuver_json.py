@@ -14,7 +14,7 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
-from rulec.report.json_document import Document, Number, Part, as_line, plain_number
+from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
 from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
 from rulec.report.maneuvers.probabilities import likeliest
 from rulec.report.maneuvers.scene_notes import derived_signals
@@ -23,14 +23,14 @@ from rulec.scenario import Account
 from rulec.scenario.model import Surface
 
 
-class DerivedSignal(Part, frozen=True, kw_only=True):
+class DerivedSignal(JsonPart, frozen=True, kw_only=True):
     """A signal that the recording supplies, and the reason for its value."""
 
     value: bool | int | float | str
     because: str
 
 
-class SceneData(Part, frozen=True, kw_only=True):
+class SceneData(JsonPart, frozen=True, kw_only=True):
     """What became of a recorded scene: counts of obstacles, and what was derived."""
 
     reference: str
@@ -41,7 +41,7 @@ class SceneData(Part, frozen=True, kw_only=True):
     derived: Mapping[str, DerivedSignal]
 
 
-class LevelPenalty(Part, frozen=True, kw_only=True):
+class LevelPenalty(JsonPart, frozen=True, kw_only=True):
     """The summed weight of the violated rules of some levels; null is no level."""
 
     strength: Strength
@@ -49,7 +49,7 @@ class LevelPenalty(Part, frozen=True, kw_only=True):
     weight: Number
 
 
-class ManeuverViolation(Part, frozen=True, kw_only=True):
+class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
     """A rule that a maneuver violates; ``lost_s`` is when that is final, null if at the end."""
 
     rule: str
@@ -61,7 +61,7 @@ class ManeuverViolation(Part, frozen=True, kw_only=True):
     weight: Number
 
 
-class CellData(Part, frozen=True, kw_only=True):
+class CellData(JsonPart, frozen=True, kw_only=True):
     """A cell of the maneuver, with its relation to every obstacle."""
 
     cell: int
@@ -70,7 +70,7 @@ class CellData(Part, frozen=True, kw_only=True):
     signature: Mapping[str, str | tuple[str, str]]
 
 
-class EnvelopeData(Part, frozen=True, kw_only=True):
+class EnvelopeData(JsonPart, frozen=True, kw_only=True):
     """The bounds in a layer, in metres; the profiles are pairs of s and d."""
 
     s_min: float
@@ -79,14 +79,14 @@ class EnvelopeData(Part, frozen=True, kw_only=True):
     d_right: Sequence[tuple[float, float]]
 
 
-class BindingProbability(Part, frozen=True, kw_only=True):
+class BindingProbability(JsonPart, frozen=True, kw_only=True):
     """The probability that a rule is kept for some objects."""
 
     binding: Mapping[str, str]
     kept: float
 
 
-class RuleProbabilityData(Part, frozen=True, kw_only=True):
+class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
     """The probability that a rule is kept, null if it is not known."""
 
     rule: str
@@ -95,7 +95,7 @@ class RuleProbabilityData(Part, frozen=True, kw_only=True):
     bindings: Sequence[BindingProbability]
 
 
-class ChancesData(Part, frozen=True, kw_only=True):
+class ChancesData(JsonPart, frozen=True, kw_only=True):
     """The probabilities that nobody hits ego, and that rules are kept."""
 
     clear: float
@@ -103,7 +103,7 @@ class ChancesData(Part, frozen=True, kw_only=True):
     rules: Sequence[RuleProbabilityData]
 
 
-class ManeuverData(Part, frozen=True, kw_only=True):
+class ManeuverData(JsonPart, frozen=True, kw_only=True):
     """A maneuver: its cost (1/s), its margin, its cells and bounds in time.
 
     One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
@@ -121,7 +121,7 @@ class ManeuverData(Part, frozen=True, kw_only=True):
     chances: ChancesData | UnsetType = UNSET
 
 
-class PastViolation(Part, frozen=True, kw_only=True):
+class PastViolation(JsonPart, frozen=True, kw_only=True):
     """What the past has violated, which no maneuver can mend."""
 
     rule: str
@@ -129,7 +129,7 @@ class PastViolation(Part, frozen=True, kw_only=True):
     step: int | None
 
 
-class WorldData(Part, frozen=True, kw_only=True):
+class WorldData(JsonPart, frozen=True, kw_only=True):
     """The counts if an obstacle does what is not likeliest; predictions count from 1."""
 
     obstacle: str
@@ -139,7 +139,7 @@ class WorldData(Part, frozen=True, kw_only=True):
     satisfying: int
 
 
-class PruningData(Part, frozen=True, kw_only=True):
+class PruningData(JsonPart, frozen=True, kw_only=True):
     """How many maneuvers violate a rule, and how many of them keep every other hard one."""
 
     rule: str
@@ -149,7 +149,7 @@ class PruningData(Part, frozen=True, kw_only=True):
     example: ManeuverData | None
 
 
-class ClassesData(Part, frozen=True, kw_only=True):
+class ClassesData(JsonPart, frozen=True, kw_only=True):
     """The counts of homotopy classes, and the cheapest satisfying members of some."""
 
     total: int
@@ -159,7 +159,7 @@ class ClassesData(Part, frozen=True, kw_only=True):
     representatives: Sequence[ManeuverData]
 
 
-class ManeuversDocument(Document, frozen=True, kw_only=True):
+class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     """The counts of maneuvers in a scenario, and what was asked for beside them."""
 
     scenario: str

@@ -9,7 +9,6 @@ from itertools import pairwise
 from rulec.partition import NavigationGraph
 from rulec.planning.product.accepted_edges import AcceptedEdges
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.automata.automaton_layout import text_width
 from rulec.report.pictures.cell_signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.report.pictures.drawing.marks import (
     LINE_HEIGHT,
@@ -24,6 +23,7 @@ from rulec.report.pictures.drawing.marks import (
     rectangle,
     stacked,
 )
+from rulec.report.pictures.drawing.text_metrics import text_width
 from rulec.report.pictures.legend import LegendEntry, legend
 
 _ROW = 34.0

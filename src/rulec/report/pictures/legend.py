@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
-from rulec.report.automata.automaton_layout import CHARACTER, text_width
 from rulec.report.pictures.drawing.marks import (
     LINE_HEIGHT,
     Area,
@@ -17,6 +16,7 @@ from rulec.report.pictures.drawing.marks import (
     rectangle,
 )
 from rulec.report.pictures.drawing.styles import STYLES
+from rulec.report.pictures.drawing.text_metrics import CHARACTER, text_width
 
 _SWATCH = 26.0
 _GAP = 22.0

@@ -9,7 +9,6 @@ from textwrap import wrap
 
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.automata.automaton_layout import CHARACTER
 from rulec.report.pictures.cell_signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.report.pictures.drawing.axis_ticks import ticks
 from rulec.report.pictures.drawing.label_placement import Placing
@@ -24,6 +23,7 @@ from rulec.report.pictures.drawing.marks import (
     Polyline,
     rectangle,
 )
+from rulec.report.pictures.drawing.text_metrics import CHARACTER
 from rulec.report.pictures.legend import LegendEntry, legend
 from rulec.report.pictures.obstacle_marks import beside, bodies, ego_marks, fits, obstacle_marks
 from rulec.report.pictures.road_frame import Frame

@@ -8,7 +8,6 @@ from itertools import groupby
 from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.report.automata.automaton_layout import CHARACTER, text_width
 from rulec.report.pictures.drawing.axis_ticks import ticks
 from rulec.report.pictures.drawing.label_placement import Placing
 from rulec.report.pictures.drawing.marks import (
@@ -22,6 +21,7 @@ from rulec.report.pictures.drawing.marks import (
     Polyline,
     rectangle,
 )
+from rulec.report.pictures.drawing.text_metrics import CHARACTER, text_width
 from rulec.report.pictures.trace_ribbon import Ribbon, RibbonRow, extremes, in_words
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 

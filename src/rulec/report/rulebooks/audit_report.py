@@ -12,7 +12,7 @@ import click
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.json_document import Document, as_indented
+from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
 
@@ -27,7 +27,7 @@ class ComparedAudit(Audit):
     changes: AuditChanges | None
 
 
-class AuditDocument(Document, frozen=True, kw_only=True):
+class AuditDocument(JsonDocument, frozen=True, kw_only=True):
     """The audits of rulebooks."""
 
     audits: Sequence[ComparedAudit]

@@ -15,12 +15,12 @@ from rulec.analysis.diff.rulebook_comparison import (
     SettingPair,
 )
 from rulec.logic.printing import number_in_words
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.rulebook.model import Certainty, Rule, Rulebook, Strength, Variable
 from rulec.trace import Trace
 
 
-class BookData(Part, frozen=True, kw_only=True):
+class BookData(JsonPart, frozen=True, kw_only=True):
     """A rulebook, and the day whose law it is."""
 
     name: str
@@ -28,7 +28,7 @@ class BookData(Part, frozen=True, kw_only=True):
     at: str
 
 
-class RuleSide(Part, frozen=True, kw_only=True):
+class RuleSide(JsonPart, frozen=True, kw_only=True):
     """A rule as one rulebook says it; its weight is an exact number."""
 
     strength: Strength
@@ -41,7 +41,7 @@ class RuleSide(Part, frozen=True, kw_only=True):
     book: str
 
 
-class TraceData(Part, frozen=True, kw_only=True):
+class TraceData(JsonPart, frozen=True, kw_only=True):
     """A trace, as docs/traces.md describes it."""
 
     id: str
@@ -51,7 +51,7 @@ class TraceData(Part, frozen=True, kw_only=True):
     present: Mapping[str, tuple[int, int]] | UnsetType = UNSET
 
 
-class RulePairData(Part, frozen=True, kw_only=True):
+class RulePairData(JsonPart, frozen=True, kw_only=True):
     """A rule that both rulebooks have; the relation is that of the first to the second one.
 
     Where they speak of different types of objects, it is compared on those in common.
@@ -68,7 +68,7 @@ class RulePairData(Part, frozen=True, kw_only=True):
     second_forbids: Sequence[TraceData]
 
 
-class OneSidedRule(Part, frozen=True, kw_only=True):
+class OneSidedRule(JsonPart, frozen=True, kw_only=True):
     """A rule that one rulebook has, and what the other one remarks on that."""
 
     rule: str
@@ -84,7 +84,7 @@ class OneSidedRule(Part, frozen=True, kw_only=True):
     because: str | None
 
 
-class DiffDocument(Document, frozen=True, kw_only=True):
+class DiffDocument(JsonDocument, frozen=True, kw_only=True):
     """The rules of two rulebooks side by side."""
 
     first: BookData

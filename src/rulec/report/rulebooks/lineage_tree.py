@@ -21,7 +21,7 @@ from rulec.analysis.lineage.rule_lineage import (
     RuleHistory,
 )
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
@@ -35,7 +35,7 @@ _DEEDS = {
 }
 
 
-class LineageStepData(Part, frozen=True, kw_only=True):
+class LineageStepData(JsonPart, frozen=True, kw_only=True):
     """What a rulebook of the chain does to a rule."""
 
     book: str
@@ -44,7 +44,7 @@ class LineageStepData(Part, frozen=True, kw_only=True):
     because: str
 
 
-class RuleLineageData(Part, frozen=True, kw_only=True):
+class RuleLineageData(JsonPart, frozen=True, kw_only=True):
     """A rule from the rulebook that declares it on; it may be gone at the end."""
 
     name: str
@@ -52,7 +52,7 @@ class RuleLineageData(Part, frozen=True, kw_only=True):
     steps: Sequence[LineageStepData]
 
 
-class LineageDocument(Document, frozen=True, kw_only=True):
+class LineageDocument(JsonDocument, frozen=True, kw_only=True):
     """A rulebook's chain, the most general rulebook first, its rules and provisions."""
 
     rulebook: str
@@ -61,7 +61,7 @@ class LineageDocument(Document, frozen=True, kw_only=True):
     provisions: Sequence[ConstantHistory]
 
 
-class ForestDocument(Document, frozen=True, kw_only=True):
+class ForestDocument(JsonDocument, frozen=True, kw_only=True):
     """Every rulebook, each behind the one that it extends."""
 
     books: Sequence[BookHeader]

@@ -10,7 +10,7 @@ import click
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.diff_csv import table as csv_table
 from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
@@ -36,7 +36,7 @@ PAIRS = (
 TITLE = "Rulebooks compared"
 
 
-class RuleInBook(Part, frozen=True, kw_only=True):
+class RuleInBook(JsonPart, frozen=True, kw_only=True):
     """A rule in one rulebook: a letter for its law, all of it null where there is no such rule."""
 
     name: str
@@ -45,14 +45,14 @@ class RuleInBook(Part, frozen=True, kw_only=True):
     because: str | None
 
 
-class SharedRuleData(Part, frozen=True, kw_only=True):
+class SharedRuleData(JsonPart, frozen=True, kw_only=True):
     """A rule in each of the rulebooks; those with the same letter forbid the same traces."""
 
     rule: str
     books: Sequence[RuleInBook]
 
 
-class BookPairData(Part, frozen=True, kw_only=True):
+class BookPairData(JsonPart, frozen=True, kw_only=True):
     """How many rules of the first rulebook are what to those of the second."""
 
     first: str
@@ -66,7 +66,7 @@ class BookPairData(Part, frozen=True, kw_only=True):
     silent: int
 
 
-class MatrixDocument(Document, frozen=True, kw_only=True):
+class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
     """Many rulebooks side by side."""
 
     books: Sequence[BookData]

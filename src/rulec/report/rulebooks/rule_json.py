@@ -10,20 +10,20 @@ from msgspec.structs import replace
 from rulec.logic.english.sentence_layout import in_one_line
 from rulec.logic.printing import formula_text
 from rulec.report.automata.automaton_model import Automaton, Fate
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
 from rulec.rulebook.model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
 
-class StateData(Part, frozen=True, kw_only=True):
+class StateData(JsonPart, frozen=True, kw_only=True):
     """A state of the automaton, and whether the verdict is final in it."""
 
     state: int
     fate: Fate
 
 
-class TransitionData(Part, frozen=True, kw_only=True):
+class TransitionData(JsonPart, frozen=True, kw_only=True):
     """Some steps between two states; ``accepted`` is the verdict on a trace that ends there.
 
     ``otherwise``: the condition is easier said as what the other transitions from there are not.
@@ -36,14 +36,14 @@ class TransitionData(Part, frozen=True, kw_only=True):
     accepted: bool
 
 
-class AutomatonData(Part, frozen=True, kw_only=True):
+class AutomatonData(JsonPart, frozen=True, kw_only=True):
     """The rule's automaton; traces start in state 0."""
 
     states: Sequence[StateData]
     transitions: Sequence[TransitionData]
 
 
-class ShortestTrace(Part, frozen=True, kw_only=True):
+class ShortestTrace(JsonPart, frozen=True, kw_only=True):
     """A trace as an example says it: further objects, states, and what it cannot say."""
 
     objects: Sequence[Variable]
@@ -51,7 +51,7 @@ class ShortestTrace(Part, frozen=True, kw_only=True):
     remarks: Sequence[str]
 
 
-class RuleData(Part, frozen=True, kw_only=True):
+class RuleData(JsonPart, frozen=True, kw_only=True):
     """A rule, in English and as a formula.
 
     If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and
@@ -79,7 +79,7 @@ class RuleData(Part, frozen=True, kw_only=True):
     rejects: ShortestTrace | UnsetType | None = UNSET
 
 
-class RulesDocument(Document, frozen=True, kw_only=True):
+class RulesDocument(JsonDocument, frozen=True, kw_only=True):
     """Rules of a rulebook."""
 
     rulebook: str

@@ -18,9 +18,9 @@ from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
-from rulec.report.automata.guard_text import GuardWording
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.formula_lines import formula_lines
+from rulec.report.text.guard_text import GuardWording
 from rulec.rulebook.model import Rule, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import WitnessTrace

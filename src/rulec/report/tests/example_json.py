@@ -10,14 +10,14 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
-from rulec.report.json_document import Document, Part, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.model import Rulebook
 
 ExampleVerdict = Literal["accept", "reject"]
 
 
-class OutcomeData(Part, frozen=True, kw_only=True):
+class OutcomeData(JsonPart, frozen=True, kw_only=True):
     """An example: the verdict that it states, and the one that its rule comes to."""
 
     rulebook: str
@@ -31,7 +31,7 @@ class OutcomeData(Part, frozen=True, kw_only=True):
     place: PlaceData | None
 
 
-class MissingEdgeData(Part, frozen=True, kw_only=True):
+class MissingEdgeData(JsonPart, frozen=True, kw_only=True):
     """An edge of the automaton that no example takes, and an example that would."""
 
     source: int
@@ -39,14 +39,14 @@ class MissingEdgeData(Part, frozen=True, kw_only=True):
     example: str
 
 
-class MissingValueData(Part, frozen=True, kw_only=True):
+class MissingValueData(JsonPart, frozen=True, kw_only=True):
     """A value of an atom that no example has."""
 
     atom: str
     value: bool
 
 
-class RuleCoverageData(Part, frozen=True, kw_only=True):
+class RuleCoverageData(JsonPart, frozen=True, kw_only=True):
     """How much of a rule's automaton, and of its atoms' values, the examples meet."""
 
     rulebook: str
@@ -58,14 +58,14 @@ class RuleCoverageData(Part, frozen=True, kw_only=True):
     missing_values: Sequence[MissingValueData]
 
 
-class CoverageData(Part, frozen=True, kw_only=True):
+class CoverageData(JsonPart, frozen=True, kw_only=True):
     """The coverage of all rules together, and of each."""
 
     percent: float
     rules: Sequence[RuleCoverageData]
 
 
-class ExamplesRun(Document, frozen=True, kw_only=True):
+class ExamplesRun(JsonDocument, frozen=True, kw_only=True):
     """The examples of rulebooks; ``coverage`` is null if nobody asked for it."""
 
     examples: Sequence[OutcomeData]

@@ -10,7 +10,7 @@ from typing import Any
 from msgspec import UNSET, UnsetType
 
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.json_document import Document, as_indented
+from rulec.report.json_document import JsonDocument, as_indented
 
 LONGEST_TITLE = 90
 
@@ -24,7 +24,7 @@ class Listed:
     path: str | None = None
 
 
-class ListingDocument(Document, frozen=True, kw_only=True):
+class ListingDocument(JsonDocument, frozen=True, kw_only=True):
     """A list for each kind that was asked for; what comes from no file has no path."""
 
     rulebooks: Sequence[Listed] | UnsetType = UNSET

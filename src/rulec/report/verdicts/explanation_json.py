@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from msgspec import UNSET, UnsetType
 
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.report.json_document import Part
+from rulec.report.json_document import JsonPart
 from rulec.report.verdicts.violation_table import repaired_states
 
 Value = bool | int | float | str
 
 
-class FactData(Part, frozen=True, kw_only=True):
+class FactData(JsonPart, frozen=True, kw_only=True):
     """Something that the rule reads, and its value in each state.
 
     ``unit`` is a quantity's; ``objects`` are, for a count, those that counted in each state.
@@ -27,7 +27,7 @@ class FactData(Part, frozen=True, kw_only=True):
     objects: Sequence[Sequence[str]] | UnsetType = UNSET
 
 
-class FormulaPart(Part, frozen=True, kw_only=True):
+class FormulaPart(JsonPart, frozen=True, kw_only=True):
     """A part of the rule's formula, ``depth`` operators inside it, and where it holds."""
 
     formula: str
@@ -37,14 +37,14 @@ class FormulaPart(Part, frozen=True, kw_only=True):
     decides: bool
 
 
-class RepairData(Part, frozen=True, kw_only=True):
+class RepairData(JsonPart, frozen=True, kw_only=True):
     """A state that would have had to say something else for the rule to be kept."""
 
     state: int
     says: str
 
 
-class ExplanationData(Part, frozen=True, kw_only=True):
+class ExplanationData(JsonPart, frozen=True, kw_only=True):
     """Why a rule is violated; ``repair`` is null if no trace of as many states keeps it."""
 
     book: str

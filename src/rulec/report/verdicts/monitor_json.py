@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.four_valued import FourValued
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.report.json_document import Document, Part, as_line
+from rulec.report.json_document import JsonDocument, JsonPart, as_line
 from rulec.report.verdicts.verdict_json import ErrorData, error_data
 
 
-class ChangeData(Part, frozen=True, kw_only=True):
+class ChangeData(JsonPart, frozen=True, kw_only=True):
     """A rule's verdict on a binding that is not what it was before the state.
 
     ``ended``: one of the objects is no longer there.
@@ -24,7 +24,7 @@ class ChangeData(Part, frozen=True, kw_only=True):
     ended: bool
 
 
-class StateVerdict(Document, frozen=True, kw_only=True):
+class StateVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdicts behind a state, which is counted from 0; ``verdict`` is that of hard rules."""
 
     state: int
@@ -33,7 +33,7 @@ class StateVerdict(Document, frozen=True, kw_only=True):
     changes: Sequence[ChangeData]
 
 
-class StateRefused(Document, frozen=True, kw_only=True):
+class StateRefused(JsonDocument, frozen=True, kw_only=True):
     """A line that is no state, or not one that can follow."""
 
     state: None

@@ -11,7 +11,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged
-from rulec.report.json_document import Document, as_line
+from rulec.report.json_document import JsonDocument, as_line
 from rulec.report.verdicts.recording_table import defaulted_names
 from rulec.report.verdicts.verdict_json import (
     TraceNotJudged,
@@ -43,7 +43,7 @@ class RecordedNotJudged(TraceNotJudged, frozen=True, kw_only=True):
     by_default: Sequence[str]
 
 
-class NotDriven(Document, frozen=True, kw_only=True):
+class NotDriven(JsonDocument, frozen=True, kw_only=True):
     """A vehicle without a drive to judge, and ``why_not``."""
 
     trace: str
@@ -62,7 +62,7 @@ def as_json(
 
 def _document(
     result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
-) -> Document:
+) -> JsonDocument:
     name, mirrored = verdicts.recording.name, verdicts.mirrored
     remarks = verdicts.recording.remarks or UNSET
     if isinstance(result, NoDrive):

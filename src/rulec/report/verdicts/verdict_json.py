@@ -11,11 +11,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.report.json_document import Document, Number, Part, as_line, plain_number
+from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
 from rulec.report.verdicts.explanation_json import ExplanationData, explanation_data
 
 
-class ErrorData(Part, frozen=True, kw_only=True):
+class ErrorData(JsonPart, frozen=True, kw_only=True):
     """What is wrong with a trace or a state, and where."""
 
     code: str
@@ -24,7 +24,7 @@ class ErrorData(Part, frozen=True, kw_only=True):
     line: int | None
 
 
-class ViolationData(Part, frozen=True, kw_only=True):
+class ViolationData(JsonPart, frozen=True, kw_only=True):
     """A rule violated for a binding; ``step`` is null if only the trace's end decides.
 
     Of recorded traffic, ``time_s`` is the step's time, and ``by_default`` names what the rule reads
@@ -42,7 +42,7 @@ class ViolationData(Part, frozen=True, kw_only=True):
     by_default: Sequence[str] | UnsetType = UNSET
 
 
-class TraceVerdict(Document, frozen=True, kw_only=True):
+class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: does it keep every hard rule?"""
 
     trace: str
@@ -50,7 +50,7 @@ class TraceVerdict(Document, frozen=True, kw_only=True):
     violations: Sequence[ViolationData]
 
 
-class TraceNotJudged(Document, frozen=True, kw_only=True):
+class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
     """A trace that could not be judged; ``trace`` is null if it has no id."""
 
     trace: str | None

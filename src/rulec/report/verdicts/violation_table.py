@@ -14,8 +14,8 @@ import click
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.report.automata.guard_text import GuardWording, runs
 from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 

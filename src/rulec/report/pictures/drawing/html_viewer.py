@@ -9,7 +9,7 @@ from pathlib import Path
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.pictures.drawing.marks import Picture
 from rulec.report.pictures.drawing.styles import as_css
-from rulec.report.pictures.drawing.svg import as_inline_svg
+from rulec.report.pictures.drawing.svg import as_inline_svg, styles_of
 
 # The page may show itself and fetch nothing.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
@@ -18,13 +18,14 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inl
 def as_page(title: str, pictures: Sequence[Picture], legend: Picture | None) -> str:
     """The page; with several pictures it has a slider that shows one of them at a time."""
     told = escape(visible(title))
+    used = styles_of([*pictures, *([legend] if legend is not None else [])])
     frames = "\n".join(_figure(picture) for picture in pictures)
     parts = [
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{told}</title>',
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         '<meta name="color-scheme" content="light dark">',
-        f"<style>\n{as_css()}\n{_beside('page.css')}</style>\n</head>",
+        f"<style>\n{as_css(used)}\n{_beside('page.css')}</style>\n</head>",
         f"<body>\n<main>\n<h1>{told}</h1>",
     ]
     if len(pictures) > 1:

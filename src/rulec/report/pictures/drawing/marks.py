@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.report.automata.automaton_layout import text_width
+from rulec.report.pictures.drawing.text_metrics import text_width
 
 Point = tuple[float, float]
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Literal, cast, get_args
 
-from rulec.report.automata.automaton_layout import CHARACTER
 from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, LabelText, Picture, stacked
+from rulec.report.pictures.drawing.text_metrics import CHARACTER
 
 Format = Literal["svg", "png", "html"]
 

@@ -6,7 +6,7 @@ Universal Design, 2008), lightened for dark ground; dashes repeat what they say.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -41,6 +41,8 @@ STYLES: Mapping[str, Style] = MappingProxyType(
         "chosen": Style("chosen", "satisfying", 3),
         "swept": Style("swept", "rejected", 1, (3, 2)),
         "body": Style("body", "ink"),
+        "state": Style("cell", "ink", 1.3),
+        "accepted": Style(stroke="ink", width=1.3),
         "ego": Style("ground", "satisfying", 2),
         "goal": Style("", "ink", 1.5, (2, 3)),
         "node": Style("cell", "faint"),
@@ -102,28 +104,30 @@ DARK: Mapping[str, str] = MappingProxyType(
 )
 
 
-def as_css() -> str:
+def as_css(used: Collection[str]) -> str:
     """The styles as CSS classes, light, and dark where the reader prefers that on a screen."""
-    dark = "\n".join(f"  {rule}" for rule in _rules(DARK, shape=False))
+    dark = "\n".join(f"  {rule}" for rule in _rules(used, DARK, shape=False))
     return "\n".join(
         [
             'text { font: 12px ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace }',
-            *_rules(LIGHT, shape=True),
+            *_rules(used, LIGHT, shape=True),
             f"@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}",
         ]
     )
 
 
-def _rules(colours: Mapping[str, str], *, shape: bool) -> list[str]:
+def _rules(used: Collection[str], colours: Mapping[str, str], *, shape: bool) -> list[str]:
     rules = []
     for name, style in STYLES.items():
+        if name not in used:
+            continue
         parts = [f"fill: {colours[style.fill] if style.fill else 'none'}"]
         if style.stroke:
             parts.append(f"stroke: {colours[style.stroke]}")
         if shape and style.stroke:
             parts.append(f"stroke-width: {style.width:g}")
         if shape and style.dash:
-            parts.append(f"stroke-dasharray: {' '.join(f'{one:g}' for one in style.dash)}")
+            parts.append(f"stroke-dasharray: {' '.join(f'{length:g}' for length in style.dash)}")
         if shape and style.halo:
             parts.append("paint-order: stroke; stroke-linejoin: round")
         if shape and style.bold:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from html import escape
 
 from rulec.report.findings.source_excerpt import visible
@@ -12,7 +12,12 @@ from rulec.report.pictures.drawing.styles import as_css
 
 def as_svg(picture: Picture) -> str:
     """A file of its own."""
-    return _element(picture, f"<style>\n{as_css()}\n</style>\n")
+    return _element(picture, f"<style>\n{as_css(styles_of([picture]))}\n</style>\n")
+
+
+def styles_of(pictures: Iterable[Picture]) -> set[str]:
+    """The names of the styles that pictures use."""
+    return {"ground", *(mark.style for picture in pictures for mark in picture.marks)}
 
 
 def as_inline_svg(picture: Picture) -> str:

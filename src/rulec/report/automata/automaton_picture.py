@@ -1,0 +1,172 @@
+"""A rule's automaton as a picture: states, transitions with their conditions, a legend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import cos, pi, sin
+from typing import Literal
+
+from rulec.report.automata.automaton_layout import (
+    LINE,
+    STATE_HEIGHT,
+    AutomatonDrawing,
+    AutomatonState,
+    TransitionLine,
+    draw,
+)
+from rulec.report.automata.automaton_model import Automaton, Fate
+from rulec.report.pictures.drawing.marks import (
+    MARGIN,
+    Area,
+    LabelText,
+    Mark,
+    Picture,
+    Point,
+    Polyline,
+    moved,
+    rectangle,
+)
+from rulec.report.pictures.drawing.text_metrics import text_width
+
+HEAD = 8.0
+"""The length of an arrow's head in px."""
+
+CORNER = 17.0
+"""The radius of the corners of a state from which the rule can still be kept, in px."""
+
+PIECES = 10
+"""The straight pieces that a curve is drawn with."""
+
+# Dashes, corners and words tell the verdict; the colours repeat it.
+_STYLES: dict[Fate, str] = {"open": "state", "violated": "violated", "satisfied": "chosen"}
+
+_LEGEND = (
+    (True, "a trace that ends with this step is accepted"),
+    (False, "a trace that ends with this step is rejected"),
+)
+
+
+def as_picture(automaton: Automaton, title: str) -> Picture:
+    """Draw an automaton below its title and above what the lines mean."""
+    drawing = draw(automaton)
+    accepted = {transition.accepted for transition in automaton.transitions}
+    legend = [entry for entry in _LEGEND if entry[0] in accepted]
+    texts = [text_width([title]) * 1.1, *(text_width([text]) + 50 for _, text in legend)]
+    width = max(drawing.width, *texts) + 2 * MARGIN
+    height = drawing.height + 3 * MARGIN + LINE * (1 + len(legend))
+    right = (width - drawing.width) / 2
+    marks = [
+        LabelText(title, (MARGIN, MARGIN + 6), style="strong"),
+        *(moved(mark, right, MARGIN + LINE) for mark in _marks(drawing, automaton)),
+        *_legend(legend, height - MARGIN - LINE * len(legend)),
+    ]
+    return Picture(title, width, height, tuple(marks))
+
+
+def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[Mark]:
+    first = drawing.states[0]
+    x, y = first.middle
+    top = y - STATE_HEIGHT / 2 - LINE * (len(first.text) - 1) / 2
+    yield Polyline(((x, top - 28), (x, top - HEAD + 1)), "accepted")
+    yield _head((x, top), (0, 1), accepted=True)
+    for line in drawing.lines:
+        yield from _transition(line)
+    for state in drawing.states:
+        yield from _state(state, automaton.fates[state.number])
+
+
+def _transition(line: TransitionLine) -> Iterator[Mark]:
+    transition = line.transition
+    is_loop = transition.source == transition.target
+    points, direction = _loop(line.points) if is_loop else _path(line.points)
+    style = "accepted" if transition.accepted else "rejected"
+    yield Polyline(tuple(points), style, transition.condition)
+    yield _head(line.points[-1], direction, accepted=transition.accepted)
+    yield from _text(line.text, line.label_at, "end" if line.leftward else "start")
+
+
+def _loop(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
+    """A loop beside its state, and the direction in which it comes back."""
+    start, (out, _), (x, y) = corners
+    side = 1 if out > start[0] else -1
+    reach, end = out + side * 6, (x + side * 6, y)
+    return [start, *_curve(start, (reach, start[1] - 6), (reach, y + 6), end)], (-side, 0)
+
+
+def _path(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
+    """A line down or up through corners, upright where it passes them."""
+    down = 1 if corners[-1][1] > corners[0][1] else -1
+    end = (corners[-1][0], corners[-1][1] - 6 * down)
+    points = [corners[0]]
+    for start, stop in pairwise([*corners[:-1], end]):
+        if start[0] == stop[0]:
+            points.append(stop)
+        else:
+            half = (start[1] + stop[1]) / 2
+            points += _curve(start, (start[0], half), (stop[0], half), stop)
+    return points, (0, down)
+
+
+def _curve(start: Point, first: Point, second: Point, stop: Point) -> Iterator[Point]:
+    """Points on a cubic Bézier curve behind its start."""
+    for piece in range(1, PIECES + 1):
+        t = piece / PIECES
+        weights = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
+        corners = (start, first, second, stop)
+        yield (
+            sum(weight * x for weight, (x, _) in zip(weights, corners, strict=True)),
+            sum(weight * y for weight, (_, y) in zip(weights, corners, strict=True)),
+        )
+
+
+def _head(tip: Point, direction: tuple[int, int], *, accepted: bool) -> Area:
+    """An arrow's head that points along x or y."""
+    (x, y), (along_x, along_y) = tip, direction
+    back_x, back_y = x - HEAD * along_x, y - HEAD * along_y
+    half = HEAD / 2
+    corners = (
+        tip,
+        (back_x + half * along_y, back_y + half * along_x),
+        (back_x - half * along_y, back_y - half * along_x),
+    )
+    return Area((corners,), "ink" if accepted else "violated")
+
+
+def _state(state: AutomatonState, fate: Fate) -> Iterator[Mark]:
+    x, y = state.middle
+    half_width = state.width / 2
+    half_height = (STATE_HEIGHT + LINE * (len(state.text) - 1)) / 2
+    box = (x - half_width, y - half_height, x + half_width, y + half_height)
+    outline = rectangle(*box) if fate == "violated" else tuple(_rounded(*box))
+    yield Area((outline,), _STYLES[fate])
+    yield from _text(state.text, state.middle, "middle")
+
+
+def _rounded(left: float, top: float, right: float, bottom: float) -> Iterator[Point]:
+    """The outline of a rectangle with round corners, clockwise from the upper left one."""
+    centres = (
+        (left + CORNER, top + CORNER),
+        (right - CORNER, top + CORNER),
+        (right - CORNER, bottom - CORNER),
+        (left + CORNER, bottom - CORNER),
+    )
+    for number, (x, y) in enumerate(centres):
+        for piece in range(PIECES // 2 + 1):
+            angle = pi + (number + piece / (PIECES // 2)) * pi / 2
+            yield x + CORNER * cos(angle), y + CORNER * sin(angle)
+
+
+def _text(
+    lines: Sequence[str], middle: Point, anchor: Literal["start", "middle", "end"]
+) -> Iterator[LabelText]:
+    x, y = middle
+    for number, text in enumerate(lines):
+        yield LabelText(text, (x, y + LINE * (number - (len(lines) - 1) / 2)), anchor)
+
+
+def _legend(entries: Sequence[tuple[bool, str]], top: float) -> Iterator[Mark]:
+    for number, (accepted, text) in enumerate(entries):
+        y = top + LINE * number
+        yield Polyline(((MARGIN, y), (MARGIN + 34, y)), "accepted" if accepted else "rejected")
+        yield LabelText(text, (MARGIN + 42, y))
