@@ -9,66 +9,188 @@ A look at all of it::
     graph = rulec.navigation_graph("s2", step_s=0.5)  # cells, adjacency; graph.to_networkx()
     found = rulec.find_maneuvers("s2", rules)         # counts, and the cheapest ones lazily
 
-Whatever goes wrong with an input is a ``rulec.RulecError`` with the diagnostics as data.
-Nothing is imported before it is used.
+A ``rulec.Session`` has the same verbs with a search path and a day of its own. Whatever goes wrong
+with an input is a ``rulec.RulecError`` with the diagnostics as data. Nothing is imported before it
+is used.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from rulec.version import __version__
 
 if TYPE_CHECKING:
-    from rulec.api.workflow import compile_rulebook as compile_rulebook
-    from rulec.api.workflow import find_maneuvers as find_maneuvers
-    from rulec.api.workflow import navigation_graph as navigation_graph
-    from rulec.api.workflow import verify_recording as verify_recording
+    from rulec.analysis.audit.rulebook_audit import Audit as Audit
+    from rulec.analysis.audit.rulebook_audit import AuditCounts as AuditCounts
+    from rulec.analysis.audit.rulebook_audit import AuditFinding as AuditFinding
+    from rulec.analysis.audit.rulebook_audit import CitedArticle as CitedArticle
+    from rulec.analysis.diff.rule_comparison import RuleComparison as RuleComparison
+    from rulec.analysis.diff.rulebook_comparison import OneSided as OneSided
+    from rulec.analysis.diff.rulebook_comparison import RulebookDiff as RulebookDiff
+    from rulec.analysis.diff.rulebook_comparison import RulePair as RulePair
+    from rulec.analysis.diff.rulebook_comparison import SettingPair as SettingPair
+    from rulec.analysis.lineage.rule_lineage import BookLineage as BookLineage
+    from rulec.analysis.lineage.rule_lineage import RuleHistory as RuleHistory
+    from rulec.api.session import Session as Session
+    from rulec.api.verbs import alternative_counts as alternative_counts
+    from rulec.api.verbs import analyze as analyze
+    from rulec.api.verbs import audit as audit
+    from rulec.api.verbs import check as check
+    from rulec.api.verbs import compile as compile
+    from rulec.api.verbs import compile_rulebook as compile_rulebook
+    from rulec.api.verbs import coverage as coverage
+    from rulec.api.verbs import diff as diff
+    from rulec.api.verbs import doc as doc
+    from rulec.api.verbs import draw as draw
+    from rulec.api.verbs import envelope as envelope
+    from rulec.api.verbs import envelopes as envelopes
+    from rulec.api.verbs import explain as explain
+    from rulec.api.verbs import find_maneuvers as find_maneuvers
+    from rulec.api.verbs import format as format
+    from rulec.api.verbs import judge_recording as judge_recording
+    from rulec.api.verbs import lineage as lineage
+    from rulec.api.verbs import list as list
+    from rulec.api.verbs import load_rulebook as load_rulebook
+    from rulec.api.verbs import load_scenario as load_scenario
+    from rulec.api.verbs import load_vocabulary as load_vocabulary
+    from rulec.api.verbs import navigation_graph as navigation_graph
+    from rulec.api.verbs import new_rulebook as new_rulebook
+    from rulec.api.verbs import parse_rulebook as parse_rulebook
+    from rulec.api.verbs import read_recording as read_recording
+    from rulec.api.verbs import read_traces as read_traces
+    from rulec.api.verbs import rule_probabilities as rule_probabilities
+    from rulec.api.verbs import show as show
+    from rulec.api.verbs import test as test
+    from rulec.api.verbs import traces as traces
+    from rulec.api.verbs import tree as tree
+    from rulec.api.verbs import verify as verify
+    from rulec.api.verbs import verify_cells as verify_cells
+    from rulec.api.verbs import verify_columns as verify_columns
+    from rulec.api.verbs import verify_many as verify_many
+    from rulec.api.verbs import verify_recording as verify_recording
+    from rulec.api.verbs import write_compiled as write_compiled
+    from rulec.api.verbs import write_traces as write_traces
+    from rulec.automata.bundle.compiled_rulebook import CompiledRule as CompiledRule
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
+    from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor
+    from rulec.book_tests.edge_coverage import RuleCoverage as RuleCoverage
+    from rulec.book_tests.edge_coverage import UncoveredEdge as UncoveredEdge
+    from rulec.book_tests.example_runs import ExampleOutcome as ExampleOutcome
+    from rulec.book_tests.example_runs import ExampleRun as ExampleRun
+    from rulec.diagnostics import Diagnostic as Diagnostic
+    from rulec.diagnostics import Label as Label
     from rulec.diagnostics import RulecError as RulecError
-    from rulec.monitoring.batch.batch_verify import verify_many as verify_many
+    from rulec.diagnostics import SourceLocation as SourceLocation
+    from rulec.diagnostics.code import Code as Code
+    from rulec.extraction.drives import NoDrive as NoDrive
+    from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
+    from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
+    from rulec.extraction.selection.requested import RequestedDrives as RequestedDrives
+    from rulec.extraction.selection.traffic_thresholds import Thresholds as Thresholds
+    from rulec.extraction.to_trace import Drive as Drive
+    from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
+    from rulec.monitoring.explain.explanation import Explanation as Explanation
+    from rulec.monitoring.online.monitor_state import Change as Change
+    from rulec.monitoring.online.monitor_state import SoFar as SoFar
     from rulec.monitoring.online.running_monitor import Monitor as Monitor
+    from rulec.monitoring.verdict import NotJudged as NotJudged
     from rulec.monitoring.verdict import Verdict as Verdict
-    from rulec.monitoring.verify import verify as verify
+    from rulec.monitoring.verdict import Violation as Violation
+    from rulec.partition import Cell as Cell
+    from rulec.partition import Envelope as Envelope
+    from rulec.partition import Layer as Layer
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.planning import Maneuvers as Maneuvers
-    from rulec.rulebook.loader import load_rulebook as load_rulebook
+    from rulec.planning import Pruning as Pruning
+    from rulec.planning import RankedManeuver as RankedManeuver
+    from rulec.planning.probability.alternative_predictions import (
+        AlternativeCounts as AlternativeCounts,
+    )
+    from rulec.planning.probability.rule_probability import RuleProbabilities as RuleProbabilities
+    from rulec.planning.probability.rule_probability import RuleProbability as RuleProbability
+    from rulec.planning.ranking.cheapest import Maneuver as Maneuver
+    from rulec.planning.ranking.homotopy import HomotopyClasses as HomotopyClasses
+    from rulec.planning.ranking.homotopy import Variant as Variant
+    from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
+    from rulec.report.text.listing import Listed as Listed
+    from rulec.rulebook.files.batch_check import Checked as Checked
+    from rulec.rulebook.model import Example as Example
+    from rulec.rulebook.model import Rule as Rule
     from rulec.rulebook.model import Rulebook as Rulebook
+    from rulec.rulebook.model import Variable as Variable
+    from rulec.scenario import Choice as Choice
     from rulec.scenario import Scenario as Scenario
-    from rulec.scenario import load_scenario as load_scenario
+    from rulec.scenario.recorded.recording import Lanelet as Lanelet
+    from rulec.scenario.recorded.recording import Participant as Participant
+    from rulec.scenario.recorded.recording import PlanningProblem as PlanningProblem
+    from rulec.scenario.recorded.recording import Recording as Recording
+    from rulec.scenario.recorded.recording import TrackState as TrackState
     from rulec.trace import Trace as Trace
-    from rulec.trace.formats.trace_files import read_traces as read_traces
+    from rulec.trace import TraceGraph as TraceGraph
+    from rulec.trace.trace_columns import TraceCells as TraceCells
+    from rulec.trace.trace_columns import TraceColumns as TraceColumns
+    from rulec.trace.trace_columns import layout_of as layout_of
+    from rulec.vocabulary import Vocabulary as Vocabulary
 
 _HOME = {
-    "CompiledRulebook": "rulec.automata.bundle.compiled_rulebook",
-    "Maneuvers": "rulec.planning",
-    "Monitor": "rulec.monitoring.online.running_monitor",
-    "NavigationGraph": "rulec.partition",
-    "Rulebook": "rulec.rulebook.model",
-    "RulecError": "rulec.diagnostics",
-    "Scenario": "rulec.scenario",
-    "Trace": "rulec.trace",
-    "Verdict": "rulec.monitoring.verdict",
-    "compile_rulebook": "rulec.api.workflow",
-    "find_maneuvers": "rulec.api.workflow",
-    "verify_recording": "rulec.api.workflow",
-    "load_rulebook": "rulec.rulebook.loader",
-    "load_scenario": "rulec.scenario",
-    "navigation_graph": "rulec.api.workflow",
-    "read_traces": "rulec.trace.formats.trace_files",
-    "verify": "rulec.monitoring.verify",
-    "verify_many": "rulec.monitoring.batch.batch_verify",
+    "rulec.analysis.audit.rulebook_audit": "Audit AuditCounts AuditFinding CitedArticle",
+    "rulec.analysis.diff.rule_comparison": "RuleComparison",
+    "rulec.analysis.diff.rulebook_comparison": "OneSided RulePair RulebookDiff SettingPair",
+    "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
+    "rulec.api.session": "Session",
+    "rulec.api.verbs": "alternative_counts analyze audit check compile compile_rulebook coverage "
+    "diff doc draw envelope envelopes explain find_maneuvers format judge_recording "
+    "lineage list load_rulebook load_scenario load_vocabulary navigation_graph "
+    "new_rulebook parse_rulebook read_recording read_traces rule_probabilities show "
+    "test traces tree verify verify_cells verify_columns verify_many verify_recording "
+    "write_compiled write_traces",
+    "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
+    "rulec.automata.mealy_monitor": "MealyMonitor",
+    "rulec.book_tests.edge_coverage": "RuleCoverage UncoveredEdge",
+    "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
+    "rulec.diagnostics": "Diagnostic Label RulecError SourceLocation",
+    "rulec.diagnostics.code": "Code",
+    "rulec.extraction.drives": "NoDrive",
+    "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
+    "rulec.extraction.selection.requested": "RequestedDrives",
+    "rulec.extraction.selection.traffic_thresholds": "Thresholds",
+    "rulec.extraction.to_trace": "Drive",
+    "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
+    "rulec.monitoring.explain.explanation": "Explanation",
+    "rulec.monitoring.online.monitor_state": "Change SoFar",
+    "rulec.monitoring.online.running_monitor": "Monitor",
+    "rulec.monitoring.verdict": "NotJudged Verdict Violation",
+    "rulec.partition": "Cell Envelope Layer NavigationGraph",
+    "rulec.planning": "Maneuvers Pruning RankedManeuver",
+    "rulec.planning.probability.alternative_predictions": "AlternativeCounts",
+    "rulec.planning.probability.rule_probability": "RuleProbabilities RuleProbability",
+    "rulec.planning.ranking.cheapest": "Maneuver",
+    "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
+    "rulec.planning.ranking.penalties": "PenaltyRank",
+    "rulec.report.text.listing": "Listed",
+    "rulec.rulebook.files.batch_check": "Checked",
+    "rulec.rulebook.model": "Example Rule Rulebook Variable",
+    "rulec.scenario": "Choice Scenario",
+    "rulec.scenario.recorded.recording": "Lanelet Participant PlanningProblem Recording TrackState",
+    "rulec.trace": "Trace TraceGraph",
+    "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
+    "rulec.vocabulary": "Vocabulary",
 }
+"""The names that each module gives."""
 
-__all__ = ["__version__", *_HOME]
+_MODULES = {name: module for module, names in _HOME.items() for name in names.split()}
+
+__all__ = ["__version__", *_MODULES]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOME:
+    if name not in _MODULES:
         raise AttributeError(f"module 'rulec' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(import_module(_MODULES[name]), name)
 
 
-def __dir__() -> list[str]:
+def __dir__() -> Sequence[str]:
     return sorted(__all__)

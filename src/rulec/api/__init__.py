@@ -1,1 +1,1 @@
-"""TODO api."""
+"""The public surface: a session with every verb, and the verbs as functions."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.logic.formula import Term
+from rulec.rows import short_repr
 
 IMPOSSIBLE = -1
 """The class of letters that no state can have, because facts of the vocabulary exclude it."""
@@ -88,6 +89,8 @@ class MealyMonitor:
     accepted, from state ``accepting_sink`` every word is; None where there is no such state. The
     machine is minimal.
     """
+
+    __repr__ = short_repr
 
     reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]

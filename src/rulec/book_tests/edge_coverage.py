@@ -13,6 +13,7 @@ from rulec.logic.formula import Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import letter_reader_of
+from rulec.rows import short_repr
 from rulec.rulebook.model import Rule
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
@@ -44,6 +45,8 @@ class RuleCoverage:
     the verdict is settled for good do not count, nor does what no state of the world can be. The
     values of an atom or a comparison are true and false, as far as it can have them.
     """
+
+    __repr__ = short_repr
 
     rule: str
     n_edges: int

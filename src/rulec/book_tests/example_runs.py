@@ -14,6 +14,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import letter_reader_of, run
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.model import Example, Rule, Rulebook
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
@@ -28,6 +29,8 @@ class ExampleOutcome:
     save the rule; None if there is none. ``ends``: nothing comes after an example's last state,
     rather than that state again and again.
     """
+
+    __repr__ = short_repr
 
     rule: Rule
     example: Example
@@ -49,17 +52,32 @@ class ExampleOutcome:
 
 
 @dataclass(frozen=True, slots=True)
-class ExampleRun:
+class ExampleRun(Rows):
     """A rulebook with its machines, the warnings about it, and how its examples came out.
 
     ``pattern`` is what chose among them; None if all were run.
     """
+
+    __repr__ = short_repr
 
     rulebook: Rulebook
     compiled: CompiledRulebook
     outcomes: tuple[ExampleOutcome, ...]
     warnings: tuple[Diagnostic, ...] = ()
     pattern: str | None = None
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row an example."""
+        return [
+            {
+                "rule": outcome.rule.name,
+                "example": outcome.name,
+                "accepts": outcome.example.accepts,
+                "accepted": outcome.accepted,
+                "passed": outcome.passed,
+            }
+            for outcome in self.outcomes
+        ]
 
 
 def run_rulebook_examples(

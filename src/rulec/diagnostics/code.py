@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
+from rulec.rows import short_repr
 
 ExampleKind: TypeAlias = Literal[
     "rules",
@@ -39,6 +40,8 @@ class Code:
     are the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
     graphs, 7 files, 8 analysis.
     """
+
+    __repr__ = short_repr
 
     code: str
     title: str

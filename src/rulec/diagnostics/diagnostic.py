@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.source_text import SourceLocation, Span
+from rulec.rows import Rows, short_repr
 
 Severity: TypeAlias = Literal["error", "warning"]
 
@@ -28,6 +29,8 @@ class Diagnostic:
     text ``code`` is.
     """
 
+    __repr__ = short_repr
+
     code: str
     message: str
     place: SourceLocation | None = None
@@ -43,7 +46,23 @@ def at(span: Span | None) -> SourceLocation | None:
     return None if span is None else span.place
 
 
-class RulecError(Exception):
+def diagnostic_rows(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
+    """Diagnostics as plain dicts."""
+    return [
+        {
+            "code": diagnostic.code,
+            "severity": diagnostic.severity,
+            "message": diagnostic.message,
+            "file": diagnostic.place.file if diagnostic.place else None,
+            "line": diagnostic.place.line if diagnostic.place else None,
+            "column": diagnostic.place.column if diagnostic.place else None,
+            "help": diagnostic.help,
+        }
+        for diagnostic in diagnostics
+    ]
+
+
+class RulecError(Rows, Exception):
     """One or more diagnostics that end a piece of work; the only exception users need to catch."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:
@@ -51,6 +70,13 @@ class RulecError(Exception):
             diagnostics = (diagnostics,)
         self.diagnostics = tuple(diagnostics)
         super().__init__("; ".join(_one_line(d) for d in self.diagnostics))
+
+    def __repr__(self) -> str:
+        return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a diagnostic."""
+        return diagnostic_rows(self.diagnostics)
 
     def __reduce__(self) -> tuple[type[RulecError], tuple[Any, ...]]:
         return type(self), (self.diagnostics,)

@@ -12,6 +12,7 @@ from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.rows import short_repr
 from rulec.scenario.recorded.recording import Recording
 
 MOST_STATES = 1 << 13
@@ -21,6 +22,8 @@ MOST_STATES = 1 << 13
 @dataclass(frozen=True, slots=True)
 class DriveVerdict:
     """A drive and the rulebook's verdict on it."""
+
+    __repr__ = short_repr
 
     drive: Drive
     answer: Verdict | NotJudged

@@ -20,6 +20,7 @@ from rulec.extraction.signals.map_signals import map_signals
 from rulec.extraction.signals.other_signals import other_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
+from rulec.rows import short_repr
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import known_types
@@ -47,6 +48,8 @@ class Drive:
     ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
     object is there to have them.
     """
+
+    __repr__ = short_repr
 
     ego: str
     start_s: float

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from rulec.diagnostics import RulecError
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.model import Strength
 
 
@@ -17,6 +19,8 @@ class Violation:
     the trace's end decides.
     """
 
+    __repr__ = short_repr
+
     rule: str
     strength: Strength
     binding: Mapping[str, str]
@@ -24,8 +28,10 @@ class Violation:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(Rows):
     """A rulebook's verdict on a trace: the violations in the order of rules and objects."""
+
+    __repr__ = short_repr
 
     trace: str
     violations: tuple[Violation, ...]
@@ -35,10 +41,25 @@ class Verdict:
         """Whether every hard rule is kept; soft rules may yield."""
         return all(violation.strength != "hard" for violation in self.violations)
 
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a violation."""
+        return [
+            {
+                "trace": self.trace,
+                "rule": violation.rule,
+                "strength": violation.strength,
+                "step": violation.step,
+                "binding": dict(violation.binding),
+            }
+            for violation in self.violations
+        ]
+
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
     """A trace without a verdict: its id, if it could be read that far, and what is wrong."""
+
+    __repr__ = short_repr
 
     trace: str | None
     error: RulecError

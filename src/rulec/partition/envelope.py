@@ -9,6 +9,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells.cell_model import Cell
 from rulec.partition.navigation_graph import NavigationGraph
 from rulec.partition.partition_messages import NOT_A_PATH
+from rulec.rows import short_repr
 
 Profile = tuple[tuple[float, float], ...]
 """Breakpoints (s, d): from each s on the bound is d, until the next one."""
@@ -22,6 +23,8 @@ class Envelope:
     the last one holds up to ``s_max``. Where a missing lane splits a cell in two at one s, they are
     the outer bounds.
     """
+
+    __repr__ = short_repr
 
     s_max: float
     s_min: float

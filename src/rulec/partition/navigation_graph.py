@@ -23,6 +23,7 @@ from rulec.partition.networkx_graph import to_networkx
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
 from rulec.partition.time_margin import edges
+from rulec.rows import short_repr
 from rulec.scenario import Scenario
 from rulec.scenario.time_grid import Timing, timing
 
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
 class NavigationGraph(CellGraph):
     """Cell graph with its two other forms: a trace graph, and one for networkx."""
+
+    __repr__ = short_repr
 
     def trace_graph(self) -> TraceGraph:
         """The graph as valuations and whole-number costs, without geometry."""

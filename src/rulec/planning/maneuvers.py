@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.stutter_invariance import stutter_invariant
@@ -23,6 +23,7 @@ from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.pruning import Blaming, violating, violating_alone
 from rulec.planning.results import RankedManeuver, RulePruning
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
+from rulec.rows import Rows, short_count
 from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ MOST_BEST = 100
 
 
 @dataclass(frozen=True)
-class Maneuvers:
+class Maneuvers(Rows):
     """Maneuvers of a scenario, evaluated by a rulebook.
 
     ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
@@ -51,6 +52,10 @@ class Maneuvers:
     product: Product[Joint]
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
+
+    def __repr__(self) -> str:
+        counts = f"{short_count(self.satisfying)} of {short_count(self.traces)}"
+        return f"Maneuvers({self.rules.name}: {counts} keep every hard rule)"
 
     @property
     def satisfying(self) -> int:
@@ -170,6 +175,18 @@ class Maneuvers:
             example,
             tuple([violation for violation in lost if violation.rule == rule.name]),
         )
+
+    def rows(self, n: int = 20) -> list[dict[str, Any]]:
+        """One row each of the ``n`` cheapest satisfying maneuvers."""
+        return [
+            {
+                "number": number,
+                "cost": maneuver.cost,
+                "margin_s": maneuver.margin_s,
+                "nodes": list(maneuver.nodes),
+            }
+            for number, maneuver in enumerate(self.cheapest(n), 1)
+        ]
 
 
 def _number(n: int) -> int:

@@ -10,6 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
+from rulec.rows import short_repr
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,8 @@ class RankedManeuver:
     ``penalty`` are the weights of what it violates, summed up by rank, ranks without any left out.
     So many ``members`` have this penalty; of them this is one of the cheapest.
     """
+
+    __repr__ = short_repr
 
     place: int
     penalty: Mapping[PenaltyRank, Fraction]
@@ -36,6 +39,8 @@ class RulePruning:
     the latter, if there are any, else of the former; None if there are none of these either. The
     violations are those of the rule by the example.
     """
+
+    __repr__ = short_repr
 
     rule: CompiledRule
     violating: int

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 from rulec.diagnostics import Span
 from rulec.logic.formula import Formula
+from rulec.rows import Rows, short_repr
 from rulec.vocabulary import Vocabulary
 
 Strength = Literal["hard", "soft"]
@@ -37,6 +38,8 @@ ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
 @dataclass(frozen=True, slots=True)
 class Example:
     """A trace that its rule must accept or reject; unmentioned values take their defaults."""
+
+    __repr__ = short_repr
 
     accepts: bool
     states: tuple[ExampleState, ...]
@@ -69,6 +72,8 @@ class Rule:
     without its exemptions and the condition (``when``) under which it is in force; None where there
     are none.
     """
+
+    __repr__ = short_repr
 
     name: str
     strength: Strength
@@ -118,13 +123,15 @@ class Remark:
 
 
 @dataclass(frozen=True)
-class Rulebook:
+class Rulebook(Rows):
     """A jurisdiction's rules over one vocabulary.
 
     ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; levels that are
     equal stand in both orders. ``extends`` are the rulebooks that it builds upon, nearest first.
     ``at`` is the day (ISO) whose law it is: what was not in force then has been left out.
     """
+
+    __repr__ = short_repr
 
     name: str
     vocabulary: Vocabulary
@@ -141,3 +148,17 @@ class Rulebook:
     remarks: tuple[Remark, ...] = ()
     at: str = ""
     axioms: tuple[Axiom, ...] = ()
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule."""
+        return [
+            {
+                "rule": rule.name,
+                "strength": rule.strength,
+                "level": rule.level,
+                "cite": rule.cite,
+                "says": rule.says,
+                "book": rule.book,
+            }
+            for rule in self.rules
+        ]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal, get_args
 
+from rulec.rows import short_repr
 from rulec.scenario.geometry import Box, centred
 
 Surface = Literal["carriageway", "crossing"]
@@ -184,6 +185,8 @@ class Scenario:
     signals and types that a rulebook does not know are no mistake, and ``step_s`` is only the
     longest step that is good.
     """
+
+    __repr__ = short_repr
 
     name: str
     road: Road

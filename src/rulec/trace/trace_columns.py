@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.rows import short_repr
 from rulec.trace.trace_model import State
 
 Key = tuple[str, tuple[str, ...]]
@@ -93,10 +93,12 @@ class TraceColumns:
     ``Trace``. States are ``step_s`` seconds apart.
     """
 
+    __repr__ = short_repr
+
     layout: Layout
     values: Mapping[Key, Array]
-    objects: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    present: Mapping[str, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    objects: Mapping[str, str] = field(default_factory=dict)
+    present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     step_s: float = 1.0
 
 
@@ -109,11 +111,13 @@ class TraceCells:
     are there in all. The rest is as in ``TraceColumns``.
     """
 
+    __repr__ = short_repr
+
     layout: Layout
     cells: Array
     states: tuple[State, ...]
-    objects: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    present: Mapping[str, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    objects: Mapping[str, str] = field(default_factory=dict)
+    present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     there: tuple[Mapping[str, str], ...] = ()
     step_s: float = 1.0
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from rulec.diagnostics import SourceLocation
+from rulec.rows import short_repr
 
 Value = bool | float | str
 
@@ -22,6 +23,8 @@ class Trace:
     there all the time, the first and the last state (both from 0, inclusive) in which it is.
     ``place`` is where it was read, for messages.
     """
+
+    __repr__ = short_repr
 
     id: str
     step_s: float
@@ -40,6 +43,8 @@ class TraceGraph:
     these edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers
     (None for staying). ``objects`` and ``present`` are as in a trace, counted in layers.
     """
+
+    __repr__ = short_repr
 
     step_s: float
     objects: Mapping[str, str]

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
+from rulec.rows import short_repr
+
 
 @dataclass(frozen=True, slots=True)
 class ObjectType:
@@ -55,6 +57,8 @@ Declaration = Enumeration | Signal | Quantity
 @dataclass(frozen=True)
 class Vocabulary:
     """Types and declarations by name, in the order in which they were declared."""
+
+    __repr__ = short_repr
 
     name: str
     types: Mapping[str, ObjectType] = field(default_factory=lambda: MappingProxyType({}))

@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.analysis.vocabulary_use import used_declarations
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.syntax import tree
@@ -58,8 +60,10 @@ class AuditCounts:
 
 
 @dataclass(frozen=True, slots=True)
-class Audit:
+class Audit(Rows):
     """All that was found about a rulebook by the law of the day ``at``."""
+
+    __repr__ = short_repr
 
     rulebook: str
     title: str
@@ -69,6 +73,13 @@ class Audit:
     counts: AuditCounts
     articles: tuple[CitedArticle, ...]
     findings: tuple[AuditFinding, ...]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a finding."""
+        return [
+            {"kind": finding.kind, "name": finding.name, "note": finding.note}
+            for finding in self.findings
+        ]
 
 
 @dataclass(frozen=True, slots=True)

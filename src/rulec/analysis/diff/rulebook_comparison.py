@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
+from typing import Any
 
 from rulec.analysis.counterexample import declarations_read
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
@@ -14,6 +15,7 @@ from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
 from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.model import Remark, Rule, Rulebook
 from rulec.trace import Trace
 
@@ -24,6 +26,8 @@ class RulePair:
 
     ``machines`` are the rules compiled.
     """
+
+    __repr__ = short_repr
 
     first: Rule
     second: Rule
@@ -72,8 +76,10 @@ class SettingPair:
 
 
 @dataclass(frozen=True, slots=True)
-class RulebookDiff:
+class RulebookDiff(Rows):
     """How a rulebook differs from another one."""
+
+    __repr__ = short_repr
 
     first: Rulebook
     second: Rulebook
@@ -114,6 +120,24 @@ class RulebookDiff:
         ):
             for trace in traces:
                 yield forbids, allows, trace_table(trace, names, words.vocabulary)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule: of both, and of one alone."""
+        both = [(pair.relation, pair.first, pair.second) for pair in self.pairs]
+        first = [(f"only in {self.first.name}", only.rule, None) for only in self.only_first]
+        second = [(f"only in {self.second.name}", None, only.rule) for only in self.only_second]
+        return [
+            {
+                "rule": rule.name,
+                "relation": relation,
+                "strength 1": one.strength if one else "",
+                "strength 2": two.strength if two else "",
+                "cite 1": one.cite if one else "",
+                "cite 2": two.cite if two else "",
+            }
+            for relation, one, two in (*both, *first, *second)
+            if (rule := one or two)
+        ]
 
 
 def setting_pairs(first: BookLineage, second: BookLineage) -> tuple[SettingPair, ...]:

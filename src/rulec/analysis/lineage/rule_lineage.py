@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
+from rulec.rows import Rows, short_repr
 from rulec.syntax import tree
 
 LineageAction = Literal["declared", "overridden", "softened", "dropped", "silent"]
@@ -42,6 +43,8 @@ class LineageStep:
 @dataclass(frozen=True, slots=True)
 class RuleHistory:
     """A rule, or a topic that a book is silent on, and what was done with it in order."""
+
+    __repr__ = short_repr
 
     name: str
     steps: tuple[LineageStep, ...]
@@ -99,8 +102,10 @@ class ConstantHistory:
 
 
 @dataclass(frozen=True, slots=True)
-class BookLineage:
+class BookLineage(Rows):
     """A chain of rulebooks, the most general first, and what became of everything in it."""
+
+    __repr__ = short_repr
 
     books: tuple[BookHeader, ...]
     rules: tuple[RuleHistory, ...]
@@ -110,3 +115,9 @@ class BookLineage:
     def book(self) -> str:
         """The name of the rulebook at the end of the chain."""
         return self.books[-1].name
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule."""
+        return [
+            {"rule": rule.name, "books": [step.book for step in rule.steps]} for rule in self.rules
+        ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import Any
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
@@ -12,6 +13,7 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.model import (
     Certainty,
     Rulebook,
@@ -31,6 +33,8 @@ class CompiledRule:
     ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
     because the formula has no bounds in seconds.
     """
+
+    __repr__ = short_repr
 
     name: str
     strength: Strength
@@ -58,13 +62,15 @@ class CompiledAxiom:
 
 
 @dataclass(frozen=True, slots=True)
-class CompiledRulebook:
+class CompiledRulebook(Rows):
     """The rules of a rulebook as machines, with the vocabulary that their traces are written in.
 
     ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
     compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
     the step of the traces that it meets; None if it was read, or compiled for one step.
     """
+
+    __repr__ = short_repr
 
     name: str
     vocabulary: Vocabulary
@@ -113,6 +119,20 @@ class CompiledRulebook:
     def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules at that step if they can be compiled again, else as they are."""
         return self if self.recompile is None else self.at_step(step_s)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule."""
+        return [
+            {
+                "rule": rule.name,
+                "strength": rule.strength,
+                "level": rule.level,
+                "cite": rule.cite,
+                "says": rule.says,
+                "book": rule.book,
+            }
+            for rule in self.rules
+        ]
 
 
 def check_step(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
@@ -27,37 +28,8 @@ def command(kind: str | None, json_output: bool) -> None:
     print_result(listing.as_json(listed) if json_output else listing.as_text(listed))
 
 
-def _listed(kind: str) -> list[Listed]:
-    from rulec.report.text.listing import Listed
+def _listed(kind: str) -> Sequence[Listed]:
+    from rulec.api.listing import listed
+    from rulec.settings import search_path
 
-    match kind:
-        case "rulebooks":
-            from rulec.rulebook.files.catalogue import list_rulebooks
-            from rulec.settings import search_path
-
-            entries = list_rulebooks(search_path())
-            return [Listed(entry.name, entry.title, str(entry.path)) for entry in entries]
-        case "vocabularies":
-            from rulec.rulebook.files.catalogue import list_vocabularies
-            from rulec.settings import search_path
-
-            return [
-                Listed(vocabulary.name, vocabulary.title, str(vocabulary.path))
-                for vocabulary in list_vocabularies(search_path())
-            ]
-        case "scenarios":
-            from rulec.resources import scenarios_folder
-            from rulec.scenario import available_scenarios, load_scenario
-
-            return [
-                Listed(
-                    name,
-                    " ".join(load_scenario(name).about.split()),
-                    str(scenarios_folder() / f"{name}.toml"),
-                )
-                for name in available_scenarios()
-            ]
-        case _:
-            from rulec.report.findings.code_registry import all_codes
-
-            return [Listed(text, code.title) for text, code in all_codes().items()]
+    return listed(kind, search_path() if kind in ("rulebooks", "vocabularies") else ())

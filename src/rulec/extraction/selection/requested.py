@@ -10,6 +10,7 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.rows import short_repr
 from rulec.rulebook.model import Traffic
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.scenario_messages import NOT_IN_RECORDING
@@ -24,6 +25,8 @@ class RequestedDrives:
     No ``egos`` are all vehicles. ``assumed`` holds in every state. ``as_recorded``: a recording of
     traffic on the other side than the rulebook's is not mirrored.
     """
+
+    __repr__ = short_repr
 
     egos: tuple[str, ...] = ()
     thresholds: Thresholds = USUAL

@@ -12,6 +12,7 @@ from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_a
 from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, run
 from rulec.monitoring.batch.rule_bindings import RuleBinding
+from rulec.rows import short_repr
 from rulec.trace.trace_columns import Array, Layout
 
 
@@ -36,6 +37,8 @@ class VerdictColumns:
     ``unread`` are traces with a state, on the binding's stretch, that the machine reads no letter
     of; their verdicts mean nothing.
     """
+
+    __repr__ = short_repr
 
     task: RuleBinding
     accepted: NDArray[np.bool_]

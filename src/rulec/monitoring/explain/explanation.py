@@ -30,6 +30,7 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
+from rulec.rows import short_repr
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Quantity as QuantityDeclaration
 from rulec.vocabulary import Vocabulary
@@ -78,6 +79,8 @@ class Explanation:
     ``repair`` is what states would have had to say for the rule to be kept, their places being
     their numbers in the trace; None if nothing would have helped.
     """
+
+    __repr__ = short_repr
 
     rule: CompiledRule
     violation: Violation

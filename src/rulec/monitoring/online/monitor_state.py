@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
 from operator import getitem
 from types import MappingProxyType
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import msgspec
 
@@ -17,6 +17,7 @@ from rulec.monitoring.online.rule_group import (
     PreparedRule,
     RuleGroup,
 )
+from rulec.rows import short_repr
 
 
 class VerdictChange(NamedTuple):
@@ -32,6 +33,10 @@ class VerdictChange(NamedTuple):
     verdict: FourValued
     ended: bool = False
 
+    def __reduce__(self) -> tuple[type[VerdictChange], tuple[Any, ...]]:
+        # A read-only view of a dictionary cannot be pickled.
+        return VerdictChange, (self.rule, dict(self.binding), *self[2:])
+
 
 class SoFar(msgspec.Struct, frozen=True, gc=False):
     """The verdicts as of a state.
@@ -40,11 +45,16 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
     each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
     """
 
+    __repr__ = short_repr
+
     # A struct is made several times as quickly as a dataclass or a named tuple.
     state: int
     verdict: FourValued
     rules: Mapping[str, FourValued]
     changes: tuple[VerdictChange, ...] = ()
+
+    def __reduce__(self) -> tuple[type[SoFar], tuple[Any, ...]]:
+        return SoFar, (self.state, self.verdict, dict(self.rules), self.changes)
 
 
 class MonitorState(msgspec.Struct, frozen=True, eq=False):

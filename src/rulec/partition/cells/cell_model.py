@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, PartitionName
+from rulec.rows import short_repr
 from rulec.scenario import Box
 from rulec.scenario.model import Surface
 
@@ -23,6 +24,8 @@ class Cell:
     ``boxes`` are rectangles with disjoint interiors that make it up. ``code`` has one byte for each
     of ``objects``, then one for each of the layer's ``alternatives``.
     """
+
+    __repr__ = short_repr
 
     boxes: tuple[Box, ...]
     surface: Surface
@@ -117,6 +120,8 @@ class Layer:
     ``forward`` need not be mutual. ``alternatives`` are objects as less likely predictions have
     them.
     """
+
+    __repr__ = short_repr
 
     start_s: float
     objects: tuple[str, ...]

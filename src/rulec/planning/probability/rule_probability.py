@@ -16,6 +16,7 @@ from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event, Weights, none_of
 from rulec.planning.probability.violation_events import Lost, ViolationEvents
 from rulec.planning.ranking.cheapest import Maneuver
+from rulec.rows import short_repr
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,8 @@ class RuleProbability:
     None if the rule counts objects, and these can do more together than can be looked at.
     """
 
+    __repr__ = short_repr
+
     rule: CompiledRule
     kept: Fraction | None
     bindings: tuple[ForObjects, ...]
@@ -44,6 +47,8 @@ class RuleProbabilities:
 
     ``hard`` is None if that of one of the hard rules is.
     """
+
+    __repr__ = short_repr
 
     clear: Fraction
     hard: Fraction | None

@@ -9,6 +9,7 @@ from heapq import heappop, heappush
 from itertools import pairwise
 
 from rulec.planning.product.graph_product import Memory, Product, ProductNode
+from rulec.rows import short_repr
 from rulec.trace import TraceGraph
 
 
@@ -20,6 +21,8 @@ class Maneuver:
 
     ``margin_s`` is the smallest margin of its changes of cell; None if it never changes.
     """
+
+    __repr__ = short_repr
 
     nodes: tuple[int, ...]
     cost: float

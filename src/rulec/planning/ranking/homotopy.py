@@ -16,6 +16,7 @@ from rulec.planning.product.graph_product import Joint, Memory, Product, explore
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
 from rulec.planning.ranking.track_product import TrackProduct, track_product
+from rulec.rows import short_repr
 
 REJECTED: Joint = (LOST,)
 """In place of a joint state: a rule has been lost."""
@@ -60,6 +61,8 @@ class Variant:
 
     ``places`` are its cell tracks in order, ``members`` its number of accepted paths.
     """
+
+    __repr__ = short_repr
 
     places: tuple[int, ...]
     members: int

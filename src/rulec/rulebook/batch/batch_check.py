@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics.diagnostic import diagnostic_rows
 from rulec.file_messages import UNREADABLE_FILE
+from rulec.rows import Rows, short_repr
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.search_path import (
@@ -26,12 +28,18 @@ _STANDARD_INPUT = Path("standard input")
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class Checked(Rows):
     """The files that were checked, what was found in them, and why others could not be read."""
+
+    __repr__ = short_repr
 
     files: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
     unread: tuple[Diagnostic, ...]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a finding, and one a file that could not be read."""
+        return diagnostic_rows((*self.findings, *self.unread))
 
 
 def check(

@@ -12,6 +12,8 @@ from typing import Literal
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.rows import short_repr
+
 Points = NDArray[float64]
 """Places: one row each, x and y."""
 
@@ -58,6 +60,8 @@ class Lanelet:
     of its bounds, None where the file does not say.
     """
 
+    __repr__ = short_repr
+
     id: str
     left: Points
     right: Points
@@ -93,6 +97,8 @@ class Participant:
     are lit; steps that the file says nothing about are missing.
     """
 
+    __repr__ = short_repr
+
     id: str
     type: str
     standing: bool
@@ -118,6 +124,8 @@ class Recording:
     ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
     file does not say. ``remarks``: what the file leaves open, and is taken to be.
     """
+
+    __repr__ = short_repr
 
     name: str
     step_s: float

@@ -1,0 +1,27 @@
+"""What can be asked for by name, with titles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rulec.report.findings.code_registry import all_codes
+from rulec.report.text.listing import Listed
+from rulec.resources import scenarios_folder
+from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
+from rulec.scenario import available_scenarios, load_scenario
+
+
+def listed(kind: str, search_path: Sequence[Path]) -> tuple[Listed, ...]:
+    """The rulebooks, vocabularies, scenarios or codes that there are. Raises RulecError."""
+    if kind == "scenarios":
+        return tuple(_scenario(name) for name in available_scenarios())
+    if kind == "codes":
+        return tuple(Listed(text, code.title) for text, code in all_codes().items())
+    entries = list_rulebooks if kind == "rulebooks" else list_vocabularies
+    return tuple(Listed(entry.name, entry.title, str(entry.path)) for entry in entries(search_path))
+
+
+def _scenario(name: str) -> Listed:
+    about = " ".join(load_scenario(name).about.split())
+    return Listed(name, about, str(scenarios_folder() / f"{name}.toml"))

@@ -1,0 +1,135 @@
+"""Verbs about scenarios: navigation graph, maneuvers, envelopes, pictures."""
+
+# Every verb imports what it needs when it is called: see ``rulebook_verbs``.
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from rulec.api.settings import SessionSettings
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from rulec.api.settings import Rules
+    from rulec.partition import Envelope, GraphOptions, NavigationGraph
+    from rulec.planning import Maneuvers
+    from rulec.planning.probability.alternative_predictions import AlternativeCounts
+    from rulec.planning.probability.rule_probability import RuleProbabilities
+    from rulec.planning.ranking.cheapest import Maneuver
+    from rulec.planning.trace_history import Before
+    from rulec.scenario import Choice, Scenario
+    from rulec.trace import Trace
+
+PictureFormat = Literal["svg", "png", "html"]
+
+
+class ScenarioVerbs(SessionSettings):
+    """The verbs of a session that are about scenarios and pictures."""
+
+    def load_scenario(self, reference: str | Path, choice: Choice | None = None) -> Scenario:
+        """Read a scenario by its name or path; the choice is for recorded scenes."""
+        from rulec.scenario import load_scenario
+
+        return load_scenario(reference, choice)
+
+    def navigation_graph(
+        self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
+    ) -> NavigationGraph:
+        """A scenario as cells over time, and which cell leads to which. Raises RulecError."""
+        from rulec.api.workflow import navigation_graph
+
+        return navigation_graph(scenario, **options)
+
+    def find_maneuvers(
+        self,
+        scenario: str | Path | Scenario,
+        rules: Rules,
+        *,
+        after: Before | None = None,
+        **options: Unpack[GraphOptions],
+    ) -> Maneuvers:
+        """Count the maneuvers of a scenario that keep every hard rule, without enumerating them.
+
+        ``after`` is what was before, up to one step before the scenario begins: a trace, a
+        ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
+        rules read. Source: algorithm 1 of the paper. Raises RulecError.
+        """
+        from rulec.api.workflow import find_maneuvers
+
+        return find_maneuvers(scenario, self._compiled(rules), after=after, **options)
+
+    def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
+        """The bounds of a maneuver, layer by layer. Raises RulecError R0609 for no path."""
+        from rulec.partition import envelope
+
+        return envelope(graph, nodes)
+
+    def envelopes(self, maneuvers: Maneuvers, n: int = 1) -> tuple[Sequence[Envelope], ...]:
+        """The envelopes of the ``n`` cheapest satisfying maneuvers."""
+        return tuple(
+            self.envelope(maneuvers.graph, maneuver.nodes) for maneuver in maneuvers.cheapest(n)
+        )
+
+    def traces(
+        self,
+        scenario: str | Path | Scenario,
+        rules: Rules | None = None,
+        *,
+        limit: int = 10_000_000,
+        **options: Unpack[GraphOptions],
+    ) -> Iterator[Trace]:
+        """The maneuvers of a scenario as traces, lazily, in the words of the rules if given."""
+        from rulec.trace.graph_paths import all_traces
+
+        scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
+        if rules is None:
+            options.setdefault("partition", "paper")
+            graph = self.navigation_graph(scene, **options).trace_graph()
+        else:
+            graph = self.find_maneuvers(scene, rules, **options).paths
+        return all_traces(graph, scene.name, limit)
+
+    def rule_probabilities(self, maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
+        """The probability that a maneuver keeps each rule, over the obstacles' predictions."""
+        from rulec.planning.probability.rule_probability import rule_probabilities
+
+        return rule_probabilities(maneuvers, maneuver)
+
+    def alternative_counts(self, maneuvers: Maneuvers) -> tuple[AlternativeCounts, ...]:
+        """What is left if an obstacle does something less likely, prediction by prediction."""
+        from rulec.planning.probability.alternative_predictions import alternative_counts
+
+        return tuple(alternative_counts(maneuvers))
+
+    def draw(
+        self,
+        subject: NavigationGraph | Maneuvers | Trace,
+        rules: Rules | None = None,
+        *,
+        maneuver: Maneuver | None = None,
+        as_graph: bool = False,
+        form: PictureFormat = "svg",
+    ) -> bytes:
+        """Draw a scene over time, a navigation graph, or a trace as its rules read it.
+
+        Args:
+            subject: a graph, the maneuvers of one, or a trace.
+            rules: those that a trace is judged by; a trace cannot be drawn without.
+            maneuver: the one to show; of maneuvers the cheapest, if there is one.
+            as_graph: the navigation graph instead of the scene.
+            form: of the picture; a PNG takes ``rulec[pictures]``.
+
+        Returns:
+            The content of a file.
+        """
+        from rulec.api.pictures import draw_maneuvers, draw_trace
+        from rulec.trace import Trace
+
+        if isinstance(subject, Trace):
+            if rules is None:
+                raise TypeError("a trace is drawn as rules read it: give them")
+            return draw_trace(subject, self._compiled(rules).fitted_to(subject.step_s), form)
+        return draw_maneuvers(subject, maneuver, form, as_graph=as_graph)

@@ -1,0 +1,15 @@
+"""A session: every verb of rulec, with one search path, one day, one listener for warnings."""
+
+from __future__ import annotations
+
+from rulec.api.rulebook_verbs import RulebookVerbs
+from rulec.api.scenario_verbs import ScenarioVerbs
+from rulec.api.trace_verbs import TraceVerbs
+
+
+class Session(RulebookVerbs, TraceVerbs, ScenarioVerbs):
+    """Every verb of rulec, for one search path and one day.
+
+    ``Session(search_path=(), at="", on_warning=...)``. The functions of the package ``rulec`` are
+    those of a session without any of these.
+    """

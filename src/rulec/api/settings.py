@@ -1,0 +1,46 @@
+"""What all verbs of a session share: the search path, the day, where warnings go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from rulec.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.rulebook.model import Rulebook
+
+    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
+    """A name, a path of a source or of a compiled file (.json), or what these lead to."""
+
+
+def ignore(_: Sequence[Diagnostic]) -> None:
+    """Say nothing of warnings."""
+
+
+@dataclass(frozen=True)
+class SessionSettings:
+    """Where rulebooks are looked for, on which day they are the law, and who hears warnings.
+
+    Args:
+        search_path: folders of rulebooks and vocabularies, before those that ship with rulec.
+        at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
+            today.
+        on_warning: is called with what is odd, but not wrong, in a source.
+    """
+
+    search_path: Sequence[str | Path] = ()
+    at: str = ""
+    on_warning: Callable[[Sequence[Diagnostic]], object] = ignore
+
+    def _folders(self) -> tuple[Path, ...]:
+        return tuple(Path(folder) for folder in self.search_path)
+
+    def _compiled(self, rules: Rules) -> CompiledRulebook:
+        # On every trace that is judged, so a rulebook that is compiled already comes first.
+        from rulec.api.workflow import machines
+
+        return machines(rules, self.search_path, self.on_warning, self.at)

@@ -1,0 +1,110 @@
+"""Verbs about traces and recorded traffic: read, write, verify."""
+
+# Every verb imports what it needs when it is called: see ``rulebook_verbs``.
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.api.settings import SessionSettings
+
+if TYPE_CHECKING:
+    from rulec.api.settings import Rules
+    from rulec.diagnostics import RulecError
+    from rulec.extraction.recording_verdicts import RecordingVerdicts
+    from rulec.extraction.selection.requested import RequestedDrives
+    from rulec.monitoring.batch.verdict_columns import VerdictColumns
+    from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.scenario.recorded.recording import Recording
+    from rulec.trace import Trace
+    from rulec.trace.trace_columns import TraceCells, TraceColumns
+
+
+class TraceVerbs(SessionSettings):
+    """The verbs of a session that are about traces."""
+
+    def read_traces(self, path: str | Path) -> Iterator[Trace | RulecError]:
+        """Read the traces of a file: ``.csv``, ``.parquet``, else JSON Lines; lazily.
+
+        In place of a trace that is none there is the RulecError.
+        """
+        from rulec.trace.formats.trace_files import read_traces
+
+        return read_traces(path)
+
+    def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
+        """Write traces to a file, in the format that its name says. Raises RulecError."""
+        from rulec.files import written_whole
+        from rulec.trace.formats.table_writer import kinds_in
+        from rulec.trace.formats.trace_files import format_of, write_traces
+
+        listed = list(traces)
+        kinds = kinds_in(state for trace in listed for state in trace.states)
+        with written_whole(Path(path)) as stream:
+            write_traces(iter(listed), stream, str(path), format_of(str(path)), kinds)
+
+    def verify(self, trace: Trace, rules: Rules) -> Verdict:
+        """Judge a trace by every rule, for every binding of its variables.
+
+        Raises:
+            RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
+        """
+        from rulec.monitoring.verify import verify
+
+        return verify(trace, self._compiled(rules))
+
+    def verify_many(
+        self, traces: Iterable[Trace | RulecError], rules: Rules
+    ) -> Iterator[Verdict | NotJudged]:
+        """Judge any number of traces, many times as fast; the verdicts come in their order.
+
+        In place of a verdict that cannot be given there is a ``NotJudged``.
+        """
+        from rulec.monitoring.batch.batch_verify import verify_many
+
+        return verify_many(traces, self._compiled(rules))
+
+    def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
+        """Judge traces that are given as arrays; one answer for each rule and binding."""
+        from rulec.monitoring.batch.engine import verify_columns
+
+        return list(verify_columns(columns, self._compiled(rules).fitted_to(columns.step_s)))
+
+    def verify_cells(self, cells: TraceCells, rules: Rules) -> list[VerdictColumns]:
+        """Judge traces each of whose states is one of a few."""
+        from rulec.monitoring.batch.engine import verify_cells
+
+        return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
+
+    def read_recording(self, path: str | Path, net: str | Path | None = None) -> Recording:
+        """Read recorded traffic; ``net`` is the road network of SUMO's data. Raises RulecError."""
+        from rulec.scenario.recording_files import read_recording
+
+        return read_recording(Path(path), None if net is None else Path(net))
+
+    def verify_recording(
+        self,
+        recording: str | Path | Recording,
+        rules: Rules,
+        wanted: RequestedDrives | None = None,
+        net: str | Path | None = None,
+    ) -> RecordingVerdicts:
+        """Judge what the vehicles of recorded traffic did; each in turn is ego.
+
+        Args:
+            recording: a file of CommonRoad or SUMO, or what has been read from it.
+            rules: they fit themselves to the recording's step.
+            wanted: whose drives, by which thresholds, on which assumptions.
+            net: the road network of SUMO's data.
+
+        Raises:
+            RulecError: R0407 or R0507 if the rules do not fit the step, R0612 for a vehicle that is
+                not there, R0610 for a file that is no recording.
+        """
+        from rulec.api.workflow import verify_recording
+
+        return verify_recording(recording, self._compiled(rules), wanted, net)
+
+    judge_recording = verify_recording

@@ -1,0 +1,95 @@
+"""The verbs of a session with the usual settings, as functions of the package ``rulec``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.api.session import Session
+from rulec.api.settings import ignore
+
+if TYPE_CHECKING:
+    from rulec.api.settings import Rules
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.diagnostics import Diagnostic
+    from rulec.rulebook.model import Rulebook
+
+_USUAL = Session()
+
+
+def load_rulebook(
+    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
+) -> Rulebook:
+    """Read a rulebook: names resolved, types checked, not compiled.
+
+    Args:
+        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
+            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
+            contains a ``/`` or ends in ``.rules``.
+        search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+
+    Raises:
+        RulecError: with every mistake in it, in those that it extends, in their vocabularies.
+    """
+    return Session(search_path, at).load_rulebook(reference)
+
+
+def compile_rulebook(
+    reference: Rules,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = ignore,
+    step_s: Fraction | float | None = None,
+    at: str = "",
+) -> CompiledRulebook:
+    """Compile a rulebook: a name, the path of a source or a compiled file, or a Rulebook.
+
+    Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is for
+    this step (s) alone, a float meaning the decimal that is written. ``warn`` is called with what
+    is odd, but not wrong. The rest is as for ``load_rulebook``.
+
+    Raises:
+        RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
+            bound that is no multiple of the step, R0507 if it was compiled for another one.
+    """
+    return Session(search_path, at, warn).compile_rulebook(reference, step_s=step_s)
+
+
+alternative_counts = _USUAL.alternative_counts
+analyze = _USUAL.analyze
+audit = _USUAL.audit
+check = _USUAL.check
+coverage = _USUAL.coverage
+diff = _USUAL.diff
+doc = _USUAL.doc
+draw = _USUAL.draw
+envelope = _USUAL.envelope
+envelopes = _USUAL.envelopes
+explain = _USUAL.explain
+find_maneuvers = _USUAL.find_maneuvers
+format = _USUAL.format
+judge_recording = _USUAL.judge_recording
+lineage = _USUAL.lineage
+list = _USUAL.list
+load_scenario = _USUAL.load_scenario
+load_vocabulary = _USUAL.load_vocabulary
+navigation_graph = _USUAL.navigation_graph
+new_rulebook = _USUAL.new_rulebook
+parse_rulebook = _USUAL.parse_rulebook
+read_recording = _USUAL.read_recording
+read_traces = _USUAL.read_traces
+rule_probabilities = _USUAL.rule_probabilities
+show = _USUAL.show
+test = _USUAL.test
+traces = _USUAL.traces
+tree = _USUAL.tree
+verify = _USUAL.verify
+verify_cells = _USUAL.verify_cells
+verify_columns = _USUAL.verify_columns
+verify_many = _USUAL.verify_many
+verify_recording = _USUAL.verify_recording
+write_compiled = _USUAL.write_compiled
+write_traces = _USUAL.write_traces
+compile = compile_rulebook

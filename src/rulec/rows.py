@@ -1,0 +1,111 @@
+"""How values show themselves: a short ``repr``, rows of plain dicts, Arrow, HTML in a notebook."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from html import escape
+from importlib import import_module
+from typing import Any
+
+LONGEST_REPR = 160
+"""A ``repr`` has at most so many characters and no line's end."""
+
+MOST_HTML_ROWS = 200
+"""A table in a notebook shows so many rows."""
+
+_LONGEST_VALUE = 60
+_MOST_ITEMS = 3
+
+
+def short_repr(value: Any) -> str:
+    """A dataclass as Python writes it, in one line: what is long is shortened."""
+    name = type(value).__name__
+    pairs = [f"{field}={_brief(item)}" for field, item in _items(value)]
+    text = ", ".join(pairs)
+    if len(name) + len(text) + 2 > LONGEST_REPR:
+        text = text[: LONGEST_REPR - len(name) - 3] + "…"
+    return f"{name}({text})"
+
+
+def _items(value: Any) -> list[tuple[str, Any]]:
+    if is_dataclass(value):
+        return [(field.name, getattr(value, field.name)) for field in fields(value) if field.repr]
+    return [(name, getattr(value, name)) for name in value.__struct_fields__]
+
+
+def _brief(value: object) -> str:
+    if isinstance(value, str | bytes):
+        text = repr(value[:_LONGEST_VALUE])
+        return text if len(value) <= _LONGEST_VALUE else f"{text[:-1]}…{text[-1]}"
+    if isinstance(value, Collection) and len(value) > _MOST_ITEMS:
+        return f"<{len(value):,} items>"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_brief(k)}: {_brief(v)}" for k, v in value.items()) + "}"
+    if type(value) is tuple:
+        items = [_brief(item) for item in value]
+        return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
+    text = " ".join(repr(value).split())
+    if len(text) > _LONGEST_VALUE and "(" in text:
+        return f"{text[: text.index('(')]}(…)"
+    return text if len(text) <= _LONGEST_VALUE else text[:_LONGEST_VALUE] + "…"
+
+
+def short_count(number: int) -> str:
+    """A count as people read it, however large."""
+    return f"{number:,}" if number < 10**15 else "more than 10^15"
+
+
+class Rows:
+    """A list of things that shows itself as rows of a table."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def rows(self) -> Sequence[dict[str, Any]]:
+        """The rows, with the same keys each: texts, numbers, truth values, None, lists, dicts."""
+
+    def to_arrow(self) -> Any:
+        """The rows as a ``pyarrow.Table``; ImportError if pyarrow is not installed."""
+        try:
+            arrow = import_module("pyarrow")
+        except ImportError as error:
+            raise ImportError(
+                "an Arrow table takes pyarrow: pip install 'rulec[parquet]'"
+            ) from error
+        rows = self.rows()
+        columns: dict[str, Any] = {}
+        for name in rows[0] if rows else ():
+            values = [row[name] for row in rows]
+            if any(isinstance(value, dict) for value in values):
+                pairs = [
+                    value and [(key, str(item)) for key, item in value.items()] for value in values
+                ]
+                columns[name] = arrow.array(pairs, arrow.map_(arrow.string(), arrow.string()))
+            else:
+                columns[name] = arrow.array(values)
+        return arrow.table(columns)
+
+    def _repr_html_(self) -> str:
+        rows = self.rows()
+        text = f"<p><code>{escape(repr(self))}</code></p>"
+        if not rows:
+            return text
+        lines = [_line("th", rows[0].keys())]
+        lines += [_line("td", map(_in_cell, row.values())) for row in rows[:MOST_HTML_ROWS]]
+        more = len(rows) - MOST_HTML_ROWS
+        rest = f"<p>and {more:,} more</p>" if more > 0 else ""
+        return f"{text}<table>{''.join(lines)}</table>{rest}"
+
+
+def _line(tag: str, cells: Any) -> str:
+    return "<tr>" + "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
+
+
+def _in_cell(value: object) -> object:
+    if value is None:
+        return ""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}={item}" for key, item in value.items())
+    return value
