@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -34,7 +34,7 @@ class SessionSettings:
 
     search_path: Sequence[str | Path] = ()
     at: str = ""
-    on_warning: Callable[[Sequence[Diagnostic]], object] = ignore
+    on_warning: Callable[[Sequence[Diagnostic]], object] = field(default=ignore, repr=False)
 
     def _folders(self) -> tuple[Path, ...]:
         return tuple(Path(folder) for folder in self.search_path)

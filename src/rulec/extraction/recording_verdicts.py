@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
@@ -12,7 +13,7 @@ from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.rows import short_repr
+from rulec.rows import Rows, short_repr
 from rulec.scenario.recorded.recording import Recording
 
 MOST_STATES = 1 << 13
@@ -29,7 +30,7 @@ class DriveVerdict:
     answer: Verdict | NotJudged
 
 
-class RecordingVerdicts:
+class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed when they are asked for.
 
     Raises:
@@ -88,7 +89,27 @@ class RecordingVerdicts:
             by_rule[rule.name] = tuple(name for name in declared if name in missing)
         return by_rule
 
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a drive; ``why`` says what there is no verdict for."""
+        return [_row(answer) for answer in self.answers()]
+
+    def __repr__(self) -> str:
+        return f"RecordingVerdicts({self.rules.name}, {len(self.egos):,} vehicles)"
+
 
 def _names_read(rules: CompiledRulebook) -> frozenset[str]:
     formulas = [rule.formula for rule in rules.rules] + [axiom.formula for axiom in rules.axioms]
     return frozenset(name for formula in formulas for name in names_in(formula))
+
+
+def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
+    row: dict[str, Any] = {"ego": "", "trace": None, "start_s": None, "satisfied": None}
+    row |= {"violated": [], "why": ""}
+    if isinstance(answer, NoDrive):
+        return row | {"ego": answer.ego, "why": answer.why}
+    drive, verdict = answer.drive, answer.answer
+    row |= {"ego": drive.ego, "trace": drive.trace.id, "start_s": drive.start_s}
+    if isinstance(verdict, NotJudged):
+        return row | {"why": str(verdict.error)}
+    violated = [violation.rule for violation in verdict.violations]
+    return row | {"satisfied": verdict.satisfied, "violated": violated}

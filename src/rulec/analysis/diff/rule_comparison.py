@@ -10,6 +10,7 @@ from typing import Literal
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.diff.diverse_witnesses import diverse_witnesses
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.rows import short_repr
 from rulec.rulebook.model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -29,6 +30,8 @@ class RuleComparison:
     stand for objects that both of them speak of, given as ``common`` types, if one of them speaks
     of more. ``undecided`` says why a question was left open.
     """
+
+    __repr__ = short_repr
 
     relation: RuleRelation
     first_forbids: tuple[Trace, ...] = ()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rulec.rows import short_repr
+
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
@@ -13,6 +15,8 @@ class Thresholds:
     positions are noisy, and what some files say of speeds is another matter than where their
     vehicles are. Below ``standing_kmh`` a vehicle stands.
     """
+
+    __repr__ = short_repr
 
     smoothing_s: float = 1.0
     standing_kmh: float = 1.0

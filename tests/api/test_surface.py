@@ -1,0 +1,105 @@
+"""The public names: one table, and everything that repeats it agrees."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import pytest
+
+import rulec
+
+SOURCE = Path(rulec.__file__)
+
+
+def checked_imports():
+    """What type checkers see: name -> module, from the block under TYPE_CHECKING."""
+    tree = ast.parse(SOURCE.read_text(encoding="utf-8"))
+    (block,) = [node for node in tree.body if isinstance(node, ast.If)]
+    return {
+        alias.asname: node.module
+        for node in block.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+
+def test_type_checkers_and_python_see_the_same():
+    assert checked_imports() == rulec._MODULES
+    assert set(rulec.__all__) == {"__version__", *rulec._MODULES}
+    assert set(dir(rulec)) >= set(rulec.__all__)
+    assert len(rulec.__all__) == len(set(rulec.__all__))
+
+
+@pytest.mark.parametrize("name", rulec.__all__)
+def test_every_name_is_there_and_says_what_it_is(name):
+    value = getattr(rulec, name)
+    assert name == "__version__" or (value.__doc__ or "").strip()
+
+
+def test_an_unknown_name():
+    with pytest.raises(AttributeError, match="no attribute 'verfy'"):
+        _ = rulec.verfy
+
+
+def session_verbs():
+    return {
+        name
+        for name, value in inspect.getmembers(rulec.Session, inspect.isfunction)
+        if not name.startswith("_") and name != "on_warning"
+    }
+
+
+def test_every_verb_of_a_session_is_a_function():
+    functions = {name for name, home in rulec._MODULES.items() if home == "rulec.api.verbs"}
+    assert functions == session_verbs()
+
+
+COMMANDS = {
+    "fmt": "format",
+    "maneuvers": "find_maneuvers",
+    "monitor": "Monitor",
+    "new": "new_rulebook",
+}
+
+
+def test_every_command_can_be_called():
+    folder = SOURCE.parent / "cli" / "commands"
+    commands = {file.stem for file in folder.glob("*.py")} - {
+        "__init__",
+        "completion",
+        "draw_trace",
+    }
+    assert {COMMANDS.get(name, name) for name in commands} <= set(rulec.__all__)
+
+
+def annotated(function):
+    signature = inspect.signature(function)
+    return [
+        *(p.annotation for p in signature.parameters.values() if p.name != "self"),
+        signature.return_annotation,
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(session_verbs()))
+def test_every_verb_is_typed(name):
+    assert inspect.Signature.empty not in annotated(getattr(rulec.Session, name))
+
+
+def test_what_verbs_return_is_public():
+    """Every class that a verb's signature names is exported."""
+    words = set()
+    for name in session_verbs():
+        for annotation in annotated(getattr(rulec.Session, name)):
+            words |= {
+                node.id for node in ast.walk(ast.parse(annotation)) if isinstance(node, ast.Name)
+            }
+    names = {word for word in words if word[0].isupper()}
+    helpers = {"Before", "Fraction", "GraphOptions", "Iterable", "Iterator", "Kind", "Literal"}
+    helpers |= {"Path", "PictureFormat", "Rules", "Sequence", "Unpack"}
+    assert names - helpers <= set(rulec.__all__)
+
+
+def test_the_reference_names_all():
+    page = Path("docs/python.md").read_text(encoding="utf-8")
+    missing = [name for name in rulec._MODULES if f"`{name}" not in page]
+    assert missing == []
