@@ -49,7 +49,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.rulebook.loader import read_rulebook
 
         loaded = read_rulebook(reference, self.search_path, self.at)
-        self.on_warning(loaded.warnings)
+        self._warn(loaded.warnings)
         return loaded.rulebook
 
     def parse_rulebook(self, text: str, name: str = "<text>") -> Rulebook:
@@ -78,7 +78,7 @@ class RulebookVerbs(SessionSettings):
         """
         from rulec.api.workflow import compile_rulebook
 
-        return compile_rulebook(reference, self.search_path, self.on_warning, step_s, self.at)
+        return compile_rulebook(reference, self.search_path, self._warn, step_s, self.at)
 
     compile = compile_rulebook
 
@@ -173,7 +173,7 @@ class RulebookVerbs(SessionSettings):
             self.at,
             patterns,
             None if step_s is None else exact(step_s),
-            self.on_warning,
+            self._warn,
             most=witnesses,
         )
 
@@ -187,9 +187,7 @@ class RulebookVerbs(SessionSettings):
         """Say what a rulebook rests on: citations, examples, certainty. Raises RulecError."""
         from rulec.api.rulebook_questions import audit_rulebook
 
-        return audit_rulebook(
-            reference, self.search_path, self.at, self.on_warning, run=run_examples
-        )
+        return audit_rulebook(reference, self.search_path, self.at, self._warn, run=run_examples)
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Say where everything in a rulebook comes from, and what became of it on the way."""
@@ -223,7 +221,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.report.text.html_page import as_html
 
         loaded, lineage = read_with_lineage(reference, self.search_path, self.at)
-        self.on_warning(loaded.warnings)
+        self._warn(loaded.warnings)
         text = as_markdown(loaded, lineage)
         return as_html(text, title_of(loaded.rulebook), CONTENTS) if form == "html" else text
 

@@ -36,6 +36,10 @@ class SessionSettings:
     at: str = ""
     on_warning: Callable[[Sequence[Diagnostic]], object] = field(default=ignore, repr=False)
 
+    def _warn(self, diagnostics: Sequence[Diagnostic]) -> None:
+        if diagnostics:
+            self.on_warning(diagnostics)
+
     def _folders(self) -> tuple[Path, ...]:
         return tuple(Path(folder) for folder in self.search_path)
 
@@ -43,4 +47,4 @@ class SessionSettings:
         # On every trace that is judged, so a rulebook that is compiled already comes first.
         from rulec.api.workflow import machines
 
-        return machines(rules, self.search_path, self.on_warning, self.at)
+        return machines(rules, self.search_path, self._warn, self.at)

@@ -32,10 +32,10 @@ NOT_A_PATH = Code(
     title="a path does not follow the navigation graph",
     why="A path has one cell for each layer, from the first on, and from each to the next there "
     "is an edge. Paths come from `Maneuvers.cheapest`, or from walking through `successors`.",
-    bad="import rulec\nfrom rulec.partition import envelope\n\n"
-    'graph = rulec.navigation_graph("s1")\nenvelope(graph, [graph.start, 999])\n',
-    good="import rulec\nfrom rulec.partition import envelope\n\n"
+    bad="import rulec\n\n"
+    'graph = rulec.navigation_graph("s1")\nrulec.envelope(graph, [graph.start, 999])\n',
+    good="import rulec\n\n"
     'graph = rulec.navigation_graph("s1")\n'
-    "envelope(graph, [graph.start, graph.successors[0][graph.start][0]])\n",
+    "rulec.envelope(graph, [graph.start, graph.successors[0][graph.start][0]])\n",
     kind="python",
 )

@@ -1,0 +1,73 @@
+"""The examples of the documentation run, and what it shows of Python needs `rulec` alone."""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "docs" / "examples"
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+OWN_FILES = {"architecture.md"}
+
+
+def notebook_cells(path):
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    assert (notebook["nbformat"], notebook["nbformat_minor"]) == (4, 5)
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == [], "outputs are cleared"
+            yield "".join(cell["source"])
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebooks(path):
+    names = {}
+    for text in notebook_cells(path):
+        tree = ast.parse(text)
+        # The last line of a cell is shown.
+        last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+        exec(compile(tree, path.name, "exec"), names)
+        if last is not None:
+            value = eval(compile(ast.Expression(last.value), path.name, "eval"), names)
+            assert len(repr(value)) < 2000
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
+def test_scripts(path):
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout
+
+
+def programs():
+    for page in PAGES:
+        if page.name not in OWN_FILES:
+            for text in re.findall(r"^```python.*?\n(.*?)^```", page.read_text(), re.M | re.S):
+                yield page.name, text
+    for path in sorted(EXAMPLES.iterdir()):
+        texts = notebook_cells(path) if path.suffix == ".ipynb" else [path.read_text()]
+        yield from ((path.name, text) for text in texts)
+
+
+def imported(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module
+
+
+def test_what_is_shown_imports_from_rulec_alone():
+    inner = [
+        (page, module)
+        for page, text in programs()
+        for module in imported(text)
+        if module.startswith("rulec.")
+    ]
+    assert inner == []
+    assert len(list(programs())) > 10
