@@ -93,8 +93,8 @@ if TYPE_CHECKING:
     from rulec.extraction.to_trace import Drive as Drive
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
-    from rulec.monitoring.online.monitor_state import Change as Change
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
+    from rulec.monitoring.online.monitor_state import VerdictChange as VerdictChange
     from rulec.monitoring.online.running_monitor import Monitor as Monitor
     from rulec.monitoring.verdict import NotJudged as NotJudged
     from rulec.monitoring.verdict import Verdict as Verdict
@@ -104,8 +104,8 @@ if TYPE_CHECKING:
     from rulec.partition import Layer as Layer
     from rulec.partition import NavigationGraph as NavigationGraph
     from rulec.planning import Maneuvers as Maneuvers
-    from rulec.planning import Pruning as Pruning
     from rulec.planning import RankedManeuver as RankedManeuver
+    from rulec.planning import RulePruning as RulePruning
     from rulec.planning.probability.alternative_predictions import (
         AlternativeCounts as AlternativeCounts,
     )
@@ -160,11 +160,11 @@ _HOME = {
     "rulec.extraction.to_trace": "Drive",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
-    "rulec.monitoring.online.monitor_state": "Change SoFar",
+    "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
     "rulec.monitoring.online.running_monitor": "Monitor",
     "rulec.monitoring.verdict": "NotJudged Verdict Violation",
     "rulec.partition": "Cell Envelope Layer NavigationGraph",
-    "rulec.planning": "Maneuvers Pruning RankedManeuver",
+    "rulec.planning": "Maneuvers RankedManeuver RulePruning",
     "rulec.planning.probability.alternative_predictions": "AlternativeCounts",
     "rulec.planning.probability.rule_probability": "RuleProbabilities RuleProbability",
     "rulec.planning.ranking.cheapest": "Maneuver",
