@@ -116,7 +116,7 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.homotopy import Variant as Variant
     from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
     from rulec.report.text.listing import Listed as Listed
-    from rulec.rulebook.files.batch_check import Checked as Checked
+    from rulec.rulebook.batch.batch_check import Checked as Checked
     from rulec.rulebook.model import Example as Example
     from rulec.rulebook.model import Rule as Rule
     from rulec.rulebook.model import Rulebook as Rulebook
@@ -171,7 +171,7 @@ _HOME = {
     "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
     "rulec.planning.ranking.penalties": "PenaltyRank",
     "rulec.report.text.listing": "Listed",
-    "rulec.rulebook.files.batch_check": "Checked",
+    "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",
     "rulec.scenario.recorded.recording": "Lanelet Participant PlanningProblem Recording TrackState",

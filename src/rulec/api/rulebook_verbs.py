@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
     from rulec.report.text.listing import Listed
-    from rulec.rulebook.files.batch_check import Checked
+    from rulec.rulebook.batch.batch_check import Checked
     from rulec.rulebook.model import Rulebook
     from rulec.trace import Trace
     from rulec.vocabulary import Vocabulary
@@ -93,14 +93,14 @@ class RulebookVerbs(SessionSettings):
 
         Each is a name, a file, or a folder (all .rules files in it).
         """
-        from rulec.rulebook.files.batch_check import check
+        from rulec.rulebook.batch.batch_check import check
 
         names = [str(reference) for reference in references]
         return check(names, bytes, self._folders(), self.at)
 
     def format(self, text: str, name: str = "<text>") -> str:
         """A rulebook's or vocabulary's text in the one canonical form. Raises RulecError."""
-        from rulec.rulebook.files.batch_format import formatted
+        from rulec.rulebook.batch.batch_format import formatted
 
         return formatted(name, None, text.encode("utf-8", "surrogatepass")).after.decode()
 
@@ -227,7 +227,7 @@ class RulebookVerbs(SessionSettings):
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
         """The text of a rulebook to start from, perhaps built upon another. Raises RulecError."""
-        from rulec.rulebook.files import template
+        from rulec.rulebook import template
 
         today = datetime.now().astimezone().date()
         if extends is None:
