@@ -54,6 +54,13 @@ def test_a_queue_on_the_far_side_is_slow(side, y, route):
     assert not first(*slow, ego=ego, side=wrong, route=route)["far_lane_queue"]
 
 
+def test_in_a_queue_half_of_the_gaps_are_short():
+    # On the far lane: gaps of 6 and 46 m, and then another one of 46 m
+    three = [steady(k, x, 4.0) for k, x in ((8, -50), (9, -40), (10, 10))]
+    assert first(*three)["far_lane_queue"]
+    assert not first(*three, steady(11, 60, 4.0))["far_lane_queue"]
+
+
 def overtakes(x, speed, y=0.0, **more):
     """Is ego, at 20 m/s on the left one of two lanes, overtaking a vehicle?"""
     return first(steady(8, x, y, speed=speed), ego=steady(7, 0, 4, speed=20), **more)["overtaking"]

@@ -99,6 +99,16 @@ def test_the_light_at_the_line_ahead():
     assert not found.unknown["light"].any()
 
 
+def test_a_light_is_ego_s_from_fifty_metres_on():
+    # Fronts are 50.5 and 49.5 m before the line
+    before = {"lights": (Light(0, (("red", 9),)),)}
+    found = signals(along(47.5, 48.5), before=before).world["light"]
+    assert found.tolist() == ["no_light", "red_light"]
+    assert (
+        signals(along(47.5, 48.5), before=before, light_reach_m=51).world["light"][0] != "no_light"
+    )
+
+
 def test_lights_of_several_colours_leave_egos_unknown():
     both = (Light(0, (("red", 9),)), Light(0, (("green", 9),)))
     found = signals(along(60, 70), before={"lights": both})

@@ -98,6 +98,14 @@ def test_a_crossing_gives_priority_or_has_a_light(tmp_path, state, light, types)
     assert lanelets(tmp_path, text)[":x_c0_0"].types == types
 
 
+def test_a_crossing_has_priority_if_walkers_have_it_from_one_side(tmp_path):
+    other = (
+        '<connection from=":x_w1" to=":x_c0" fromLane="0" toLane="0" dir="s" state="m"/>\n</net>'
+    )
+    text = ROAD_NET.replace("</net>", other)
+    assert lanelets(tmp_path, text)[":x_c0_0"].types == {"crosswalk"}
+
+
 @pytest.mark.parametrize(
     ("speed", "kmh"), [(13.89, 50), (8.33, 30), (27.78, 100), (13.41, 48.276), (12.0, 43.2)]
 )
@@ -161,6 +169,18 @@ def test_lights(tmp_path, link, phases):
     assert light == Light(10, phases)
     assert light.colour_at(10) == phases[0][0]
     assert light.colour_at(9) == phases[-1][0]
+
+
+def test_lights_that_show_the_same_are_one(tmp_path):
+    """Two ways lead on from a lane: over links 0 and 2, which are alike, or 0 and 1."""
+    light = LIGHT.replace('"Gr"', '"GrG"').replace('"yr"', '"yry"').replace('"rG"', '"rGr"')
+    for link, count in ((2, 1), (1, 2)):
+        way = (
+            '<connection from="in" to="out" fromLane="1" toLane="2" dir="s" state="m" tl="x" '
+            f'linkIndex="{link}"/>'
+        )
+        text = with_light(light=way + light)
+        assert len(lanelets(tmp_path, text)["in_1"].lights) == count
 
 
 @pytest.mark.parametrize(

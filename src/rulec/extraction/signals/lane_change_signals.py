@@ -52,7 +52,7 @@ def _disturbs(context: DriveContext) -> Flags:
     faster = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
     room = relations.gap(context.ego_extents, context.extents) - faster * limits.reaction_s
     brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(room, 0.0)
-    behind = (station == relations.IN_FRONT_OF) & (brakes | (room < 0))
+    behind = (station == relations.IN_FRONT_OF) & brakes
     beside = station == relations.BESIDE
     disturbs: Flags = (context.going_along & same.any(axis=-1) & (behind | beside)).any(axis=0)
     return disturbs
