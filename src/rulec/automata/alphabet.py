@@ -1,4 +1,4 @@
-"""Which letters a rule meets: the values of what it reads.
+"""Letters of a rule: the values of what it reads, in mixed radix.
 
 An enumeration has exactly one value, a number is on one side of each threshold.
 """
@@ -35,7 +35,7 @@ def propositions_of(formula: Formula) -> tuple[Proposition, ...]:
 
 
 def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
-    """What the formula reads, in the order in which it first mentions it.
+    """The reads of a formula, in the order in which it first mentions them.
 
     Comparisons of the same terms read one number.
     """
@@ -51,7 +51,7 @@ def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRea
 
 
 def _read(together: Sequence[Proposition], vocabulary: Vocabulary) -> Read | NumberRead:
-    """What propositions about the same thing read."""
+    """The read of propositions about one thing."""
     first = together[0]
     if isinstance(first, Comparison):
         passed = {
@@ -115,7 +115,7 @@ def _digits(comparison: Comparison, read: NumberRead) -> Iterator[int]:
 
 
 def count_letters(reads: Iterable[Read | NumberRead]) -> int:
-    """How many letters these reads make."""
+    """The number of letters that these reads make."""
     return prod(read.size for read in reads)
 
 
@@ -163,7 +163,7 @@ def _repeat(pattern: int, period: int, total: int) -> int:
 
 
 def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposition]) -> Formula:
-    """What is known of these propositions at any instant, whatever the trace.
+    """The formula that holds of these propositions at any instant, whatever the trace.
 
     Of an enumeration's values exactly one is true; of comparisons of one number those that it
     passes.

@@ -1,4 +1,4 @@
-"""What the facts of a rulebook say of the objects that a rule speaks of.
+"""Axioms of a rulebook, instantiated for the objects that a rule speaks of.
 
 A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
 that they fit. Facts that count are no part of this: how many objects there are, and which, is
@@ -68,7 +68,7 @@ def axiom_instances(
 
 
 def counts(formula: Formula) -> bool:
-    """Does it speak of how many objects there are, or whether there are some?"""
+    """Whether it speaks of how many objects there are, or whether there are some."""
     return any(
         isinstance(term, Count)
         for atom in atoms_of(formula)
@@ -111,7 +111,7 @@ def axiom_groups(
 
 
 def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
-    """What is known of all propositions of some formulas without any facts."""
+    """The formula that holds of all propositions of some formulas without any axioms."""
     if not formulas:
         return Constant(True)
     spoken = joined(AND, formulas)
@@ -168,7 +168,7 @@ def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
 
 
 def _subject(proposition: Proposition) -> object:
-    """What has a value by which a proposition is true or false."""
+    """The thing whose value makes a proposition true or false."""
     return (
         proposition.terms
         if isinstance(proposition, Comparison)

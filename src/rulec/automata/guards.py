@@ -1,4 +1,4 @@
-"""What leads from each state of a machine to each, in few conditions.
+"""Guards: the letters that lead from state to state of a machine, in few conditions.
 
 A machine's letters are many; those that lead one way are covered by few cubes. A cube allows some
 digits of every read and is all letters whose digits it allows: the two-level minimisation of
@@ -53,7 +53,7 @@ def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
 
 
 def literals(cubes: Sequence[Cube], sizes: Sequence[int]) -> int:
-    """How many reads the cubes restrict, together: how long they are to say."""
+    """The number of reads that the cubes restrict, together."""
     return sum(
         len(allowed) < size for cube in cubes for allowed, size in zip(cube, sizes, strict=True)
     )

@@ -29,7 +29,7 @@ class Read:
 
     @property
     def size(self) -> int:
-        """How many different digits this read contributes to a letter."""
+        """The number of different digits that this read contributes to a letter."""
         return len(self.values) + self.others if self.values else 2
 
     def digit(self, value: bool | float | str) -> int:
@@ -63,7 +63,7 @@ class NumberRead:
 
     @property
     def size(self) -> int:
-        """How many different digits this read contributes to a letter."""
+        """The number of different digits that this read contributes to a letter."""
         return len(self.thresholds) + 1
 
     def digit(self, value: Fraction) -> int:

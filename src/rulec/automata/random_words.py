@@ -17,7 +17,7 @@ _EFFORT = 200_000
 
 
 def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> bool:
-    """Does the machine judge random words of possible letters, always the same, as it should?
+    """Whether the machine judges pseudo-random words of possible letters as the definitions do.
 
     Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
     """

@@ -1,4 +1,4 @@
-"""Does a rule depend on how long something lasts?"""
+"""Stutter invariance: whether a rule depends on how long something lasts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from rulec.automata.mealy_monitor import MealyMonitor
 
 
 def stutter_invariant(machine: MealyMonitor) -> bool:
-    """Is a word judged the same however often each of its letters stands there in a row?
+    """Whether a word's verdict stays when its letters are repeated (Lamport's stuttering).
 
     A letter read once more must change neither the verdict, if the word ends with it, nor what
     becomes of any word that goes on. In a minimal machine no two states have the same future, so

@@ -114,7 +114,7 @@ def _edge_on(edges: Sequence[TableEdge], letter: int) -> TableEdge:
 def _loop_verdicts(
     step: Sequence[tuple[int, int]], automaton: DeterministicAutomaton
 ) -> list[bool]:
-    """For each state: does reading the same letter for ever, ``step``, accept?"""
+    """For each state, whether reading one letter for ever, ``step``, accepts."""
     verdicts: dict[int, bool] = {}
     for first in range(len(step)):
         path: dict[int, int] = {}

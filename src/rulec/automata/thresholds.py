@@ -68,7 +68,7 @@ class ThresholdScale:
 
 @lru_cache(maxsize=1 << 12)
 def scale(read: NumberRead) -> ThresholdScale:
-    """What ``ThresholdScale`` says of a read."""
+    """The threshold scale of a read."""
     variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
     names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
     quantity = None

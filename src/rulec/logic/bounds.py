@@ -1,4 +1,4 @@
-"""How far operators look: bounds in seconds as steps of a trace, and ranges of instants."""
+"""Bounds of temporal operators: seconds as steps of a trace, and ranges of instants."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def _whole(steps: Fraction) -> int:
 
 
 def has_seconds(formula: Formula) -> bool:
-    """Has it a bound in seconds? If not, the step of a trace makes no difference to it."""
+    """Whether it has a bound in seconds; if not, the step of a trace makes no difference."""
     bounds = (operation.bound for operation in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
 

@@ -1,4 +1,4 @@
-"""Which parts of a formula decide its value on a word, and at which instants.
+"""Causes: the parts of a formula that decide its value on a word, and at which instants.
 
 As long as atoms keep their values where they decide, the formula keeps its own, whatever else
 changes. What decides is enough, not all there is: of two false operands of `and` the first one does
@@ -21,7 +21,7 @@ _Reason = tuple[Formula, int, int]
 def deciding_instants(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
-    """For the formula and every part: does it decide, at each instant, what holds at the first?
+    """The instants at which the formula and its parts decide what holds at the first.
 
     Bounds are in steps. ValueError as for ``holds``.
     """

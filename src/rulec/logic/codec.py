@@ -62,7 +62,7 @@ def to_data(formula: Formula) -> Any:
 
 
 def terms_to_data(terms: tuple[tuple[Fraction, Term], ...]) -> list[list[Any]]:
-    """What a comparison compares: pairs of a coefficient and a term."""
+    """The terms of a comparison: pairs of a coefficient and a term."""
     return [[str(coefficient), _term(term)] for coefficient, term in terms]
 
 

@@ -69,7 +69,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """How many objects of the moment, of type ``type``, there are of which ``body`` holds.
+    """The number of objects of the moment, of type ``type``, of which ``body`` holds.
 
     The objects of the moment are those present in the state; ``variable`` stands for each of them
     in turn, also for those that other variables name. ``body`` speaks of one state alone: it has no
@@ -107,7 +107,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """Do two variables name the same object? Only in the body of a ``Count``."""
+    """Whether two variables name one object. Only in the body of a ``Count``."""
 
     left: str
     right: str
@@ -125,7 +125,7 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """How far ahead or back a temporal operator looks: from ``low`` to ``high``, both inclusive.
+    """The bound of a temporal operator: from ``low`` to ``high`` ahead or back, both inclusive.
 
     In seconds or in steps of the trace; ``high`` is None where there is no end. For ``next`` and
     ``previously`` both are the distance. ``span`` is where it is written.

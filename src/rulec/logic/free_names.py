@@ -1,4 +1,4 @@
-"""What terms and the bodies of counts speak of."""
+"""Free variables and declarations of formulas and terms."""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ def eliminate_past(formula: Formula) -> WithoutPast:
 
 
 def definition(memory: Memory) -> Formula:
-    """What makes a memory a memory: false at the first instant, then what the formula was."""
+    """The definition of a memory: false at the first instant, then what the formula was."""
     first = Unary(NOT, memory.atom)
     then = Unary(UnaryOperator.WEAK_NEXT, memory.atom)
     then_not = Unary(UnaryOperator.WEAK_NEXT, first)
@@ -116,7 +116,7 @@ def definition(memory: Memory) -> Formula:
 
 @dataclass(slots=True)
 class _Found:
-    """What has been found so far: registers by what they say, memories by what they remember."""
+    """Registers by what they say, memories by what they remember, as found so far."""
 
     registers: dict[tuple[Formula, Formula, Range], Register] = field(default_factory=dict)
     memories: dict[Formula, Memory] = field(default_factory=dict)
@@ -130,7 +130,7 @@ class _Found:
         return atom
 
     def is_settled(self, formula: Formula) -> bool:
-        """Does the word up to an instant decide it?"""
+        """Whether the word up to an instant decides it."""
         unsettled = {memory.atom for memory in self.memories.values()}
         return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
 
@@ -197,7 +197,7 @@ def _one_ago(formula: Formula, found: _Found) -> Formula:
 
 
 def _is_present(formula: Formula) -> bool:
-    """Does it speak of the present alone?"""
+    """Whether it speaks of the present alone."""
     match formula:
         case Atom() | Comparison() | Same() | Constant():
             return True

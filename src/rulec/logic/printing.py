@@ -87,7 +87,7 @@ def time_in_words(amount: Fraction, unit: str) -> str:
 
 
 def number_in_words(number: Fraction) -> str:
-    """As a decimal if it is one, however long, else as a fraction: ``0.5``, ``-3``, ``5/18``."""
+    """A decimal if it is one, however long, else a fraction: ``0.5``, ``-3``, ``5/18``."""
     rest = number.denominator
     places = 0
     for prime in (2, 5):

@@ -1,4 +1,4 @@
-"""What has to be known of a state for a formula to have a value in it."""
+"""Inputs that a formula requires of a state to have a value in it."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ Letter = Set[Proposition]
 
 
 def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
-    """Does ``formula`` hold for ``word`` at its first instant?
+    """Whether ``formula`` holds for ``word`` at its first instant.
 
     Its bounds are in steps. ValueError for an empty word, or for a bound in seconds.
     """
@@ -54,7 +54,7 @@ def truth_values(
 def values_of_parts(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
-    """The same for the formula and every part of it. ValueError as for ``holds``."""
+    """Truth values of the formula and of every part. ValueError as for ``holds``."""
     known = extended_values(formula, word, semantics)
     return {part: values[: len(word)] for part, values in known.items()}
 
@@ -62,7 +62,7 @@ def values_of_parts(
 def extended_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[Formula, list[bool]]:
-    """As ``values_of_parts``, and on beyond the word's end until nothing changes any more.
+    """Truth values of all parts, on beyond the word's end until nothing changes any more.
 
     Operands come before what they are operands of.
     """
@@ -76,7 +76,7 @@ def extended_values(
 
 
 def steps_to_settle(formula: Formula) -> int:
-    """For how long may values still change, at most, while the last letter is repeated?
+    """The longest time for which values still change while the last letter is repeated.
 
     Only the past carries a change on to later instants: where its operands are the same for ever
     from some instant on, it is so as soon as its range looks back at such instants alone, or, if
@@ -171,7 +171,7 @@ def _not(values: list[bool]) -> list[bool]:
 
 
 def _weak_until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list[bool]:
-    """As ``_until``, or ``left`` from here to the range's end."""
+    """Until, or ``left`` from here to the range's end."""
     breaks = _until([True] * len(left), _not(left), Range(0, span.high), ends)
     until = _until(left, right, span, ends)
     return [a or not b for a, b in zip(until, breaks, strict=True)]

@@ -118,7 +118,7 @@ def read_rulebook(
     at: str = "",
     traffic: Traffic = "",
 ) -> Loaded:
-    """As ``load_rulebook``, with the warnings.
+    """Load a rulebook, with its warnings.
 
     ``traffic``: read it as one for this side, whatever it says itself.
     """

@@ -106,7 +106,7 @@ class SourceFile:
 
 @dataclass(frozen=True, slots=True)
 class Axiom:
-    """What holds in every state, for distinct objects of the variables' types."""
+    """An axiom: it holds in every state, for distinct objects of the variables' types."""
 
     variables: tuple[Variable, ...]
     formula: Formula

@@ -42,7 +42,7 @@ class ParseLeaf:
 
 @dataclass(frozen=True, slots=True)
 class ParseNode:
-    """What a rule of the grammar matched, from character ``start`` to ``end``."""
+    """A match of a rule of the grammar, from character ``start`` to ``end``."""
 
     kind: str
     children: tuple[ParseNode | ParseLeaf, ...]
@@ -114,7 +114,7 @@ def _position(error: UnexpectedInput, end: int) -> int:
 
 
 def _accepted(start: Start, good: str) -> frozenset[str]:
-    """What could follow the part that can be read.
+    """The terminals that could follow the part that can be read.
 
     It is read anew: what the error itself knows was found after the parser had made up its mind,
     seeing the wrong token, and leaves out much of what could have come.

@@ -1,4 +1,4 @@
-"""What an editor colours how: the words of the language by kind, for every highlighter."""
+"""Highlighting: the words of the language by kind, for every editor."""
 
 from __future__ import annotations
 

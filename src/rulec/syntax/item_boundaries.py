@@ -1,4 +1,4 @@
-"""Where items and clauses begin, told from a few tokens, in files that may be wrong."""
+"""Boundaries of items and clauses, told from a few tokens, in files that may be wrong."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Landmarks:
     tokens: list[Token]
 
     def is_symbol(self, index: int, text: str) -> bool:
-        """Is it this symbol, and not behind the end or a text in quotes?"""
+        """Whether it is this symbol, and not behind the end or a text in quotes."""
         return (
             index < len(self.tokens)
             and self.tokens[index].text == text
@@ -48,7 +48,7 @@ class Landmarks:
         )
 
     def is_word(self, index: int, *texts: str) -> bool:
-        """Is it one of these words?"""
+        """Whether it is one of these words."""
         return (
             0 <= index < len(self.tokens)
             and self.tokens[index].kind == "word"
@@ -56,7 +56,7 @@ class Landmarks:
         )
 
     def is_name(self, index: int) -> bool:
-        """Is it a word that may be a name?"""
+        """Whether it is a word that may be a name."""
         return (
             0 <= index < len(self.tokens)
             and self.tokens[index].kind == "word"
@@ -67,7 +67,7 @@ class Landmarks:
         return 0 <= index < len(self.tokens) and self.tokens[index].kind == "number"
 
     def wants_more(self, index: int) -> bool:
-        """Does the text have to go on behind it, as behind ``signal``, ``until``, ``(``, ``;``?"""
+        """Whether the text must go on behind it, as behind ``signal``, ``until``, ``(``, ``;``."""
         if index < 0:
             return False
         token = self.tokens[index]
@@ -82,7 +82,7 @@ class Landmarks:
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
     def begins_item(self, index: int) -> bool:
-        """Does an item begin here, seen from outside of any braces?"""
+        """Whether an item begins here, seen from outside of any braces."""
         token = self.tokens[index]
         if token.kind != "word":
             return False
@@ -115,7 +115,7 @@ class Landmarks:
         return False
 
     def goes_on(self, index: int) -> bool:
-        """Does a word that might be a name go on with what came before, on a line of its own?"""
+        """Whether a word that may be a name goes on with the line before."""
         if self.is_word(index, "weight"):
             return self._is_number(index + 1)
         if self.is_word(index, "at"):
@@ -134,12 +134,12 @@ class Landmarks:
         return nearest_name(self.tokens[index].text, ITEM_WORDS) is not None
 
     def _in_formula(self, index: int) -> bool:
-        """Could a formula go on behind it? There two names may be another mistake."""
+        """Whether a formula may go on behind it. There two names may be another mistake."""
         token = self.tokens[index]
         return token.text in _FORMULA_SIGNS or self.is_word(index, *OPERATOR_WORDS)
 
     def begins_item_inside(self, index: int) -> bool:
-        """Does an item begin here although braces are still open?
+        """Whether an item begins here although braces are still open.
 
         That takes more evidence: a line of its own behind something complete or before a name, or
         ``hard rule``.

@@ -1,4 +1,4 @@
-"""Which characters a text may hold, and which dates exist."""
+"""Literals: characters that a text may hold, dates that exist."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def why_not_a_day(text: str) -> str:
 
 
 def misleads(character: str) -> bool:
-    """Is it a control character, or does it break or reorder the line it stands in?"""
+    """Whether it is a control character, or breaks or reorders the line it stands in."""
     category = unicodedata.category(character)
     return character in _DIRECTION_CONTROLS or (
         character != "\t" and category in ("Cc", "Cs", "Zl", "Zp")

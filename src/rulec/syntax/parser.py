@@ -80,7 +80,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
 
 
 def _is_something_else(parts: Sequence[Part]) -> bool:
-    """Does the file neither begin like a rulebook, nor hold more to be read than not?"""
+    """Whether the file is no rulebook at all: neither by its beginning nor by most of it."""
     first = parts[0]
     if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
         return False
@@ -93,7 +93,7 @@ def _position(diagnostic: Diagnostic) -> tuple[int, int]:
 
 
 def _messages() -> ModuleType:
-    """What can be said about a mistake; a file without one starts faster without it."""
+    """The messages about mismatches; a file without one starts faster without them."""
     from rulec.syntax.messages import mismatch
 
     return mismatch
@@ -110,7 +110,7 @@ class _Reader:
     def read(
         self, start: Start, piece: Piece, make: Callable[[NodeValues, ParseNode], _Built]
     ) -> _Built | None:
-        """What ``make`` makes of a piece that matches ``start``."""
+        """The value that ``make`` gives a piece that matches ``start``."""
         if piece.reported:
             return None
         span = span_of(self.source, self.tokens, piece)

@@ -20,7 +20,7 @@ Serialized = dict[str, Any]
 
 
 def stamp(grammar: str, version: str) -> str:
-    """What tables were made of: a grammar's text, by a version of Lark."""
+    """The origin of tables: a grammar's text, by a version of Lark."""
     return f"{version} {sha256(grammar.encode()).hexdigest()}"
 
 
@@ -48,7 +48,7 @@ def to_text(made_of: str, serialized: Serialized) -> str:
 
 
 def from_text(text: str, made_of: str) -> Serialized | None:
-    """What Lark can load; None if the tables were made of something else."""
+    """The data that Lark can load; None if the tables were made of something else."""
     whole = json.loads(text)
     if not isinstance(whole, dict) or whole.get("made_of") != made_of:
         return None

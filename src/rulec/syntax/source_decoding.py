@@ -18,7 +18,7 @@ def decode(name: str, data: bytes) -> Source:
 
 
 def checked(source: Source) -> Source:
-    """The same source, if it can be a rulebook's text.
+    """The source, if it can be a rulebook's text.
 
     Raises:
         RulecError: too large, or it holds a null character.

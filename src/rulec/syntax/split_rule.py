@@ -83,7 +83,7 @@ class RuleSplitter:
         return index
 
     def _begins_anew(self, clause: int, index: int, *, inside: bool) -> bool:
-        """Is this a clause with a misspelt word, behind the ``clause`` that is being read?
+        """Whether this is a clause with a misspelt word, behind the ``clause`` being read.
 
         It is a name on a line of its own where a formula cannot have one: behind something
         complete, behind ``cite`` and ``says``, before a brace or a text.

@@ -1,4 +1,4 @@
-"""What a rule can speak of: object types, enumerated state, signals, quantities."""
+"""Vocabularies: object types, enumerations, signals, quantities."""
 
 from rulec.vocabulary.vocabulary_model import (
     Declaration,

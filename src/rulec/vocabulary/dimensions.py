@@ -1,4 +1,4 @@
-"""What is measured (dimensions) and in how much of it (units)."""
+"""Dimensions and units, with exact factors."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class Unit:
     factor: Fraction
 
     def ratio(self, other: Unit) -> Fraction:
-        """How many ``other`` one of this unit is: 5/18 for km/h and m/s.
+        """The factor from this unit to ``other``: 5/18 for km/h and m/s.
 
         Raises:
             ValueError: the units measure different dimensions.

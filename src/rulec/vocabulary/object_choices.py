@@ -1,4 +1,4 @@
-"""Which objects variables of some types can stand for."""
+"""Choices of distinct objects for variables of some types."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ _PLAIN_NUMBERS = ("count", "refractive_index_unit", "absorbance_unit")
 
 @lru_cache(maxsize=256)
 def pint_unit(name: str) -> Unit | Refusal | None:
-    """What Pint knows as ``name`` (no powers, no divisions); None if it does not know it."""
+    """The unit that Pint knows as ``name`` (no powers, no divisions); None if there is none."""
     registry = _registry()
     if registry is None:
         return None

@@ -86,7 +86,7 @@ class Vocabulary:
             current = self.types[current].parent
 
     def is_subtype(self, type_name: str, of: str) -> bool:
-        """Is every ``type_name`` also an ``of``? Every type is one of itself."""
+        """Whether every ``type_name`` is also an ``of``. Every type is one of itself."""
         return of in self._above[type_name]
 
     @cached_property

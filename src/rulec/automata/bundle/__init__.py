@@ -1,1 +1,1 @@
-"""TODO automata/bundle."""
+"""The compiled rulebook as data and as a file: JSON, version 3."""

@@ -54,7 +54,7 @@ class CompiledRule:
 
 @dataclass(frozen=True, slots=True)
 class CompiledAxiom:
-    """What holds in every state, and where it is written."""
+    """An axiom, which holds in every state, and where it is written."""
 
     variables: tuple[Variable, ...]
     formula: Formula

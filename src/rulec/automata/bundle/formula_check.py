@@ -1,4 +1,4 @@
-"""Does a compiled rule's formula speak of what its vocabulary and its variables supply?"""
+"""Checks that a compiled formula speaks of its vocabulary and its variables alone."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from rulec.vocabulary import Quantity as DeclaredQuantity
 
 
 def problem_in(formula: Formula, vocabulary: Vocabulary, variables: Set[str]) -> str | None:
-    """What is wrong first, as a clause that goes on from the rule's name; None if nothing is."""
+    """The first problem, as a clause that goes on from the rule's name; None if there is none."""
     return next(_problems(formula, vocabulary, variables, counted=False), None)
 
 
 def _problems(
     formula: Formula, vocabulary: Vocabulary, variables: Set[str], *, counted: bool
 ) -> Iterator[str]:
-    """Of a formula, in the body of a count if ``counted``."""
+    """The problems of a formula, in the body of a count if ``counted``."""
     waiting = [formula]
     while waiting:
         match waiting.pop():

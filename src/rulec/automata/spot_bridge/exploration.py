@@ -61,7 +61,7 @@ def _bits(colours: Any) -> int:
 
 
 def _after_the_end(automaton: Any) -> tuple[tuple[int, int], ...]:
-    """Where each state leads, with what colours, when the word is over: any such letter will do."""
+    """The successor and colours of each state when the word is over: any such letter will do."""
     nothing = buddy.bddtrue
     for ap in automaton.ap():
         nothing &= -buddy.bdd_ithvar(automaton.register_ap(ap))

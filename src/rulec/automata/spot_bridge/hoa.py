@@ -24,7 +24,7 @@ def in_hoa(automaton: Any, name: str, remarks: Sequence[str]) -> str:
 
 
 def _ordered(automaton: Any) -> Any:
-    """The same automaton with its propositions by name and its states in breadth-first order.
+    """The automaton with its propositions by name and its states in breadth-first order.
 
     Spot's own order depends on what it has translated before; a rule's file should not.
     """

@@ -1,4 +1,4 @@
-"""What a formula asks of a word, and what a letter leaves of that to do.
+"""Obligations of a formula on a word, and what a letter leaves of them.
 
 A formula is a Boolean function of its letter's propositions and of obligations for the rest of the
 word, each an until or a release with what is left of its range.
@@ -157,7 +157,7 @@ class Obligations:
         return self._unfolded(one)
 
     def _unfolded(self, _obligation: _Obligation) -> Any:
-        """What an obligation asks of this letter, and what it leaves to the rest of the word."""
+        """The demand of an obligation on this letter, and on the rest of the word."""
         strong, left, right, (low, high) = _obligation
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue
@@ -179,7 +179,7 @@ class Obligations:
         return now & (self._now(left, True) | later)
 
     def _implications(self) -> Any:
-        """What obligations imply of each other: a shorter until a longer one."""
+        """Implications between obligations: a shorter until implies a longer one."""
         families: dict[tuple[bool, Formula, Formula], list[tuple[float, Any]]] = {}
         for one, variable in self._variables.items():
             if one.span.low == 0:
@@ -193,14 +193,14 @@ class Obligations:
         return known
 
     def ends_well(self, state: Any) -> bool:
-        """Where nothing comes any more, no until is fulfilled and no release is broken."""
+        """Whether a word may end here: no until is fulfilled any more, no release broken."""
         for one, variable in self._variables.items():
             state = buddy.bdd_restrict(state, -variable if one.strong else variable)
         return bool(state == buddy.bddtrue)
 
 
 def _weak_until(left: Formula, right: Formula, span: Range) -> Formula:
-    """The same by other operators, and by the unbounded ``weak until``."""
+    """A bounded ``weak until`` by other operators and the unbounded one."""
     low, high = span
     if high is not None:
         bound = Bound(Fraction(low), Fraction(high), "steps")

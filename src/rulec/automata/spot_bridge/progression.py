@@ -67,7 +67,7 @@ class Progression:
         return result
 
     def _table(self) -> tuple[list[Any], list[list[tuple[Any, int]]]]:
-        """What is left to do in each state, and the edges from it: letters, target.
+        """The obligations of each state, and the edges from it: letters, target.
 
         State 0 is the one before the word; nothing leads back to it.
         """
@@ -104,7 +104,7 @@ class Progression:
         return automaton
 
     def finite(self, alive: str) -> Any:
-        """The same for finite words, of any formula: infinite ones on which ``alive`` comes to end.
+        """The automaton on finite words, of any formula: infinite ones on which ``alive`` ends.
 
         What comes after a word's end does not matter, but ``alive`` does not come back.
         """

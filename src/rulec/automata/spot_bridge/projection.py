@@ -1,4 +1,4 @@
-"""What is known of some propositions, whatever the others are."""
+"""Projection: knowledge of some propositions, whatever the others are."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 
 def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
-    """What ``known``, without temporal operators, says of these propositions: exactly.
+    """The exact projection of ``known``, without temporal operators, onto these propositions.
 
     It holds for their values if ``known`` does for some values of all others. False if ``known``
     cannot hold, true if it says nothing of them.

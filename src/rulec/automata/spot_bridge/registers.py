@@ -59,7 +59,7 @@ def with_registers(
 
 
 class _Operands:
-    """What registers make of letters."""
+    """The function of registers from letters to their values."""
 
     def __init__(
         self, automaton: Any, registers: Sequence[Register], spot_formulas: SpotFormulas

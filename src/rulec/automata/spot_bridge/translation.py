@@ -97,7 +97,7 @@ def translate(
 
 
 def _shaped(automaton: Any) -> Any:
-    """The same language, smaller if possible, with parity acceptance."""
+    """An automaton of the language, smaller if possible, with parity acceptance."""
     if spot.is_deterministic(automaton) and spot.is_weak_automaton(automaton):
         automaton = spot.minimize_wdba(automaton)
     return spot.postprocess(automaton, *_SHAPE)

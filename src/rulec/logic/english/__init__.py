@@ -1,1 +1,1 @@
-"""TODO logic/english."""
+"""Formulas as English: sentences, phrases of time, phrases of atoms."""

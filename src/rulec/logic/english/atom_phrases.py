@@ -122,7 +122,7 @@ def plural(noun: str) -> str:
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """As the rulebook says it; made up of its terms, without units, if nobody has said it."""
+    """The comparison's text, or one made of its terms, without units, if it has none."""
     if comparison.text:
         return comparison.text
     return f"{terms_text(comparison.terms)} {comparison.relation} {number_text(comparison.limit)}"
@@ -154,7 +154,7 @@ def amount(value: Fraction, unit: Literal["s", "steps"]) -> str:
 
 
 def span(bound: Bound, beyond: str) -> str:
-    """When: ``from 1 s to 4 s later``, ``beyond`` being ``later`` or ``before``."""
+    """A time: ``from 1 s to 4 s later``, ``beyond`` being ``later`` or ``before``."""
     low = amount(bound.low, bound.unit)
     if bound.high is None:
         return f"{low} or more {beyond}"
@@ -165,7 +165,7 @@ def span(bound: Bound, beyond: str) -> str:
 
 
 def lasting(bound: Bound) -> str:
-    """How long: ``for 1 s to 4 s``."""
+    """A duration: ``for 1 s to 4 s``."""
     low = amount(bound.low, bound.unit)
     if bound.high is None:
         return f"for at least {low}"

@@ -38,7 +38,7 @@ MOST_IN_A_LINE = 3
 
 
 class Shape(IntEnum):
-    """What a phrase can stand beside, from the simplest to what needs a list of its own."""
+    """The complexity of a phrase, from a word to a list of its own."""
 
     CLAUSE = 0
     """One atom or comparison, or its denial."""
@@ -69,7 +69,7 @@ class Phrase:
 
 
 def label(index: int) -> str:
-    """What stands in a phrase's text for the label of its item ``index``, from 0."""
+    """The placeholder of the label of a phrase's item ``index``, from 0."""
     return chr(0xE000 + index)
 
 
@@ -100,7 +100,7 @@ def exemption(formula: Formula, scope: str) -> Phrase:
 
 
 def condition(formula: Formula, *, guards: bool) -> Phrase:
-    """Where a rule applies at all; ``guards``: it guards a stretch of the trace."""
+    """The condition of a rule; ``guards``: it guards a stretch of the trace."""
     when = _WHEN["throughout" if guards else "initially"]
     return _after(f"it counts only if, {when},", phrase(formula, inside=True))
 

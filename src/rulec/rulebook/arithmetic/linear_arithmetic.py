@@ -80,12 +80,12 @@ class NumberByCases:
 
     @property
     def is_constant(self) -> bool:
-        """Is it the same for all states?"""
+        """Whether it is the same for all states."""
         return len(self.cases) == 1 and not self.cases[0][1].coefficients
 
     @property
     def text(self) -> str:
-        """As a rulebook would say it."""
+        """The number as a rulebook would say it."""
         if len(self.cases) == 1:
             return self.cases[0][1].text
         return " or ".join(linear.text for _, linear in self.cases)
@@ -145,7 +145,7 @@ def either(condition: Formula, value: NumberByCases, otherwise: NumberByCases) -
 
 
 def negated(formula: Formula) -> Formula:
-    """Its negation, without a double one."""
+    """The negation of a formula, without a double one."""
     if isinstance(formula, Unary) and formula.operator is UnaryOperator.NOT:
         return formula.operand
     if isinstance(formula, Constant):
@@ -220,12 +220,12 @@ def compared(left: NumberByCases, relation: Relation, right: NumberByCases) -> F
 
 
 def all_of(formulas: Sequence[Formula]) -> Formula:
-    """Their conjunction; true if there are none."""
+    """The conjunction of formulas; true if there are none."""
     return _joined(BinaryOperator.AND, True, iter(formulas))
 
 
 def any_of(formulas: Iterator[Formula]) -> Formula:
-    """Their disjunction; false if there are none."""
+    """The disjunction of formulas; false if there are none."""
     return _joined(BinaryOperator.OR, False, formulas)
 
 

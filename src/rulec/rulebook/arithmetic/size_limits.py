@@ -1,4 +1,4 @@
-"""How large a formula is once definitions, conditions and exceptions have been put in."""
+"""Size limits of formulas with definitions, conditions and exceptions expanded."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class TooLargeError(Exception):
 
 
 def exceeded_limit(formula: Formula) -> Literal["", "deep", "large"]:
-    """Is the formula too deep or too large? A part that occurs twice counts twice."""
+    """The limit that a formula exceeds, if any. A part that occurs twice counts twice."""
     rest = [(formula, 1)]
     parts = 0
     while rest:

@@ -27,7 +27,7 @@ class Formatted:
 
     @property
     def changed(self) -> bool:
-        """Is it not in canonical form?"""
+        """Whether it is not in canonical form."""
         return self.before != self.after
 
 

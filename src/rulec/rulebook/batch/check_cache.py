@@ -1,4 +1,4 @@
-"""What a check found, kept until a file that it depends on is another.
+"""Cache of a check's findings, kept until a file that it depends on is another.
 
 Checking a rulebook means parsing it and all that it builds upon; asking whether any of that has
 changed means reading the files alone. What is kept are diagnostics, one small file for each
@@ -34,7 +34,7 @@ _WORDS = 200
 
 @dataclass(frozen=True, slots=True)
 class CheckQuestion:
-    """What was checked: all that the findings depend on but other files.
+    """The key of a check: all that the findings depend on but other files.
 
     ``name`` is what messages call the file, ``path`` where it is (empty for standard input),
     ``day`` the day whose law it is where the rulebook does not say.
@@ -53,12 +53,12 @@ class CheckQuestion:
         return sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:40]
 
     def stamp(self) -> list[str]:
-        """What has to be as it was."""
+        """The content that has to be as it was."""
         return [sha256(self.data).hexdigest(), self.day, __version__, _program()]
 
 
 def cache_folder() -> Path | None:
-    """Where findings are kept: ``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder.
+    """The cache folder: ``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder.
 
     None if there is no such place.
     """
@@ -75,7 +75,7 @@ def cache_folder() -> Path | None:
 
 
 def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
-    """What was found when the same was last asked; None if that is not known any more."""
+    """The findings of the last check like it; None if they are not known any more."""
     folder = cache_folder()
     if folder is None:
         return None
@@ -115,7 +115,7 @@ def remember(
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:
-    """How many characters of sources the findings quote, with some for their own words."""
+    """The number of characters of sources that findings quote, with some for their words."""
     places = [
         place
         for finding in findings

@@ -1,1 +1,1 @@
-"""TODO rulebook/elaborate."""
+"""Expressions as written to formulas and numbers, with all checks of types."""

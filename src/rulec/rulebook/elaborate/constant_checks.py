@@ -22,7 +22,7 @@ from rulec.vocabulary.units import DIMENSIONS
 def check_constants_and_macros(
     symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> list[Diagnostic]:
-    """What is wrong with parameters and definitions; the broken ones are noted in ``constants``.
+    """Mistakes in parameters and definitions; the broken ones are noted in ``constants``.
 
     Each comes after those that it uses, so that a mistake is met first where it was made.
     """

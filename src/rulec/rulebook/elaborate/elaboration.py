@@ -93,7 +93,7 @@ def number(node: tree.Formula, scope: Scope) -> NumberByCases | None:
 
 
 def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
-    """What an expression means; None if it has a mistake, which is then reported.
+    """The meaning of an expression; None if it has a mistake, which is then reported.
 
     Raises:
         TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
@@ -199,7 +199,7 @@ def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -
 
 
 def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
-    """Who writes ``never p then q`` means ``never (p then q)``: ``never p`` has no end."""
+    """Report ``never p then q``, which means ``never (p then q)``: ``never p`` has no end."""
     if phase.operator in ("always", "never", "eventually") and not phase.grouped:
         yield say.endless_phase(phase)
 

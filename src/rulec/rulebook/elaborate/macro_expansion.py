@@ -16,7 +16,7 @@ _Meaning = TypeVar("_Meaning")
 def expand_macro(
     use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning]
 ) -> _Meaning | None:
-    """What a use of a definition means; None if it has a mistake, which is then reported."""
+    """The meaning of a definition's use; None if it has a mistake, which is then reported."""
     name = use.name.text
     item = scope.constants.definitions[name]
     if any(call.name == name for call in scope.calls):

@@ -81,7 +81,7 @@ def _evaluated(
 
 
 def _dimension(name: str, scope: Scope) -> Dimension | None:
-    """What the declaration says; None if it says nothing or nothing known."""
+    """The declared dimension; None if there is none or an unknown one."""
     for value in scope.constants.overlay.parameters[name]:
         item = value.item
         if isinstance(item, tree.ParamItem) and item.dimension is not None:
@@ -90,7 +90,7 @@ def _dimension(name: str, scope: Scope) -> Dimension | None:
 
 
 def _first_value(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> Dimension | None:
-    """Where the declaration names no dimension, its own value has it."""
+    """The dimension of the first value, for a declaration that names none."""
     first = scope.constants.overlay.parameters[name][0]
     if first is value or isinstance(first.item.value, bool):
         return None

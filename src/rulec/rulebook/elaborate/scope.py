@@ -1,4 +1,4 @@
-"""What a formula can refer to, and names looked up in it."""
+"""Scopes: the symbols that a formula can refer to, and their lookup."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class Scope:
         return self.symbols.behind_atom(name)
 
     def relation_names(self) -> list[str]:
-        """What can be given to a definition for a relation."""
+        """Names that can be given to a definition for a relation."""
         return [*self.symbols.atoms(), *SIDES, *self.constants.names(), *self.relations]
 
     def absolute(self, use: tree.AtomUse, name: str) -> str | None:

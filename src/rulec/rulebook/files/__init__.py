@@ -1,1 +1,1 @@
-"""TODO rulebook/files."""
+"""Files of rulebooks and vocabularies: where they are, and which need which."""

@@ -1,4 +1,4 @@
-"""Where rulebooks and vocabularies are: a search path, then those that ship with rulec."""
+"""The search path of rulebooks and vocabularies, then those that ship with rulec."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
 
 
 def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
-    """As ``find_vocabulary``; None if there is none."""
+    """The vocabulary's file as ``find_vocabulary`` finds it; None if there is none."""
     for folder in _vocabulary_folders(user, search_path):
         candidate = folder / f"{name}{_SUFFIX}"
         if _is_file(candidate) and (user is None or not is_same_file(candidate, user)):
@@ -120,7 +120,7 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
 
 
 def locate_base(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
-    """As ``find_base``; None if there is none."""
+    """The base's file as ``find_base`` finds it; None if there is none."""
     return _by_name(name, [*_around(user), *search_path])
 
 
@@ -177,7 +177,7 @@ def _is_file(path: Path) -> bool:
 
 
 def is_same_file(one: Path, other: Path) -> bool:
-    """Do two paths lead to the same file?"""
+    """Whether two paths lead to the same file."""
     try:
         return one.samefile(other)
     except OSError:
@@ -200,7 +200,7 @@ def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
 
 
 def suggest(name: str, known: Sequence[str]) -> str:
-    """What else somebody may have meant by a name in a command."""
+    """Suggestions for an unknown name in a command."""
     if name and _is_file(Path(f"{name}{_SUFFIX}")):
         return f"write `./{name}{_SUFFIX}` for the file in the working folder"
     return _suggest(name, known)

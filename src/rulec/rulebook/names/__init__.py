@@ -1,1 +1,1 @@
-"""TODO rulebook/names."""
+"""Symbol tables: the declarations of files, and what refers to them."""

@@ -1,4 +1,4 @@
-"""What the comments beside a declaration say of it: the description that its author gave it."""
+"""Doc comments: the description that an author wrote beside a declaration."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
 
 
 def parts_of(formula: tree.Formula) -> tuple[tree.Formula, ...]:
-    """What a formula's outermost operator is about, from left to right."""
+    """The operands of a formula's outermost operator, from left to right."""
     match formula:
         case tree.Prefix(operand=operand) | tree.Minus(operand) | tree.Aggregate(body=operand):
             return (operand,)

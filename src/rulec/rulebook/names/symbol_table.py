@@ -23,7 +23,7 @@ from rulec.vocabulary.units import Unit, parse_unit
 
 @dataclass(slots=True)
 class SymbolTable:
-    """What the files declare, and where; filled by ``symbol_table``.
+    """Symbol table: declarations of the files, and where; filled by ``symbol_table``.
 
     ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
     may have declared; with ``opaque`` any name may be missing for a reason that has been reported,
@@ -92,12 +92,12 @@ class SymbolTable:
         return signal if isinstance(signal, Signal) else self.value_of.get(name)
 
     def may_know(self, name: str) -> bool:
-        """Could the name, or the ``b`` of ``b_v``, be declared by what could not be read?"""
+        """Whether the name, or the ``b`` of ``b_v``, may be declared by what could not be read."""
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
     def may_know_type(self, name: str) -> bool:
-        """Could the type be declared by what could not be read?"""
+        """Whether the type may be declared by what could not be read."""
         return self.opaque_types or self.may_know(name)
 
     def ancestors(self, type_name: str) -> list[str]:
@@ -110,7 +110,7 @@ class SymbolTable:
         return names
 
     def fits(self, type_name: str, wanted: str) -> bool:
-        """Is every ``type_name`` a ``wanted``, as far as can be told?"""
+        """Whether every ``type_name`` is a ``wanted``, as far as is known."""
         above = self.ancestors(type_name)
         unsure = wanted not in self.types or not self.uncertain.isdisjoint(above) or not above
         return unsure or wanted in above

@@ -1,1 +1,1 @@
-"""TODO rulebook/overlay."""
+"""Rulebooks laid over those that they extend: rules, constants, macros, priorities."""

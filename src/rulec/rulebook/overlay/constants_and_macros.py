@@ -15,7 +15,7 @@ from rulec.syntax import tree
 
 @dataclass(slots=True)
 class ConstantsAndMacros:
-    """What formulas may speak of besides the vocabulary, on the day ``at`` (ISO).
+    """Constants and macros that formulas may use, on the day ``at`` (ISO).
 
     ``numbers`` are the parameters' values, None for one that has none or a wrong one, filled as
     they are asked for.
@@ -51,7 +51,7 @@ class ConstantsAndMacros:
 
     @property
     def options(self) -> Mapping[str, bool]:
-        """Their values."""
+        """The values of the options."""
         return self.overlay.options
 
     @property
@@ -60,17 +60,17 @@ class ConstantsAndMacros:
         return self.overlay.definitions
 
     def names(self) -> list[str]:
-        """All of them."""
+        """The names of all options, parameters and definitions."""
         overlay = self.overlay
         return [*overlay.options, *overlay.parameters, *overlay.definitions]
 
     def may_know(self, name: str) -> bool:
-        """Could the name be given by what could not be read?"""
+        """Whether the name may be given by what could not be read."""
         return self.overlay.unsure or name in self.overlay.suspects
 
 
 def in_force(dates: tree.InForce | None, day: str) -> bool:
-    """Is something in force on a day (ISO)? The last day counts."""
+    """Whether something is in force on a day (ISO). The last day counts."""
     if dates is None:
         return True
     return dates.since <= day and (not dates.until or day <= dates.until)

@@ -40,7 +40,7 @@ class Value:
 
 @dataclass(slots=True)
 class Overlay:
-    """What a chain of rulebooks comes to.
+    """The result of a chain of rulebooks, each laid over its base.
 
     An option, a parameter and a definition never have the same name.
     """
@@ -152,7 +152,7 @@ class _Layer:
                 return
 
     def _new(self, name: tree.Name, kind: str) -> bool:
-        """Is the name free? What takes it is reported."""
+        """Whether the name is free; what takes it is reported."""
         first = self.spans.get(name.text)
         known = self.result.declared_at.get(name.text)
         if known is not None:
@@ -184,7 +184,7 @@ class _Layer:
             self._nothing(name, "option or parameter", "set", known)
 
     def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Is an option, parameter or definition another rulebook's? If it is not, report it."""
+        """Whether an option, parameter or definition is another rulebook's; if not, report it."""
         if self.result.levels[name.text] < self.level:
             return True
         known = self.result.declared_at[name.text]
@@ -192,7 +192,7 @@ class _Layer:
         return False
 
     def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Is it inherited, and not changed yet in this rulebook? What is wrong is reported."""
+        """Whether it is inherited and not changed yet in this rulebook; mistakes are reported."""
         if not self._is_inherited(name, kind, verb):
             return False
         before = self.result.changed_at.get(name.text)
@@ -244,7 +244,7 @@ class _Layer:
         self.result.remarks.append(Remark(item.name.text, because, "softened"))
 
     def _inherited(self, name: tree.Name, verb: str) -> bool:
-        """Is it an inherited rule? What else it is, is reported."""
+        """Whether it is an inherited rule; anything else is reported."""
         known = self.result.rules.get(name.text)
         before = self.result.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
@@ -268,7 +268,7 @@ class _Layer:
 
 
 def never_in_force(dates: tree.InForce | None) -> bool:
-    """Do the dates end before they begin?"""
+    """Whether the dates end before they begin."""
     return dates is not None and bool(dates.until) and dates.until < dates.since
 
 

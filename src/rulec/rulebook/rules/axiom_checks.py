@@ -20,7 +20,7 @@ from rulec.vocabulary.object_choices import choices
 
 @dataclass(frozen=True, slots=True)
 class ExampleValues:
-    """What a state of an example says, and the defaults of what else a rule reads.
+    """Values of an example's state, and defaults for whatever else a rule reads.
 
     What neither of them speaks of is not known. ``read`` are those: declarations and objects.
     """

@@ -81,7 +81,7 @@ def _state(
 
 
 def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
-    """What a fact is about; None if it has a mistake, which is reported."""
+    """The subject of a fact; None if it has a mistake, which is reported."""
     kind = scope.constants.overlay.kind_of(use.name.text)
     if kind and scope.behind(use.name.text) is None:
         scope.report(say.no_fact(use, kind, scope.constants.overlay.declared_at[use.name.text]))
@@ -92,7 +92,7 @@ def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
 def _value(
     fact: tree.StateLiteral, found: Atom | Quantity, scope: Scope
 ) -> bool | str | float | None:
-    """What a fact says of the thing it names; None if it has a mistake, which is reported."""
+    """The value that a fact states; None if it has a mistake, which is reported."""
     if isinstance(found, Quantity):
         return _number(fact, found, scope)
     if fact.value is not None:

@@ -33,7 +33,7 @@ class NoStretchError(Exception):
 
 
 class BoundedPhaseError(Exception):
-    """What holds throughout phases whose length is bounded cannot be said."""
+    """An exemption throughout phases of bounded length, which cannot be said."""
 
 
 class TooManyExceptionsError(Exception):
@@ -110,7 +110,7 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
 def _border(
     phases: list[_Phase], before: Formula, behind: Formula, throughout: Sequence[Formula]
 ) -> Formula:
-    """Of two phases: the last instant of the first, and the first one of the second."""
+    """Two phases: the last instant of the first, and the first one of the second."""
     first, second = phases
     ways = [
         _ends(

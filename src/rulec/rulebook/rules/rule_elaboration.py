@@ -109,7 +109,7 @@ def translate_rule(
 
 
 def _step_of(file: tree.File, scope: Scope) -> Fraction:
-    """How far the states of a rulebook's examples are apart, in seconds."""
+    """The step between states of a rulebook's examples, in seconds."""
     if file.step is None:
         return Fraction(1)
     result = number(file.step.amount, scope)
@@ -132,7 +132,7 @@ def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class _Parts:
-    """What a rule requires, what it exempts, and when it is in force."""
+    """The parts of a rule: requirement, exemptions, condition."""
 
     required: Formula
     exemptions: tuple[Exemption, ...]
@@ -164,7 +164,7 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
 
 
 def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
-    """All of it as one formula; None if it has a mistake, which is then reported."""
+    """The whole rule as one formula; None if it has a mistake, which is then reported."""
     formula = _with_exceptions(item, parts, scope)
     match "" if formula is None else exceeded_limit(formula):
         case "deep":

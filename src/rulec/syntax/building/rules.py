@@ -60,7 +60,7 @@ def rule_head(values: NodeValues, node: ParseNode) -> RuleHead:
 
 
 def clause(values: NodeValues, node: ParseNode) -> Clause:
-    """What a clause says."""
+    """The value of a clause."""
     match node.kind:
         case "require_clause" | "when_clause":
             return value_of(values, node)

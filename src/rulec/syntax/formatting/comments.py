@@ -46,7 +46,7 @@ def _comment(source: Source, found: re.Match[str]) -> Comment:
 
 
 def blank_line_before(text: str, position: int) -> bool:
-    """Is there an empty line between what stands at ``position`` and what stands before it?"""
+    """Whether there is an empty line before what stands at ``position``."""
     before = position
     while before and text[before - 1].isspace():
         before -= 1

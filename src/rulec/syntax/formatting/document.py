@@ -99,7 +99,7 @@ def group(*parts: Document, forced: bool = False) -> GroupDocument:
 
 
 def has_line_end(document: Document) -> bool:
-    """Does it break in any case?"""
+    """Whether it breaks in any case."""
     match document:
         case LineEnd():
             return True
@@ -162,7 +162,7 @@ class _Layout:
         return self.width - len(self.rows[-1].code)
 
     def _fits(self, indent: int, document: Document) -> bool:
-        """Does it fit on this line, with what has to follow it there?"""
+        """Whether it fits on this line, with what has to follow it there."""
         room = self._room()
         inner: _Todo = [(indent, True, document)]
         behind = len(self.todo)
@@ -194,7 +194,7 @@ class _Layout:
         return False
 
     def _next_fits(self) -> bool:
-        """Does what follows fit on this line, behind a space, up to where a line may end?"""
+        """Whether what follows fits on this line, behind a space, up to the next line end."""
         room = self._room() - 1
         inner: list[Document] = []
         behind = len(self.todo)

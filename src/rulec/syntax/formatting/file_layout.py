@@ -110,7 +110,7 @@ class _Block:
         return own
 
     def _blanks(self, starts: Sequence[int], behind: int) -> list[bool]:
-        """Where the author has blank lines. What stands before ``behind`` was inside a piece."""
+        """The author's blank lines. What stands before ``behind`` was inside a piece."""
         return [start >= behind and blank_line_before(self.text, start) for start in starts]
 
     def _add_comments(self, comments: Sequence[Comment], blanks: Sequence[bool]) -> None:

@@ -1,4 +1,4 @@
-"""Which operators there are in what the grammar matched, and which parentheses group nothing."""
+"""Operators of a parse node, and parentheses that group nothing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _WHOLE = _FORMULAS_ONLY | {"unless_clause", "param_item", "set_item", "group"}
 
 
 def level(node: ParseNode) -> int:
-    """How tightly the operator of an infix, a comparison or an arithmetic operation binds."""
+    """The binding strength of an infix, a comparison or an arithmetic operation."""
     sign = node.children[1]
     assert isinstance(sign, ParseLeaf), "the operator is between its operands"
     if node.kind == "compare":
@@ -34,7 +34,7 @@ def level(node: ParseNode) -> int:
 
 
 def without_spare_parentheses(node: ParseNode) -> ParseNode:
-    """The same without parentheses around a name, a number, other parentheses, or everything."""
+    """The node without parentheses around a name, a number, other parentheses, or everything."""
     whole = node.kind in _WHOLE and _has_no_words_behind(node)
     children = tuple(
         child if isinstance(child, ParseLeaf) else _child(node, child, whole=whole)

@@ -1,4 +1,4 @@
-"""What the grammar matched as a document: where spaces stand and where lines may end.
+"""Parse nodes as documents: where spaces stand and where lines may end.
 
 The file's own words and signs are written again, in their order, one by one. Two things only are
 not: parentheses around what they don't group, and white space.
@@ -54,7 +54,7 @@ class DocumentBuilder:
         return trailing, tuple(comment for comment in comments if comment is not trailing)
 
     def holds_comment(self, until: int) -> bool:
-        """Is there a comment before a position that has not been taken yet?"""
+        """Whether a comment before a position has not been taken yet."""
         return bool(self.comments) and self.comments[0].start < until
 
     def gap(self, gap: Gap, following: int) -> Document:
@@ -159,14 +159,14 @@ class DocumentBuilder:
 
 
 def first_leaf(node: Node) -> ParseLeaf:
-    """Where a node begins."""
+    """The position at which a node begins."""
     while isinstance(node, ParseNode):
         node = node.children[0]
     return node
 
 
 def last_leaf(node: Node) -> ParseLeaf:
-    """Where a node ends."""
+    """The position at which a node ends."""
     while isinstance(node, ParseNode):
         node = node.children[-1]
     return node
@@ -195,7 +195,7 @@ def _behind_prefix(sign: ParseLeaf, children: Sequence[Node], operand: Node) -> 
 
 
 def _behind_operator(link: Sequence[Node]) -> Gap:
-    """What is between an operator and its operand; behind a bound a name does not begin a line."""
+    """The gap between an operator and its operand; behind a bound no name begins a line."""
     bounded = len(link) > 2 and first_leaf(link[-1]).kind == "NAME"
     return " " if bounded else Fill()
 
@@ -205,7 +205,7 @@ def _is_equals(node: Node) -> bool:
 
 
 def between(before: ParseLeaf, behind: ParseLeaf, inside: str, deeper: int) -> Gap:
-    """What stands between two tokens that are no operator's."""
+    """The gap between two tokens that are no operator's."""
     match before.kind, behind.kind:
         case (_, "COMMA" | "RPAR" | "RSQB" | "LSQB") | ("LPAR" | "LSQB" | "MINUS", _):
             return ""

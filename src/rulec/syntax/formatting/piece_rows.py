@@ -55,7 +55,7 @@ class Pieces:
         return span_of(self.source, self.tokens, part).end
 
     def matched(self, piece: Piece) -> ParseNode:
-        """What the grammar makes of a piece."""
+        """The parse node of a piece."""
         span = span_of(self.source, self.tokens, piece)
         branch = parse_piece(cast("Start", piece.kind), self.source.text, span.start, span.end)
         assert isinstance(branch, ParseNode), "the file has no mistakes"

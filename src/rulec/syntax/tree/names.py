@@ -1,4 +1,4 @@
-"""What all nodes are made with: names, texts, places."""
+"""Names, texts and places, of which all nodes are made."""
 
 from __future__ import annotations
 

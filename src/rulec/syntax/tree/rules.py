@@ -26,7 +26,7 @@ class StateLiteral:
 
 @dataclass(frozen=True, slots=True)
 class ExampleState:
-    """What one state of an example mentions; nothing, written ``true``, if all is by default."""
+    """The literals of one state of an example; none, written ``true``, if all is by default."""
 
     literals: tuple[StateLiteral, ...]
     span: Span = field(default=NOWHERE, compare=False, repr=False)
