@@ -13,9 +13,9 @@ from rulec.witnesses.state_synthesis import (
     are_consistent,
     default_digit,
     default_value,
-    keys_of,
     numbers_near_thresholds,
     required_counts,
+    subjects_of,
     synthesize_state,
     value_of,
 )
@@ -133,7 +133,7 @@ def test_defaults():
 
 
 def test_subjects_are_all_that_a_state_could_say():
-    subjects = [subject for subject, _ in keys_of(VOCABULARY, {"x": "thing", "y": "thing"})]
+    subjects = [subject for subject, _ in subjects_of(VOCABULARY, {"x": "thing", "y": "thing"})]
     assert subjects == [
         ("p", ()),
         *(("q", (name,)) for name in "xy"),

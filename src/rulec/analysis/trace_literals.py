@@ -12,7 +12,7 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.state_view import value_in
 from rulec.trace import State, Trace
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
-from rulec.witnesses.state_synthesis import keys_of
+from rulec.witnesses.state_synthesis import subjects_of
 
 
 def trace_literal(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> str:
@@ -24,7 +24,7 @@ def trace_literal(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocab
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
     literals = []
-    for (name, items), declaration in keys_of(vocabulary, trace.objects):
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
         value = value_in(state, name, items, declaration)
         if name not in names or value is None or value == declaration.default:
             continue

@@ -9,20 +9,20 @@ from rulec.logic.formula import Atom
 from rulec.monitoring.state_view import value_in
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Quantity, Vocabulary
-from rulec.witnesses.state_synthesis import keys_of
+from rulec.witnesses.state_synthesis import subjects_of
 
 
 @dataclass(frozen=True, slots=True)
 class SignalRow:
     """The values of one subject by column: ``title`` names it, ``unit`` is empty if it has none.
 
-    ``usual``: the value is the default in all of them.
+    ``is_default``: the value is the default in all of them.
     """
 
     title: str
     unit: str
     values: tuple[Value | None, ...]
-    usual: bool = False
+    is_default: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +42,10 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
     ]
     ends = [*(start - 1 for start in starts[1:]), len(trace.states) - 1]
     rows = []
-    for (name, items), declaration in keys_of(vocabulary, trace.objects):
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
         if name in names and len(set(items)) == len(items):
             values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
-            usual = all(value == declaration.default for value in values)
-            rows.append(SignalRow(str(Atom(name, items)), unit, values, usual))
+            is_default = all(value == declaration.default for value in values)
+            rows.append(SignalRow(str(Atom(name, items)), unit, values, is_default))
     return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))

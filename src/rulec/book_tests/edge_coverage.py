@@ -98,7 +98,7 @@ def _coverage(
     letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
     edges = list(_edges(machine, paths, letters))
-    taken = {edge for one in outcomes for edge in _taken(machine, one.word)}
+    taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
     states = {
         symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
         for symbol, letter in letters.items()
@@ -107,7 +107,7 @@ def _coverage(
         UncoveredEdge(
             source,
             machine.successors[source][symbol],
-            tuple(states[one] for one in (*paths[source], symbol)),
+            tuple(states[letter_class] for letter_class in (*paths[source], symbol)),
             machine.outputs[source][symbol],
         )
         for source, symbol in edges
@@ -120,9 +120,9 @@ def _coverage(
         for value in possible
     ]
     seen = {
-        (one, holds(one, own_names(rule), moment))
+        (proposition, holds(proposition, own_names(rule), moment))
         for moment in _moments(rule, outcomes, rulebook)
-        for one, _ in values
+        for proposition, _ in values
     }
     missing_values = tuple(value for value in values if value not in seen)
     return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
@@ -133,8 +133,8 @@ def _moments(
 ) -> Iterator[StateView]:
     for outcome in outcomes:
         trace = example_trace(rule, outcome.example)
-        columns = letter_reader_of(trace, rulebook)
-        yield from (columns.view(number) for number in range(len(trace.states)))
+        reader = letter_reader_of(trace, rulebook)
+        yield from (reader.view(number) for number in range(len(trace.states)))
 
 
 def _edges(

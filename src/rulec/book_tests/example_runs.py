@@ -113,15 +113,23 @@ def _outcome(
     """The verdict for the binding that gives every variable its own name."""
     trace = example_trace(rule, example)
     where = "this state".format
-    columns = letter_reader_of(trace, compiled, where)
+    reader = letter_reader_of(trace, compiled, where)
     last = len(trace.states) - 1
     try:
-        check_counting_axioms(compiled, last + 1, columns.view, where, trace.place)
-        word = columns.word(machine, own_names(rule), 0, last)
+        check_counting_axioms(compiled, last + 1, reader.view, where, trace.place)
+        word = reader.word(machine, own_names(rule), 0, last)
     except ImpossibleStateError as error:
         raise _no_state(rule, example, error) from None
-    ends = compiled.semantics == "finite"
-    return ExampleOutcome(rule, example, number, word, *run(machine.machine, word), ends)
+    accepted, lost_after = run(machine.machine, word)
+    return ExampleOutcome(
+        rule,
+        example,
+        number,
+        word,
+        accepted=accepted,
+        lost_after=lost_after,
+        ends=compiled.semantics == "finite",
+    )
 
 
 def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:

@@ -216,7 +216,7 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
     return read.digit(total)
 
 
-def keys_of(
+def subjects_of(
     vocabulary: Vocabulary, objects: Mapping[str, str]
 ) -> Iterator[tuple[Subject, Declaration]]:
     """The subjects of all that a state could say of these objects, and their declarations."""

@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 from rulec.witnesses.counted_objects import counted_objects_of_types, fewest_counted_objects
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
-from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, keys_of
+from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, subjects_of
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -119,7 +119,7 @@ def _written(
 ) -> dict[str, Any]:
     """A state as a trace has it: what is not the default, and what has none."""
     state: dict[str, Any] = {}
-    for (name, items), declaration in keys_of(universe.vocabulary, all_objects):
+    for (name, items), declaration in subjects_of(universe.vocabulary, all_objects):
         value = values.get((name, items))
         if value is None and name in universe.unsaid:
             continue

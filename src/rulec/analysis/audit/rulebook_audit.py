@@ -113,14 +113,14 @@ def audit(
     ]
     order = list(KINDS)
     return Audit(
-        rulebook.name,
-        rulebook.title,
-        rulebook.law,
-        rulebook.as_of,
-        rulebook.at,
-        _counts(rulebook, articles, sum(name in used for name in words)),
-        articles,
-        tuple(sorted(findings, key=lambda finding: order.index(finding.kind))),
+        rulebook=rulebook.name,
+        title=rulebook.title,
+        law=rulebook.law,
+        as_of=rulebook.as_of,
+        at=rulebook.at,
+        counts=_counts(rulebook, articles, sum(name in used for name in words)),
+        articles=articles,
+        findings=tuple(sorted(findings, key=lambda finding: order.index(finding.kind))),
     )
 
 
@@ -178,16 +178,16 @@ def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -
     rules = rulebook.rules
     n_hard = sum(rule.strength == "hard" for rule in rules)
     return AuditCounts(
-        len(rules),
-        n_hard,
-        len(rules) - n_hard,
-        sum(bool(rule.cite) for rule in rules),
-        sum(not _lacks(rule) for rule in rules),
-        sum(rule.certainty == "verified" for rule in rules),
-        sum(len(rule.examples) for rule in rules),
-        len(articles),
-        len(rulebook.vocabulary.declarations),
-        n_used,
+        rules=len(rules),
+        hard=n_hard,
+        soft=len(rules) - n_hard,
+        cited=sum(bool(rule.cite) for rule in rules),
+        tested=sum(not _lacks(rule) for rule in rules),
+        verified=sum(rule.certainty == "verified" for rule in rules),
+        examples=sum(len(rule.examples) for rule in rules),
+        articles=len(articles),
+        words=len(rulebook.vocabulary.declarations),
+        words_used=n_used,
     )
 
 

@@ -20,7 +20,7 @@ from rulec.monitoring.state_view import value_in
 from rulec.rulebook.model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
-from rulec.witnesses.state_synthesis import keys_of
+from rulec.witnesses.state_synthesis import subjects_of
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_SEARCHES = 12
@@ -64,7 +64,7 @@ def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     """The declarations with a default that the trace says something else of in some state."""
     return frozenset(
         name
-        for (name, items), declaration in keys_of(vocabulary, trace.objects)
+        for (name, items), declaration in subjects_of(vocabulary, trace.objects)
         if declaration.default is not None
         if any(
             value_in(state, name, items, declaration) != declaration.default

@@ -34,18 +34,18 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
         chain: their trees, the most general first.
         at: the day (ISO) whose law it is; it decides which value of a parameter counts.
     """
-    told = _Tale()
+    history = _ChainHistory()
     for level, file in enumerate(chain):
         book = book_header(file).name
         for item in file.items:
-            told.take(item, book, level)
-    used = _used(told)
+            history.take(item, book, level)
+    used = _used(history)
     return BookLineage(
         tuple(map(book_header, chain)),
-        tuple(RuleHistory(name, tuple(steps)) for name, steps in told.rules.items()),
+        tuple(RuleHistory(name, tuple(steps)) for name, steps in history.rules.items()),
         tuple(
-            replace(_provision(name, one, at), used=name in used)
-            for name, one in told.provisions.items()
+            replace(_provision(name, given, at), used=name in used)
+            for name, given in history.provisions.items()
         ),
     )
 
@@ -58,26 +58,26 @@ def read_with_lineage(
     return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
 
 
-def _used(told: _Tale) -> set[str]:
+def _used(history: _ChainHistory) -> set[str]:
     """The provisions that the rules speak of, those included that provisions speak of in turn."""
     used: set[str] = set()
-    open_: list[tree.Item] = [rule for steps in told.rules.values() if (rule := steps[-1].rule)]
+    open_: list[tree.Item] = [rule for steps in history.rules.values() if (rule := steps[-1].rule)]
     while open_:
-        names = set(names_used(open_.pop())) & told.provisions.keys()
-        open_ += [item for name in names - used for item, _, _ in told.provisions[name]]
+        names = set(names_used(open_.pop())) & history.provisions.keys()
+        open_ += [item for name in names - used for item, _, _ in history.provisions[name]]
         used |= names
     return used
 
 
 def book_header(file: tree.File) -> BookHeader:
-    """What a rulebook says of itself."""
+    """The head of a rulebook: name, title, law, file and base."""
     return BookHeader(
         file.name.text if file.name else "",
-        file.title.text.value if file.title else "",
-        file.law.text.value if file.law else "",
-        file.law.as_of if file.law else "",
-        PurePath(file.span.source.name).name,
-        file.extends.name.text if file.extends else "",
+        title=file.title.text.value if file.title else "",
+        law=file.law.text.value if file.law else "",
+        as_of=file.law.as_of if file.law else "",
+        file=PurePath(file.span.source.name).name,
+        extends=file.extends.name.text if file.extends else "",
     )
 
 
@@ -85,7 +85,7 @@ _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 
 @dataclass(slots=True)
-class _Tale:
+class _ChainHistory:
     """What has happened so far; of a provision with the book and its number in the chain."""
 
     rules: dict[str, list[LineageStep]] = field(default_factory=dict)
@@ -161,7 +161,13 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
     first = given[0][0]
     current = _current(given, at)
     settings = tuple(
-        ConstantValue(book, _text(item), *_dates(item), index == current, description(item.span))
+        ConstantValue(
+            book,
+            _text(item),
+            *_dates(item),
+            current=index == current,
+            note=description(item.span),
+        )
         for index, (item, book, _) in enumerate(given)
     )
     match first:

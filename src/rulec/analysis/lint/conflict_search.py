@@ -185,13 +185,13 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
     waiting = [
         node for node, steps in graph.items() if any(step.satisfied >= everyone for step in steps)
     ]
-    found = set(waiting)
+    hopeful = set(waiting)
     for node in waiting:
         for earlier in before.get(node, ()):
-            if earlier not in found:
-                found.add(earlier)
+            if earlier not in hopeful:
+                hopeful.add(earlier)
                 waiting.append(earlier)
-    return frozenset(found)
+    return frozenset(hopeful)
 
 
 def _shortest(

@@ -154,7 +154,7 @@ def _implied(
         yield undecided_diagnostic(rule, "others imply it", problem)
         return
     if premises:
-        listed = [one.rule.name for one in premises]
+        listed = [premise.rule.name for premise in premises]
         verb = "forbids" if len(listed) == 1 else "together forbid"
         who = " and ".join(f"`{one}`" for one in listed)
         yield ADDS_NOTHING.at(

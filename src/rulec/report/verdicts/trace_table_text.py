@@ -27,13 +27,13 @@ def rows(table: TraceTable) -> list[tuple[str, list[str]]]:
             ["" if value is None else shown(value) for value in row.values],
         )
         for row in table.rows
-        if not (row.usual and len(table.rows) > MOST_ROWS)
+        if not (row.is_default and len(table.rows) > MOST_ROWS)
     ]
 
 
 def left_out(table: TraceTable) -> list[str]:
     """What has no row, because all of it is by default."""
-    usual = [visible(row.title) for row in table.rows if row.usual]
+    usual = [visible(row.title) for row in table.rows if row.is_default]
     return usual if len(table.rows) > MOST_ROWS else []
 
 
