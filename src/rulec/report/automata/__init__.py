@@ -1,1 +1,1 @@
-"""TODO report/automata."""
+"""Automata of rules as text, Graphviz sources and pictures."""

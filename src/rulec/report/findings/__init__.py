@@ -1,1 +1,1 @@
-"""TODO report/findings."""
+"""Diagnostics and codes, as text and in the formats of other tools."""

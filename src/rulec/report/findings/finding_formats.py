@@ -20,22 +20,27 @@ def render(found: Sequence[Diagnostic], wanted: str, *, color: bool, complete: b
     """
     match wanted:
         case "concise":
+            # Every verb imports this file for FORMATS, and few write findings.
             from rulec.report.findings.concise import as_lines
 
             return as_lines(found)
         case "json":
+            # msgspec takes 8 ms.
             from rulec.report.findings.diagnostics_json import as_json
 
             return as_json(found)
         case "github":
+            # As above: for FORMATS alone nothing is imported.
             from rulec.report.findings.github_annotations import as_annotations
 
             return as_annotations(found)
         case "sarif":
+            # The explanations of all codes, and urllib: 6 ms.
             from rulec.report.findings.sarif import as_sarif
 
             return as_sarif(found, complete=complete)
         case _:
+            # As above.
             from rulec.report.findings.diagnostics_text import render_diagnostics
 
             return render_diagnostics(found, color).rstrip("\n")

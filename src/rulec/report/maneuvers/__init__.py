@@ -1,1 +1,1 @@
-"""TODO report/maneuvers."""
+"""Maneuvers, their counts, ranks and probabilities, as text, JSON and tables."""

@@ -12,6 +12,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.json_document import JsonDocument, as_line
 from rulec.scenario.model import Surface
 from rulec.trace import Value
+from rulec.trace.formats.csv_table import write_csv
 from rulec.trace.formats.trace_files import Format
 
 COLUMNS = MappingProxyType(
@@ -64,10 +65,9 @@ def write_envelopes(
     """
     rows = _rows(graph, maneuvers)
     if form == "csv":
-        from rulec.trace.formats.csv_table import write_csv
-
         write_csv(rows, list(COLUMNS), stream)
     elif form == "parquet":
+        # pyarrow takes 0.1 s and may be missing.
         from rulec.trace.arrow.parquet import write_parquet
 
         write_parquet(rows, list(COLUMNS.items()), stream, file)

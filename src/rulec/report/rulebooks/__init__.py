@@ -1,1 +1,1 @@
-"""TODO report/rulebooks."""
+"""Rules and rulebooks, their lineage, audits and differences, in several formats."""

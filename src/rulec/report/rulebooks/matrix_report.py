@@ -84,6 +84,7 @@ def render(found: ComparisonMatrix, output_format: str) -> str:
         case "markdown":
             return _as_markdown(found)
         case "html":
+            # markdown-it and Pygments take 0.1 s.
             from rulec.report.text.html_page import as_html
 
             return as_html(_as_markdown(found), TITLE, "")

@@ -1,1 +1,1 @@
-"""TODO report/tests."""
+"""Outcomes of examples and their coverage, as text, JSON and JUnit XML."""

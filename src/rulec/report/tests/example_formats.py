@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from rulec.book_tests.edge_coverage import RuleCoverage
 from rulec.book_tests.example_runs import ExampleRun
+from rulec.report.tests.example_text import as_text
 
 
 def render(
@@ -18,14 +19,14 @@ def render(
     """Write the runs as ``full``, ``json`` or ``junit``, with their coverage unless it is None."""
     match output_format:
         case "json":
+            # msgspec and its types take 9 ms.
             from rulec.report.tests.example_json import as_json
 
             return as_json(runs, covered)
         case "junit":
+            # ElementTree takes 4 ms.
             from rulec.report.tests.junit import as_junit
 
             return as_junit(runs, covered)
         case _:
-            from rulec.report.tests.example_text import as_text
-
             return as_text(runs, covered, color)

@@ -1,1 +1,1 @@
-"""TODO report/text."""
+"""Text that all reports share: the terminal, Markdown, lists, formulas in words."""

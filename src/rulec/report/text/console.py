@@ -122,6 +122,7 @@ class _Bar:
         self._bar.update(self._task, completed=done)
 
     def flush(self) -> None:
+        # rich takes 40 ms, and is for terminals alone.
         from rich.text import Text
 
         if self._lines:
@@ -148,6 +149,7 @@ def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]
     if not sys.stderr.isatty():
         yield lambda _: None
         return
+    # rich takes 40 ms, and is for terminals alone.
     from rich.console import Console
     from rich.progress import Progress
 

@@ -1,1 +1,1 @@
-"""TODO report/verdicts."""
+"""Verdicts and explained violations, as text and JSON."""

@@ -1,1 +1,1 @@
-"""TODO report/pictures/drawing."""
+"""Marks in px, their styles, and the files that pictures are written to."""

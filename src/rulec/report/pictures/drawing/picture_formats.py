@@ -8,7 +8,10 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Literal, cast, get_args
 
+from rulec.report.pictures.drawing.html_viewer import as_page
 from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, LabelText, Picture, stacked
+from rulec.report.pictures.drawing.png import as_png
+from rulec.report.pictures.drawing.svg import as_svg
 from rulec.report.pictures.drawing.text_metrics import CHARACTER
 
 Format = Literal["svg", "png", "html"]
@@ -36,8 +39,6 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
         RulecError: R0707 if a PNG cannot be made.
     """
     if form == "html":
-        from rulec.report.pictures.drawing.html_viewer import as_page
-
         return as_page(drawing.title, drawing.pictures, drawing.legend).encode()
     width = max(picture.width for picture in drawing.pictures)
     lines = wrap(drawing.title, int((width - 2 * MARGIN) / CHARACTER))
@@ -49,9 +50,5 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
     below = [drawing.legend] if drawing.legend else []
     whole = stacked(drawing.title, [head, *drawing.pictures, *below])
     if form == "png":
-        from rulec.report.pictures.drawing.png import as_png
-
         return as_png(whole, file)
-    from rulec.report.pictures.drawing.svg import as_svg
-
     return f"{as_svg(whole)}\n".encode()

@@ -34,6 +34,7 @@ def as_png(picture: Picture, file: str) -> bytes:
         RulecError: R0707 if matplotlib is missing, or the picture is too large.
     """
     try:
+        # matplotlib is installed on request, and takes 0.3 s.
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
@@ -63,6 +64,7 @@ def as_png(picture: Picture, file: str) -> bytes:
 
 
 def _draw(axes: Any, mark: Mark, order: int) -> None:
+    # As above: only who asks for PNG has matplotlib.
     from matplotlib.lines import Line2D
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
