@@ -205,6 +205,38 @@ def test_any_number_of_traces_and_what_is_none(monkeypatch):
     assert list(answers) == [verify(trace, compiled) for trace in traces]
 
 
+PLAIN = """rulebook plain
+type car
+signal p(v: car)
+hard rule kept (v: car) { require always p(v) }"""
+
+
+def test_a_value_that_one_state_lacks_is_missing_as_in_its_trace_alone():
+    rules = compile_here(parse_rulebook(PLAIN))
+    # Each state is an object of its own, so that all are turned into columns.
+    words = [[{"p": {"c": True}} for _ in range(3)] for _ in range(8)]
+    words[5][1] = {}
+    traces = [Trace(str(n), 1.0, {"c": "car"}, tuple(word)) for n, word in enumerate(words)]
+    assert_only_one_is_refused(traces, 5, rules)
+
+
+def assert_only_one_is_refused(traces, refused, rules):
+    answers = list(verify_many(traces, rules))
+    assert list(map(told, answers)) == [told(verify_or_reason(trace, rules)) for trace in traces]
+    codes = [one.error.diagnostics[0].code for one in answers if isinstance(one, NotJudged)]
+    assert codes == ["R0504"]
+    assert isinstance(answers[refused], NotJudged)
+
+
+def test_the_last_value_before_an_object_leaves_is_needed_in_shared_states():
+    rules = compile_here(parse_rulebook(PLAIN))
+    both, lacking, alone = ({"p": {"a": True, "b": True}}, {"p": {"a": True}}, {"p": {"a": True}})
+    words = [(both, both, alone)] * 5 + [(both, lacking, alone)] + [(both, both, alone)] * 2
+    objects, present = {"a": "car", "b": "car"}, {"b": (0, 1)}
+    traces = [Trace(str(n), 1.0, objects, word, present) for n, word in enumerate(words)]
+    assert_only_one_is_refused(traces, 5, rules)
+
+
 def test_what_can_be_no_trace_is_not_judged():
     compiled = crowded("stutter")
     bad = [

@@ -129,6 +129,30 @@ def test_answers_are_those_of_the_rows(form, rulebook, rows, block_bytes):
     assert by_columns(data, form, rules, block_bytes) == row_by_row(data, form, rules)
 
 
+LEAVES = """rulebook leaves
+type car
+signal p(v: car)
+signal q(v: car) default false
+hard rule kept (v: car) { require eventually !p(v) }"""
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("lacking", [None, ("1", "b"), ("2", "a")])
+def test_the_last_value_before_an_object_leaves_is_needed(form, lacking):
+    rules = compile_here(parse_rulebook(LEAVES))
+    objects, both = {"a": "car", "b": "car"}, {"a": True, "b": True}
+    states = ({"p": both, "q": both}, {"p": both, "q": both}, {"p": {"a": True}, "q": {"a": True}})
+    header, *rows = rows_of([Trace("t", 1.0, objects, states, {"b": (0, 1)})])
+    step, item, p = header.index("step"), header.index("object"), header.index("p")
+    for row in rows:
+        if (row[step], row[item]) == lacking:
+            row[p] = ""
+    data = FORMS[form]([header, *rows])
+    answered = by_columns(data, form, rules)
+    assert answered == row_by_row(data, form, rules)
+    assert ("R0504" in str(answered)) is (lacking is not None)
+
+
 TRAFFIC = """rulebook traffic
 type car
 type bus is car
