@@ -18,7 +18,7 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.columnize import columnize
+from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.verify import verify
 from support.oracles.bits.bit_verdicts import verify_on_bits

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.breakpoints import breakpoints_of
+from rulec.monitoring.online.encoding.breakpoints import breakpoints_of
+from rulec.monitoring.online.encoding.state_shape import StateShape
 from rulec.monitoring.online.rule_group import CacheSize
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.monitoring.online.state_shape import StateShape
 from rulec.rulebook.loader import parse_rulebook
 
 RULES = compile_rulebook(

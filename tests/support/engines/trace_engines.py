@@ -10,7 +10,7 @@ from pathlib import Path
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.batch.columnize import columnize
+from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.table_writer import kinds_in

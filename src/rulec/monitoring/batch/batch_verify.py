@@ -16,12 +16,12 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axioms import check_counting_axioms
-from rulec.monitoring.batch.column_reader import NotGivenError
-from rulec.monitoring.batch.columnize import columnize
+from rulec.monitoring.batch.columns.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.columnize import columnize
+from rulec.monitoring.batch.columns.value_encoding import UnencodableError
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.trace_groups import group_traces, under_common_names
 from rulec.monitoring.batch.trace_shapes import Names, Shape, shape_of, under_own_names
-from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.batch.cell_letters import CellLetterReader
-from rulec.monitoring.batch.column_reader import ColumnReader
+from rulec.monitoring.batch.columns.column_reader import ColumnReader
 from rulec.monitoring.batch.joint_codes import joint_cells_of
 from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
 from rulec.monitoring.batch.verdict_columns import JointCells, VerdictColumns, verdict_columns

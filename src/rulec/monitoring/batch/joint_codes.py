@@ -10,7 +10,7 @@ import numpy as np
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.automata.thresholds import scale
-from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
+from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError
 from rulec.monitoring.batch.rule_bindings import RuleBinding
 from rulec.monitoring.batch.verdict_columns import JointCells
 from rulec.trace.trace_columns import Array, smallest_unsigned

@@ -14,11 +14,11 @@ from rulec.monitoring.batch.batch_verify import (
     verify_chunk,
     violations_in,
 )
-from rulec.monitoring.batch.block_columns import BlockGroup, columnize_block, groups_of
-from rulec.monitoring.batch.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
+from rulec.monitoring.batch.columns.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.value_encoding import UnencodableError
 from rulec.monitoring.batch.engine import verify_columns
 from rulec.monitoring.batch.trace_shapes import under_own_names
-from rulec.monitoring.batch.value_encoding import UnencodableError
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace

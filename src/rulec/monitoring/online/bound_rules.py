@@ -12,11 +12,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.monitoring.axioms import check_counting_axioms
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.online.encoded_values import Encoded
+from rulec.monitoring.online.encoding.encoded_values import Encoded
+from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.four_valued import MonitorEdge
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.rule_group import GroupNode, PreparedRule, RuleGroup, RuleGroups
-from rulec.monitoring.online.state_shape import Items, StateShape
 from rulec.monitoring.state_validation import check_state
 from rulec.trace import State
 from rulec.vocabulary.object_choices import choices

@@ -10,11 +10,16 @@ from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.online.breakpoints import Breakpoints
-from rulec.monitoring.online.encoded_values import MISSING, Encoded, encoded_default, values_at
-from rulec.monitoring.online.letter_inputs import MonitorInput
+from rulec.monitoring.online.encoding.breakpoints import Breakpoints
+from rulec.monitoring.online.encoding.encoded_values import (
+    MISSING,
+    Encoded,
+    encoded_default,
+    values_at,
+)
+from rulec.monitoring.online.encoding.letter_inputs import MonitorInput
+from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
-from rulec.monitoring.online.state_shape import Items, StateShape
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State
 from rulec.vocabulary import Enumeration, Vocabulary

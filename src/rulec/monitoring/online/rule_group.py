@@ -13,14 +13,14 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.monitoring.online.breakpoints import Breakpoints, breakpoints_of
+from rulec.monitoring.online.encoding.breakpoints import Breakpoints, breakpoints_of
+from rulec.monitoring.online.encoding.letter_inputs import DigitWeight, MonitorInput, monitor_inputs
 from rulec.monitoring.online.four_valued import (
     FourValued,
     LinkedMonitor,
     MonitorEdge,
     linked_monitor,
 )
-from rulec.monitoring.online.letter_inputs import DigitWeight, MonitorInput, monitor_inputs
 
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""

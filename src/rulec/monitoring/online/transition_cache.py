@@ -6,9 +6,9 @@ from collections.abc import Hashable
 from typing import Any
 
 from rulec.monitoring.online.bound_rules import KnownState
+from rulec.monitoring.online.encoding.state_shape import StateKey, StateShape
 from rulec.monitoring.online.monitor_state import MonitorState, VerdictChange
 from rulec.monitoring.online.rule_group import GroupNode
-from rulec.monitoring.online.state_shape import StateKey, StateShape
 
 MOST = 1 << 12
 """Steps that are kept before all are forgotten."""

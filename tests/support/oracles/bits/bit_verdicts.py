@@ -11,8 +11,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Atom, Comparison, Proposition
-from rulec.monitoring.batch.column_reader import ColumnReader, NotGivenError
-from rulec.monitoring.batch.kleene_columns import Mask
+from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError
+from rulec.monitoring.batch.columns.kleene_columns import Mask
 from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
 from rulec.trace.trace_columns import Array, TraceColumns, layout_of
 from support.oracles.bits.trace_planes import Across

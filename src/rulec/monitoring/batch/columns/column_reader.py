@@ -23,14 +23,14 @@ from rulec.logic.formula import (
 )
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import ObjectBinding
-from rulec.monitoring.batch.kleene_columns import (
+from rulec.monitoring.batch.columns.kleene_columns import (
     KLEENE_COLUMNS,
     UNKNOWN,
     Mask,
     Truth,
     known,
 )
-from rulec.monitoring.batch.sum_thresholds import Summand, digits_of_sum
+from rulec.monitoring.batch.columns.sum_thresholds import Summand, digits_of_sum
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
 

@@ -8,8 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.monitoring.batch.columns.value_encoding import (
+    UnencodableError,
+    column_dtype,
+    encode_values,
+)
 from rulec.monitoring.batch.trace_shapes import Names
-from rulec.monitoring.batch.value_encoding import UnencodableError, column_dtype, encode_values
 from rulec.trace.formats.block_presence import NOBODY, BlockPresence
 from rulec.trace.formats.table_blocks import Block, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of

@@ -9,7 +9,7 @@ from operator import itemgetter
 from typing import Any, Final, TypeAlias
 
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.online.breakpoints import Breakpoints
+from rulec.monitoring.online.encoding.breakpoints import Breakpoints
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.vocabulary import Declaration, Quantity, Signal
 

@@ -10,8 +10,13 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.monitoring.online.breakpoints import Breakpoints
-from rulec.monitoring.online.encoded_values import Encoded, encoded_default, encoder_of, values_at
+from rulec.monitoring.online.encoding.breakpoints import Breakpoints
+from rulec.monitoring.online.encoding.encoded_values import (
+    Encoded,
+    encoded_default,
+    encoder_of,
+    values_at,
+)
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 Items: TypeAlias = tuple[str, ...]

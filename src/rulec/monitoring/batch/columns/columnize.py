@@ -7,8 +7,8 @@ from contextlib import suppress
 from operator import itemgetter
 from typing import Any
 
+from rulec.monitoring.batch.columns.value_encoding import UnencodableError, encode_values
 from rulec.monitoring.batch.trace_shapes import Names
-from rulec.monitoring.batch.value_encoding import UnencodableError, encode_values
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns
 from rulec.vocabulary import Declaration, Vocabulary
 

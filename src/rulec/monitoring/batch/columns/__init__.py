@@ -1,0 +1,1 @@
+"""Columns: made of states or of tables, and read by rules as digits."""
