@@ -2,6 +2,8 @@
 
 import ast
 import inspect
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,14 @@ def test_every_name_is_there_and_says_what_it_is(name):
 def test_an_unknown_name():
     with pytest.raises(AttributeError, match="no attribute 'verfy'"):
         _ = rulec.verfy
+
+
+def test_importing_it_imports_no_room():
+    program = "import sys, rulec; print(sorted(name for name in sys.modules if 'rulec' in name))"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert ast.literal_eval(done.stdout) == ["rulec", "rulec.version"]
 
 
 def session_verbs():

@@ -41,7 +41,7 @@ def audit_rulebook(
     *,
     run: bool = False,
 ) -> Audit:
-    """What a rulebook, given by name or by its source's path, rests on.
+    """Audit a rulebook, given by name or by its source's path.
 
     ``warn`` is told what is odd in it. ``run``: compile it, and find out which examples fail.
     ``at``: as for ``load_rulebook``. Raises RulecError.
@@ -49,7 +49,7 @@ def audit_rulebook(
     loaded, inherited = read_with_lineage(reference, search_path, at)
     warn(loaded.warnings)
     outcomes = run_examples(reference, search_path, at=at).outcomes if run else ()
-    failing = [(one.rule.name, one.name) for one in outcomes if not one.passed]
+    failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
     return audit(loaded.rulebook, inherited, failing)
 
 
@@ -69,13 +69,12 @@ def compare_rulebooks(
     ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
     as for ``rulec.analysis.diff.rulebook_comparison.diff_rulebooks``. Raises RulecError.
     """
-    (one, ours), (other, theirs) = (
-        read_with_lineage(each, search_path, at) for each in (first, second)
-    )
-    warn(list(dict.fromkeys((*one.warnings, *other.warnings))))
-    found = diff_rulebooks(one.rulebook, other.rulebook, patterns, step_s, tell, most)
+    one, lineage = read_with_lineage(first, search_path, at)
+    two, second_lineage = read_with_lineage(second, search_path, at)
+    warn(list(dict.fromkeys((*one.warnings, *two.warnings))))
+    diff = diff_rulebooks(one.rulebook, two.rulebook, patterns, step_s, tell, most)
     # What rules that were not asked for depend on is not asked for either.
-    return found if patterns else replace(found, settings=setting_pairs(ours, theirs))
+    return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))
 
 
 def analyze_rulebook(
@@ -84,17 +83,17 @@ def analyze_rulebook(
     at: str = "",
     tell: Callable[[float], object] = lambda _: None,
 ) -> tuple[Diagnostic, ...]:
-    """What the automata of its rules tell about a rulebook, given by name or by its source's path.
+    """Analyze a rulebook, given by name or by its source's path, by its automata.
 
     ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
     RulecError.
     """
     loaded = read_rulebook(reference, search_path, at)
     book = loaded.rulebook
-    above = [one.span.source.name for one in loaded.books[-2:-1]]
+    above = [file.span.source.name for file in loaded.books[-2:-1]]
     # On the same side of the road: a treaty's near side is that of the party's traffic.
-    bases = [read_rulebook(Path(one), search_path, book.at, book.traffic) for one in above]
+    bases = [read_rulebook(Path(name), search_path, book.at, book.traffic) for name in above]
     extends = loaded.books[-1].extends
     return rulebook_findings(
-        book, [one.rulebook for one in bases], tell, extends.span if extends else None
+        book, [base.rulebook for base in bases], tell, extends.span if extends else None
     )

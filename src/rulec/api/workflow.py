@@ -1,10 +1,10 @@
-"""The whole of rulec on one page.
+"""Rules, graphs, maneuvers and recordings from whatever they are given by.
 
-    source text -> syntax -> rulebook -> logic -> automata -> runtime -> verdicts
-    scenario -> partition -> graph of traces ----------------^
+    source text -> syntax -> rulebook -> logic -> automata -> monitoring -> verdicts
+    scenario -> partition -> graph of traces ------------------^
 
-The command line and ``import rulec`` are thin layers over these functions, of which each raises
-RulecError for what is wrong with its input. Nothing is imported before it is used.
+The command line and a session are thin layers over these functions, of which each raises
+RulecError for what is wrong with its input. Nothing is imported before it is used: start-up.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def machines(
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     at: str = "",
 ) -> CompiledRulebook:
-    """Rules as automata; if the step of traces makes a difference, for those of any step.
+    """Compile rules so that they fit themselves to the step of any trace.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
     than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
@@ -68,7 +68,7 @@ def compile_rulebook(
     step_s: Fraction | float | None = None,
     at: str = "",
 ) -> CompiledRulebook:
-    """As ``machines``, for traces of one step.
+    """Compile rules for one step, or for that of their examples.
 
     ``step_s`` (above 0, a float meaning the decimal that is written) is that step; without it rules
     with bounds in seconds are compiled for the step of their own examples. R0407 for a bound that
@@ -95,7 +95,7 @@ def compile_rulebook(
 def navigation_graph(
     scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
 ) -> NavigationGraph:
-    """A scenario, given by name, by path or itself, as cells over time and what leads to what."""
+    """Partition a scenario, given by name, by path or itself."""
     from rulec.partition import navigation_graph as partitioned
     from rulec.scenario import Scenario, load_scenario
 
@@ -110,7 +110,7 @@ def find_maneuvers(
     after: Before | None = None,
     **options: Unpack[GraphOptions],
 ) -> Maneuvers:
-    """Algorithm 1 of the paper, counting instead of enumerating.
+    """Count the maneuvers that keep every hard rule (algorithm 1 of the paper).
 
     ``after``: what was before, up to one step before the scenario begins: a trace, a ``Monitor``
     that has taken one, or its snapshot. Without a ``partition`` it is the one whose relations the
@@ -129,7 +129,7 @@ def verify_recording(
     wanted: RequestedDrives | None = None,
     net: str | Path | None = None,
 ) -> RecordingVerdicts:
-    """What the vehicles of recorded traffic did, judged; ``net`` is for SUMO's data."""
+    """Verify what the vehicles of recorded traffic did; ``net`` is for SUMO's data."""
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.scenario.recording_files import read_recording
