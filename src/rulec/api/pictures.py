@@ -1,7 +1,8 @@
-"""Pictures of graphs, maneuvers and traces as the content of a file."""
+"""Drawings of scenes, navigation graphs and traces."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -21,29 +22,58 @@ from rulec.report.pictures.trace_ribbon import ribbon
 from rulec.trace import Trace
 
 
-def draw_trace(trace: Trace, rules: CompiledRulebook, form: str) -> bytes:
-    """What rules read in a trace, over time, with the violations. Raises RulecError."""
+def trace_drawing(
+    trace: Trace,
+    rules: CompiledRulebook,
+    objects: Sequence[str] = (),
+    patterns: Sequence[str] = (),
+) -> Drawing:
+    """What rules read in a trace, over time, with the violations. Raises RulecError.
+
+    ``objects`` are those to show, if not all; ``patterns`` have chosen the rules, for the title.
+    """
     verdict = verify(trace, rules)
-    shown = ribbon(trace, rules, verdict, ())
-    title = trace_title(replace(verdict, violations=shown.violations), rules)
-    return as_bytes(Drawing(title, [ribbon_picture(shown, rules)]), form, trace.id)
+    shown = ribbon(trace, rules, verdict, objects)
+    title = trace_title(replace(verdict, violations=shown.violations), rules, (*patterns, *objects))
+    return Drawing(title, [ribbon_picture(shown, rules)])
+
+
+def scene_drawing(
+    graph: NavigationGraph,
+    maneuvers: Maneuvers | None = None,
+    maneuver: Maneuver | None = None,
+    layers: Sequence[int] = (),
+    number: int = 1,
+) -> Drawing:
+    """A scene over time, or some ``layers`` of it, with a maneuver, the ``number``-th cheapest."""
+    chosen = sorted(set(layers)) or range(len(graph.layers))
+    title = scene_title(graph, maneuvers, maneuver, number)
+    return Drawing(title, scene_pictures(graph, chosen, maneuver), scene_legend(graph, maneuver))
+
+
+def graph_drawing(
+    graph: NavigationGraph, maneuvers: Maneuvers | None = None, maneuver: Maneuver | None = None
+) -> Drawing:
+    """A navigation graph, layer by layer, with a maneuver."""
+    hard = maneuvers.hard if maneuvers else node_transformers(graph.trace_graph(), ())
+    product = maneuvers.product if maneuvers else explore(hard)
+    edges = accepted_edges(hard, product)
+    picture = graph_picture(graph, edges, maneuver, judged=maneuvers is not None)
+    return Drawing(graph_title(graph, maneuvers, product.accepted), [picture])
+
+
+def draw_trace(trace: Trace, rules: CompiledRulebook, form: str) -> bytes:
+    """A trace's drawing as the content of a file. Raises RulecError."""
+    return as_bytes(trace_drawing(trace, rules), form, trace.id)
 
 
 def draw_maneuvers(
     subject: NavigationGraph | Maneuvers, maneuver: Maneuver | None, form: str, *, as_graph: bool
 ) -> bytes:
-    """A scene over time or its navigation graph, with a maneuver. Raises RulecError."""
+    """The drawing of a scene or its graph as the content of a file. Raises RulecError."""
     maneuvers = subject if isinstance(subject, Maneuvers) else None
     graph = subject.graph if isinstance(subject, Maneuvers) else subject
     if maneuver is None and maneuvers is not None:
         maneuver = next(iter(maneuvers.cheapest(1)), None)
-    if not as_graph:
-        pictures = scene_pictures(graph, range(len(graph.layers)), maneuver)
-        title = scene_title(graph, maneuvers, maneuver, 1)
-        return as_bytes(Drawing(title, pictures, scene_legend(graph, maneuver)), form, title)
-    hard = maneuvers.hard if maneuvers else node_transformers(graph.trace_graph(), ())
-    product = maneuvers.product if maneuvers else explore(hard)
-    edges = accepted_edges(hard, product)
-    picture = graph_picture(graph, edges, maneuver, judged=maneuvers is not None)
-    title = graph_title(graph, maneuvers, product.accepted)
-    return as_bytes(Drawing(title, [picture]), form, title)
+    drawing = (graph_drawing if as_graph else scene_drawing)(graph, maneuvers, maneuver)
+    return as_bytes(drawing, form, drawing.title)

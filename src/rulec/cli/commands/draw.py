@@ -74,18 +74,14 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
     its envelope. A page (HTML) has a slider for the time.
     """
-    from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.report.pictures.picture_titles import scene_title
-    from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
+    from rulec.api.pictures import scene_drawing
 
     graph, maneuvers, maneuver = _judged(**options)
     last = len(graph.layers) - 1
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
-    chosen = sorted(set(layers)) or range(last + 1)
-    title = scene_title(graph, maneuvers, maneuver, options["number"] or 1)
-    pictures = scene_pictures(graph, chosen, maneuver)
-    write(Drawing(title, pictures, scene_legend(graph, maneuver)), output, form)
+    number = options["number"] or 1
+    write(scene_drawing(graph, maneuvers, maneuver, layers, number), output, form)
 
 
 @command.command()
@@ -98,20 +94,9 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
     cheapest satisfying maneuver is shown.
     """
-    from rulec.planning.product.accepted_edges import accepted_edges
-    from rulec.planning.product.graph_product import explore
-    from rulec.planning.product.node_transformers import node_transformers
-    from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.report.pictures.graph_picture import graph_picture
-    from rulec.report.pictures.picture_titles import graph_title
+    from rulec.api.pictures import graph_drawing
 
-    cells, maneuvers, maneuver = _judged(**options)
-    hard = maneuvers.hard if maneuvers else node_transformers(cells.trace_graph(), ())
-    product = maneuvers.product if maneuvers else explore(hard)
-    ways = accepted_edges(hard, product)
-    picture = graph_picture(cells, ways, maneuver, judged=maneuvers is not None)
-    title = graph_title(cells, maneuvers, product.accepted)
-    write(Drawing(title, [picture]), output, form)
+    write(graph_drawing(*_judged(**options)), output, form)
 
 
 def _judged(

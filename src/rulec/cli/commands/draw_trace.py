@@ -52,13 +52,10 @@ def trace(
 
     Violations are marked where they are decided, with the rule and its article.
     """
+    from rulec.api.pictures import trace_drawing
     from rulec.api.workflow import machines
     from rulec.diagnostics import named
-    from rulec.monitoring.verify import rulebook_for_trace, verify
-    from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.report.pictures.picture_titles import trace_title
-    from rulec.report.pictures.trace_picture import ribbon_picture
-    from rulec.report.pictures.trace_ribbon import ribbon
+    from rulec.monitoring.verify import rulebook_for_trace
     from rulec.report.text.console import print_diagnostics
     from rulec.settings import search_path
 
@@ -70,10 +67,7 @@ def trace(
                 f"trace `{chosen.id}` has no object `{item}`; it has {named(list(chosen.objects))}."
             )
     used = _only(rulebook_for_trace(chosen, rules), patterns)
-    verdict = verify(chosen, used)
-    shown = ribbon(chosen, used, verdict, objects)
-    title = trace_title(replace(verdict, violations=shown.violations), used, (*patterns, *objects))
-    write(Drawing(title, [ribbon_picture(shown, used)]), output, form)
+    write(trace_drawing(chosen, used, objects, patterns), output, form)
 
 
 def _trace(file: str, wanted: str | None) -> Trace:
