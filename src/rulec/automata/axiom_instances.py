@@ -102,7 +102,7 @@ def axiom_groups(
     groups = []
     for group in linked(instances):
         about = _subjects(group)
-        touched = [one for one in every if _subject(one) in about]
+        touched = [proposition for proposition in every if _subject(proposition) in about]
         natural = _natural(
             [*touched, *(axiom_instance.formula for axiom_instance in group)], vocabulary
         )

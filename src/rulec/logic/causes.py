@@ -116,12 +116,12 @@ def _reasons(
         case Binary(operator, left, right) if operator in _ALONE:
             pairs = zip((left, right), _ALONE[operator], strict=True)
             alone = [one for one, value in pairs if columns[one].values[instant] == value]
-            for one in alone[:1] or (left, right):
-                yield one, instant, instant
+            for operand in alone[:1] or (left, right):
+                yield operand, instant, instant
         case Unary(_, operand):
-            yield from _of_search(part, None, operand, instant, columns, ends)
+            yield from _of_search(part, None, operand, instant, columns=columns, ends=ends)
         case Binary(_, left, right):
-            yield from _of_search(part, left, right, instant, columns, ends)
+            yield from _of_search(part, left, right, instant, columns=columns, ends=ends)
 
 
 def _of_search(
@@ -129,6 +129,7 @@ def _of_search(
     left: Formula | None,
     right: Formula,
     instant: int,
+    *,
     columns: Mapping[Formula, _Column],
     ends: bool,
 ) -> Iterator[_Reason]:

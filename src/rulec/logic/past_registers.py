@@ -92,7 +92,7 @@ def eliminate_past(formula: Formula) -> WithoutPast:
     needed: list[Register | Memory] = []
     spoken_of = set(atoms_of(present))
     # None of them speaks of a later one.
-    for one in sorted(fresh, key=lambda each: result.order[each.atom], reverse=True):
+    for one in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
         if one.atom in spoken_of:
             needed.insert(0, one)
             for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):

@@ -86,7 +86,8 @@ class Obligations:
         self._taken = {*spot_formulas.names.values(), spot_formulas.alive or ""}
         self.first = self._now(formula, True)
         self.unfolded = {
-            buddy.bdd_var(self._variables[one]): self._unfolded(one) for one in self._all()
+            buddy.bdd_var(self._variables[obligation]): self._unfolded(obligation)
+            for obligation in self._all()
         }
         self.is_safety = not any(o.strong and o.span.high is None for o in self._variables)
         self.is_cosafety = all(o.strong or o.span.high is not None for o in self._variables)
