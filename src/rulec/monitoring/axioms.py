@@ -66,10 +66,14 @@ def impossible_state(
     about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
     instances = list(_instances(about_letters, types, view))
     truths = [instance.truth(view) for instance in instances]
-    broken = [one for one, truth in zip(instances, truths, strict=True) if truth is False][:1]
+    broken = [
+        instance for instance, truth in zip(instances, truths, strict=True) if truth is False
+    ][:1]
     if not broken:
         # Each may hold by itself: what is unknown cannot be so that all of them do.
-        broken = [one for one, truth in zip(instances, truths, strict=True) if truth is not True]
+        broken = [
+            instance for instance, truth in zip(instances, truths, strict=True) if truth is not True
+        ]
     why = f"rule `{rule.name}` depends on it"
     return _error(broken, view, number=number, where=where, place=place, why=why)
 
@@ -127,13 +131,17 @@ def _error(
     )
     values = dict.fromkeys(value for instance in broken for value in _values(instance, view))
     # A compiled rulebook has no text to show.
-    unseen = [f"the fact is in {one.file}, line {one.line}" for one in places if not one.excerpt]
+    unseen = [
+        f"the fact is in {place.file}, line {place.line}" for place in places if not place.excerpt
+    ]
     return ImpossibleStateError(
         VIOLATED_AXIOM.at(
             place,
             f"{where} cannot be: {stated} {'holds' if len(broken) == 1 else 'hold'} in every state",
             help="correct the state; or the fact, if there can be such states",
-            labels=tuple(Label(one, "what holds in every state") for one in places if one.excerpt),
+            labels=tuple(
+                Label(place, "what holds in every state") for place in places if place.excerpt
+            ),
             notes=(f"here {', '.join(values)}", *unseen, *([why] if why else [])),
         ),
         number,

@@ -82,7 +82,7 @@ def rulebook_for_step(
         return rulebook.fitted_to(step_s)
     except RulecError as error:
         # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
-        raise RulecError([_at(place, one) for one in error.diagnostics]) from None
+        raise RulecError([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None
 
 
 def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:

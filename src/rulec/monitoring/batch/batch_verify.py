@@ -86,7 +86,7 @@ def verify_chunk(
 def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
     """Have traces so many states together that it does not matter how few they are?"""
     traces = [items[place] for place in places]
-    return sum(len(one.states or ()) for one in traces if isinstance(one, Trace)) >= _LONG
+    return sum(len(trace.states or ()) for trace in traces if isinstance(trace, Trace)) >= _LONG
 
 
 def _verify_group(
@@ -110,13 +110,13 @@ def _verify_group(
     group = _verify_grouped(framed, rules)
     if group is None:
         return
-    unread = set(chain.from_iterable(one.unread.tolist() for one in group.verdicts))
+    unread = set(chain.from_iterable(verdict.unread.tolist() for verdict in group.verdicts))
     violations = violations_in(group.verdicts)
     for number, place in enumerate(group.order):
         if number not in unread:
             where, trace = group.traces[place]
-            found = violations.get(number, ())
-            told = under_own_names(found, group.objects, tuple(trace.objects))
+            result = violations.get(number, ())
+            told = under_own_names(result, group.objects, tuple(trace.objects))
             answers[where] = Verdict(trace.id, told)
 
 
@@ -153,7 +153,7 @@ def _verify_grouped(traces: Sequence[_Placed], rules: CompiledRulebook) -> _Grou
         if not _fits(known, cells.objects, there, rules)
     }
     if refused:
-        traces = [one for one in traces if refused.isdisjoint(map(id, one[1].states))]
+        traces = [trace for trace in traces if refused.isdisjoint(map(id, trace[1].states))]
         if not traces:
             return None
         group = group_traces([trace for _, trace in traces])
@@ -197,10 +197,10 @@ def _fits(
 
 def violations_in(verdicts: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
     """The violations of each trace that has some, in the order of rules and objects."""
-    found: dict[int, list[Violation]] = {}
-    for one in verdicts:
-        rule, objects = one.task.rule, one.task.objects
-        for trace, step in zip(one.violated.tolist(), one.lost_at().tolist(), strict=True):
+    result: dict[int, list[Violation]] = {}
+    for verdict in verdicts:
+        rule, objects = verdict.task.rule, verdict.task.objects
+        for trace, step in zip(verdict.violated.tolist(), verdict.lost_at().tolist(), strict=True):
             violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
-            found.setdefault(trace, []).append(violation)
-    return found
+            result.setdefault(trace, []).append(violation)
+    return result

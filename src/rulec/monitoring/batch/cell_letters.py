@@ -38,12 +38,12 @@ class CellLetterReader:
 
         Where an object of the binding is not there its machine does not run; any letter will do.
         """
-        found = [0] * self._n_cells
+        numbers = [0] * self._n_cells
         for cells, there, columns in self._parts:
             if there.issuperset(binding.objects.values()):
                 for cell, letter in zip(cells, _word(binding, columns, len(cells)), strict=True):
-                    found[cell] = letter
-        return found
+                    numbers[cell] = letter
+        return numbers
 
 
 def _word(binding: RuleBinding, columns: LetterReader, n_states: int) -> list[int]:

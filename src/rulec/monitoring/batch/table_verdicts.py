@@ -79,7 +79,7 @@ def _verify_group(
     if any(counts(fact.formula) for fact in rules.axioms):
         raise UnencodableError
     verdicts = verify_columns(columnize_block(group, rules.vocabulary), rules)
-    unread = set(chain.from_iterable(one.unread.tolist() for one in verdicts))
+    unread = set(chain.from_iterable(verdict.unread.tolist() for verdict in verdicts))
     violations = violations_in(verdicts)
     for number, trace in enumerate(group.traces.tolist()):
         if number not in unread:

@@ -33,24 +33,24 @@ def renamed(about: object, names: Mapping[str, str]) -> dict[str, Any] | None:
     """
     if type(about) is not dict:
         return None
-    found = {}
+    result = {}
     for item, value in about.items():
         said = value if type(value) in _PLAIN else renamed(value, names)
         if said is None or item not in names:
             return None
-        found[names[item]] = said
-    return found
+        result[names[item]] = said
+    return result
 
 
 def renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
     """The same for a whole state."""
     if type(state) is not dict:
         return None
-    found = {
+    result = {
         name: value if type(value) in _PLAIN else renamed(value, names)
         for name, value in state.items()
     }
-    return None if None in found.values() else found
+    return None if None in result.values() else result
 
 
 def under_own_names(
@@ -60,9 +60,9 @@ def under_own_names(
     if not violations or objects == own:
         return tuple(violations)
     names = dict(zip(objects, own, strict=True))
-    return tuple([_bound_to(one, names) for one in violations])
+    return tuple([_bound_to(violation, names) for violation in violations])
 
 
-def _bound_to(one: Violation, names: Mapping[str, str]) -> Violation:
-    binding = {variable: names[item] for variable, item in one.binding.items()}
-    return Violation(one.rule, one.strength, binding, one.step)
+def _bound_to(violation: Violation, names: Mapping[str, str]) -> Violation:
+    binding = {variable: names[item] for variable, item in violation.binding.items()}
+    return Violation(violation.rule, violation.strength, binding, violation.step)

@@ -132,7 +132,7 @@ def _repair(
     result = nearest_satisfying(
         machine, [observed.letter(machine, view) for view in observed.views]
     )
-    return result and tuple([replace(one, place=first + one.place) for one in result])
+    return result and tuple([replace(repair, place=first + repair.place) for repair in result])
 
 
 def _binding(
@@ -208,7 +208,7 @@ def _facts(
     for read, propositions in readers.items():
         # A number always changes a little; what counts is whether it passes a limit.
         passes = isinstance(read, Atom) or any(
-            observed.changes(truths[one]) for one in propositions
+            observed.changes(truths[proposition]) for proposition in propositions
         )
         decides = not deciding.isdisjoint(propositions)
         if isinstance(read, Count):
@@ -216,7 +216,7 @@ def _facts(
             yield Observation(
                 term_text(read),
                 tuple(len(objects[n]) for n in observed.shown),
-                passes and observed.changes([len(one) for one in objects]),
+                passes and observed.changes([len(object_) for object_ in objects]),
                 decides,
                 objects=tuple(objects[n] for n in observed.shown),
             )

@@ -58,14 +58,14 @@ def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[R
             break
         alphabet.exclude(wrong)
     symbols = [machine.letters[letter] for letter in letters]
-    found, state = [], 0
+    repairs, state = [], 0
     for place, symbol in enumerate(symbols):
         if letters[place] != given[place]:
             rest = symbols[place + 1 :] if place == changed[-1] else None
             does = _as_good(machine, state, symbol, rest)
-            found.append(Repair(place, alphabet.ways(word[place], letters[place], does)))
+            repairs.append(Repair(place, alphabet.ways(word[place], letters[place], does)))
         state = machine.successors[state][symbol]
-    return tuple(found)
+    return tuple(repairs)
 
 
 def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
@@ -119,13 +119,15 @@ class _LetterDistances:
 
     def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
-        sizes = [one.size for one in self._reads]
+        sizes = [read.size for read in self._reads]
         self._strides = [prod(sizes[:n]) for n in range(len(sizes))]
         numbers = np.arange(len(machine.letters))
         self._digits = np.array(
             [numbers // stride % size for stride, size in zip(self._strides, sizes, strict=True)]
         ).reshape(len(sizes), len(numbers))
-        self._is_number = np.array([isinstance(one, NumberRead) for one in self._reads], dtype=bool)
+        self._is_number = np.array(
+            [isinstance(read, NumberRead) for read in self._reads], dtype=bool
+        )
         self._classes = np.array(machine.letters)
         self._n_classes = len(machine.successors[0])
         self._near: dict[Letter, _Near] = {}
@@ -162,7 +164,7 @@ class _LetterDistances:
         """Whether there are numbers with the digits of this letter."""
         digits = tuple(self._digits[self._is_number, number].tolist())
         if digits not in self._can_be:
-            reads = [one for one in self._reads if isinstance(one, NumberRead)]
+            reads = [read for read in self._reads if isinstance(read, NumberRead)]
             self._can_be[digits] = are_consistent(list(zip(reads, digits, strict=True)))
         return self._can_be[digits]
 
@@ -181,12 +183,16 @@ class _LetterDistances:
         for letter in [number, *np.flatnonzero(good).tolist()]:
             reads = tuple(np.flatnonzero(differ[:, letter]).tolist())
             by_reads.setdefault(reads, []).append(letter)
-        found = (self._cubes(reads, letters) for reads, letters in sorted(by_reads.items()))
-        return tuple(islice((cube for cubes in found for cube in cubes), LIMITS.repairs_listed))
+        generator = (self._cubes(reads, letters) for reads, letters in sorted(by_reads.items()))
+        return tuple(islice((cube for cubes in generator for cube in cubes), LIMITS.repairs_listed))
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
         """Letters with the same changes: in one cube if they are all that it has."""
-        rows = {tuple(self._digits[changed, one].tolist()) for one in letters if self.can_be(one)}
+        rows = {
+            tuple(self._digits[changed, letter].tolist())
+            for letter in letters
+            if self.can_be(letter)
+        }
         columns = [frozenset(digits) for digits in zip(*rows, strict=True)]
         if rows and prod(map(len, columns)) == len(rows):
             yield self._cube(changed, columns)
@@ -195,7 +201,7 @@ class _LetterDistances:
             yield self._cube(changed, [frozenset({digit}) for digit in row])
 
     def _cube(self, changed: Sequence[int], digits: Sequence[frozenset[int]]) -> Cube:
-        cube = [frozenset(range(one.size)) for one in self._reads]
+        cube = [frozenset(range(read.size)) for read in self._reads]
         for place, allowed in zip(changed, digits, strict=True):
             cube[place] = allowed
         return tuple(cube)

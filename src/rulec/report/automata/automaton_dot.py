@@ -36,10 +36,10 @@ def as_dot(automaton: Automaton, name: str) -> str:
     ]
     for state, fate in enumerate(automaton.fates):
         lines.append(f'  {state} [label="{_NAMES[fate].format(state)}", {_STYLES[fate]}]')
-    for one in automaton.transitions:
-        style = "" if one.accepted else ', style=dashed, color="#b34700"'
-        label = "\\n".join(_escaped(line) for line in wrap(one.label, WIDEST))
-        lines.append(f'  {one.source} -> {one.target} [label="{label}"{style}]')
+    for transition in automaton.transitions:
+        style = "" if transition.accepted else ', style=dashed, color="#b34700"'
+        label = "\\n".join(_escaped(line) for line in wrap(transition.label, WIDEST))
+        lines.append(f'  {transition.source} -> {transition.target} [label="{label}"{style}]')
     return "\n".join([*lines, "}"])
 
 

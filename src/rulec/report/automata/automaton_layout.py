@@ -98,9 +98,9 @@ class _AutomatonLayout:
         self._boxes: dict[int, LayoutBox] = {}
         self._heights: dict[int, float] = {}
         self._widths: dict[int, float] = {}
-        for one in automaton.transitions:
-            if one.source == one.target:
-                self._loops.setdefault(one.source, []).append(one)
+        for transition in automaton.transitions:
+            if transition.source == transition.target:
+                self._loops.setdefault(transition.source, []).append(transition)
         for state in range(len(automaton.fates)):
             self._add_state(state, level[state])
         for one in automaton.transitions:
@@ -109,10 +109,10 @@ class _AutomatonLayout:
 
     def _add_state(self, state: int, level: int) -> None:
         ends = [0, 0]
-        for one in self._automaton.transitions:
-            if one.source != one.target:
-                ends[0] += one.source == state
-                ends[1] += one.target == state
+        for transition in self._automaton.transitions:
+            if transition.source != transition.target:
+                ends[0] += transition.source == state
+                ends[1] += transition.target == state
         width = max(44.0, text_width(self._texts[state]) + 20, PORT * (max(ends) + 1))
         sides = [0.0, 0.0]
         height = STATE_HEIGHT + LINE * (len(self._texts[state]) - 1)
@@ -125,20 +125,20 @@ class _AutomatonLayout:
         self._heights[state] = height
         self._layers[2 * level].append(state)
 
-    def _add_way(self, one: Transition, level: Sequence[int]) -> None:
+    def _add_way(self, transition: Transition, level: Sequence[int]) -> None:
         """The places that a line passes; its condition stands next to its source."""
-        start, end = 2 * level[one.source], 2 * level[one.target]
+        start, end = 2 * level[transition.source], 2 * level[transition.target]
         step = 1 if start < end else -1
-        way = [one.source]
+        way = [transition.source]
         for layer in range(start + step, end, step):
             place = len(self._boxes)
             labelled = layer == start + step
-            text = _broken(one.label) if labelled else ()
+            text = _broken(transition.label) if labelled else ()
             self._boxes[place] = LayoutBox(MARGIN, MARGIN + text_width(text))
             self._heights[place] = LINE * len(text)
             self._layers[layer].append(place)
             way.append(place)
-        self._ways.append((one, [*way, one.target]))
+        self._ways.append((transition, [*way, transition.target]))
 
     def drawing(self) -> AutomatonDrawing:
         links = []
@@ -212,12 +212,12 @@ class _AutomatonLayout:
         lines = []
         for state, loops in self._loops.items():
             middle, y = states[state].middle
-            for one, side in zip(loops, (1, -1), strict=False):
+            for loop, side in zip(loops, (1, -1), strict=False):
                 edge = middle + side * states[state].width / 2
                 points = ((edge, y - 9), (edge + side * (LOOP - 8), y), (edge, y + 9))
-                text = _broken(one.label)
+                text = _broken(loop.label)
                 at = (edge + side * (LOOP - 5), y)
-                lines.append(TransitionLine(one, points, at, text, leftward=side < 0))
+                lines.append(TransitionLine(loop, points, at, text, leftward=side < 0))
         return lines
 
 
@@ -232,8 +232,8 @@ def _levels(automaton: Automaton) -> list[int]:
     rank = {state: number for number, state in enumerate(order)}
     level = [0] * len(final)
     for state in order:
-        for one in automaton.transitions:
-            ends = {one.source, one.target}
+        for transition in automaton.transitions:
+            ends = {transition.source, transition.target}
             if len(ends) == 2 and state in ends:
                 (other,) = ends - {state}
                 if rank[other] < rank[state]:

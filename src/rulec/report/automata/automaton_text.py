@@ -34,7 +34,9 @@ def as_text(automaton: Automaton, width: int) -> str:
             continue
         lines.append(f"state {state}")
         lines += _leaving(
-            [one for one in automaton.transitions if one.source == state], state, width
+            [transition for transition in automaton.transitions if transition.source == state],
+            state,
+            width,
         )
     return "\n".join(lines)
 
@@ -43,15 +45,18 @@ _COLORS = {"violated": "red", "satisfied": "green"}
 
 
 def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[str]:
-    ordered = [one for one in transitions if not one.otherwise]
-    ordered += [one for one in transitions if one.otherwise]
-    targets = ["stays" if one.target == state else f"to state {one.target}" for one in ordered]
+    ordered = [transition for transition in transitions if not transition.otherwise]
+    ordered += [transition for transition in transitions if transition.otherwise]
+    targets = [
+        "stays" if transition.target == state else f"to state {transition.target}"
+        for transition in ordered
+    ]
     room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
-    labels = [_broken(one.label, room) for one in ordered]
+    labels = [_broken(transition.label, room) for transition in ordered]
     widest = max(len(line) for lines in labels for line in lines)
     column = max(map(len, targets))
-    for one, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
-        yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[one.accepted]}"
+    for transition, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
+        yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[transition.accepted]}"
         yield from (f"  {line}" for line in rest)
 
 

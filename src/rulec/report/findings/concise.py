@@ -10,11 +10,14 @@ from rulec.report.findings.source_excerpt import visible
 
 def as_lines(found: Iterable[Diagnostic]) -> str:
     """A line for each; what has no place has no prefix either."""
-    return "\n".join(visible(f"{_where(one)}{one.code} {one.message}") for one in found)
+    return "\n".join(
+        visible(f"{_where(diagnostic)}{diagnostic.code} {diagnostic.message}")
+        for diagnostic in found
+    )
 
 
-def _where(one: Diagnostic) -> str:
-    place = one.place
+def _where(diagnostic: Diagnostic) -> str:
+    place = diagnostic.place
     if place is None:
         return ""
     parts = [place.file, place.line, place.column]

@@ -25,7 +25,7 @@ def render_diagnostics(
     if not every:
         return ""
     paint = _Paint(color)
-    blocks = ["\n".join(_block(one, paint)) for one in every]
+    blocks = ["\n".join(_block(diagnostic, paint)) for diagnostic in every]
     return "\n\n".join([*blocks, _summary(every)] if summary else blocks) + "\n"
 
 
@@ -44,31 +44,35 @@ class _Paint:
 def _summary(every: Sequence[Diagnostic]) -> str:
     parts = []
     for severity in ("error", "warning"):
-        number = sum(one.severity == severity for one in every)
+        number = sum(diagnostic.severity == severity for diagnostic in every)
         if number:
             parts.append(f"{number} {severity}{'' if number == 1 else 's'}")
     return ", ".join(parts)
 
 
-def _block(one: Diagnostic, paint: _Paint) -> Iterator[str]:
-    head = paint(one.severity, f"{one.severity}[{one.code}]")
-    yield f"{head}{paint('bold', ': ' + visible(one.message))}"
-    width = _number_width(one)
+def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
+    head = paint(diagnostic.severity, f"{diagnostic.severity}[{diagnostic.code}]")
+    yield f"{head}{paint('bold', ': ' + visible(diagnostic.message))}"
+    width = _number_width(diagnostic)
     gutter = " " * width
-    for position, (file, marks) in enumerate(_by_file(one)):
+    for position, (file, marks) in enumerate(_by_file(diagnostic)):
         arrow = "-->" if position == 0 else ":::"
         yield f"{gutter}{paint('frame', arrow)} {visible(_address(file, marks[0]))}"
         shown = [mark for mark in marks if mark.place.line is not None and _worth_showing(mark)]
         if not shown:
             continue
         yield paint("frame", f"{gutter} |")
-        for left, text, style in _lines(shown, one.severity):
+        for left, text, style in _lines(shown, diagnostic.severity):
             number = paint("frame", f"{left:>{width}} |")
             yield f"{number} {paint(style, text)}".rstrip()
     # Without a line there is no underlined place for it to stand beside.
-    unplaced = "" if one.place is not None and one.place.line is not None else one.expected
-    notes = (("note", note) for note in one.notes)
-    for word, text in (("note", unplaced), ("help", one.help), *notes):
+    unplaced = (
+        ""
+        if diagnostic.place is not None and diagnostic.place.line is not None
+        else diagnostic.expected
+    )
+    notes = (("note", note) for note in diagnostic.notes)
+    for word, text in (("note", unplaced), ("help", diagnostic.help), *notes):
         if text:
             yield f"{gutter} {paint('frame', '=')} {paint('bold', word + ':')} {visible(text)}"
 
@@ -77,10 +81,12 @@ def _worth_showing(mark: Underline) -> bool:
     return bool(mark.place.excerpt.strip()) or bool(mark.words)
 
 
-def _by_file(one: Diagnostic) -> list[tuple[str, list[Underline]]]:
+def _by_file(diagnostic: Diagnostic) -> list[tuple[str, list[Underline]]]:
     """The primary place first; other places in its file with it, those in other files behind."""
-    marks = [] if one.place is None else [Underline(one.place, one.expected, "^")]
-    marks += [Underline(label.place, label.message, "-") for label in one.labels]
+    marks = (
+        [] if diagnostic.place is None else [Underline(diagnostic.place, diagnostic.expected, "^")]
+    )
+    marks += [Underline(label.place, label.message, "-") for label in diagnostic.labels]
     files = list(dict.fromkeys(mark.place.file for mark in marks))
     return [(file, [mark for mark in marks if mark.place.file == file]) for file in files]
 
@@ -91,8 +97,8 @@ def _address(file: str, mark: Underline) -> str:
     return ":".join(str(part) for part in parts if part is not None)
 
 
-def _number_width(one: Diagnostic) -> int:
-    places = [one.place, *(label.place for label in one.labels)]
+def _number_width(diagnostic: Diagnostic) -> int:
+    places = [diagnostic.place, *(label.place for label in diagnostic.labels)]
     lines = [place.line for place in places if place is not None and place.line is not None]
     return max((len(str(line)) for line in lines), default=1)
 

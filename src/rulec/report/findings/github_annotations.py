@@ -13,25 +13,29 @@ from rulec.report.findings.source_excerpt import visible
 
 def as_annotations(found: Iterable[Diagnostic]) -> str:
     """A command for each diagnostic, a line long whatever stands in it."""
-    return "\n".join(_command(one) for one in found)
+    return "\n".join(_command(diagnostic) for diagnostic in found)
 
 
-def _command(one: Diagnostic) -> str:
+def _command(diagnostic: Diagnostic) -> str:
     properties: dict[str, object] = {}
-    if one.place is not None:
-        place = one.place
+    if diagnostic.place is not None:
+        place = diagnostic.place
         properties = {"file": place.file, "line": place.line, "endLine": place.end_line}
         # Of a place over several lines GitHub takes no columns.
         if place.end_line in (None, place.line):
             properties |= {"col": place.column, "endColumn": place.end_column}
-    properties["title"] = f"{one.code}: {one.message}"
+    properties["title"] = f"{diagnostic.code}: {diagnostic.message}"
     written = ",".join(
         f"{name}={_property(str(value))}" for name, value in properties.items() if value is not None
     )
-    notes = (f"note: {note}" for note in one.notes)
-    lines = [one.expected or one.message, *([f"help: {one.help}"] if one.help else []), *notes]
+    notes = (f"note: {note}" for note in diagnostic.notes)
+    lines = [
+        diagnostic.expected or diagnostic.message,
+        *([f"help: {diagnostic.help}"] if diagnostic.help else []),
+        *notes,
+    ]
     message = "\n".join(visible(line) for line in lines)
-    return f"::{one.severity} {written}::{_data(message)}"
+    return f"::{diagnostic.severity} {written}::{_data(message)}"
 
 
 def _data(text: str) -> str:

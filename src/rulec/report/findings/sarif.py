@@ -29,7 +29,7 @@ def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
         found: the results.
         complete: was everything read that had to be?
     """
-    codes = sorted({one.code for one in found})
+    codes = sorted({diagnostic.code for diagnostic in found})
     run = {
         "tool": {
             "driver": {
@@ -40,7 +40,7 @@ def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
         },
         "columnKind": "unicodeCodePoints",
         "invocations": [{"executionSuccessful": complete}],
-        "results": [_result(one, codes.index(one.code)) for one in found],
+        "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in found],
     }
     document = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(document, ensure_ascii=False, indent=2)
@@ -55,24 +55,29 @@ def _rule(code: Code) -> dict[str, Any]:
     }
 
 
-def _result(one: Diagnostic, index: int) -> dict[str, Any]:
-    sentences = [one.message, one.expected, one.help and f"help: {one.help}", *one.notes]
+def _result(diagnostic: Diagnostic, index: int) -> dict[str, Any]:
+    sentences = [
+        diagnostic.message,
+        diagnostic.expected,
+        diagnostic.help and f"help: {diagnostic.help}",
+        *diagnostic.notes,
+    ]
     result: dict[str, Any] = {
-        "ruleId": one.code,
+        "ruleId": diagnostic.code,
         "ruleIndex": index,
-        "level": one.severity,
+        "level": diagnostic.severity,
         "message": {"text": "\n".join(sentence for sentence in sentences if sentence)},
     }
-    if one.place is not None:
-        result["locations"] = [{"physicalLocation": _location(one.place)}]
-    if one.labels:
+    if diagnostic.place is not None:
+        result["locations"] = [{"physicalLocation": _location(diagnostic.place)}]
+    if diagnostic.labels:
         result["relatedLocations"] = [
             {
                 "id": number,
                 "physicalLocation": _location(label.place),
                 "message": {"text": label.message},
             }
-            for number, label in enumerate(one.labels)
+            for number, label in enumerate(diagnostic.labels)
         ]
     return result
 

@@ -28,8 +28,12 @@ def count_lines(maneuvers: Maneuvers, classes: HomotopyClasses) -> list[str]:
 def blocks(maneuvers: Maneuvers, variants: Sequence[Variant]) -> list[str]:
     """A block for every class: its cheapest satisfying member."""
     lines = []
-    for number, one in enumerate(variants, 1):
-        many = f"{shown_count(one.members)} satisfying members" if one.members > 1 else "1 member"
-        lines += ["", f"{number}. {maneuver_lines.in_a_line(one.cheapest)}; class of {many}"]
-        lines += maneuver_lines.cell_lines(maneuvers.graph, one.cheapest)
+    for number, variant in enumerate(variants, 1):
+        many = (
+            f"{shown_count(variant.members)} satisfying members"
+            if variant.members > 1
+            else "1 member"
+        )
+        lines += ["", f"{number}. {maneuver_lines.in_a_line(variant.cheapest)}; class of {many}"]
+        lines += maneuver_lines.cell_lines(maneuvers.graph, variant.cheapest)
     return lines

@@ -55,9 +55,9 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines += _chance_lines(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
-    for one in (*(answers.best or ()), *(answers.ranked or ())):
-        lines += ranked_maneuvers.blocks(maneuvers, [one])
-        lines += _chance_lines(answers, one.maneuver)
+    for ranked_maneuver in (*(answers.best or ()), *(answers.ranked or ())):
+        lines += ranked_maneuvers.blocks(maneuvers, [ranked_maneuver])
+        lines += _chance_lines(answers, ranked_maneuver.maneuver)
     if answers.prunings is not None:
         lines += ["", *pruning_table.table(maneuvers, answers.prunings)]
     if answers.classes is not None:
@@ -77,10 +77,10 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
     """A line for each rule that the past has violated, which no maneuver can mend."""
-    for one in violations[:MOST_VIOLATIONS]:
-        where = ", ".join(f"{name} = {item}" for name, item in one.binding.items())
+    for violation in violations[:MOST_VIOLATIONS]:
+        where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
         about = f" for {where}" if where else ""
-        yield visible(f"violated    {one.rule}{about}, before, and not counted any more")
+        yield visible(f"violated    {violation.rule}{about}, before, and not counted any more")
     if len(violations) > MOST_VIOLATIONS:
         yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
 

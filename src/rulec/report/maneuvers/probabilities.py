@@ -20,14 +20,14 @@ MOST_BINDINGS = 3
 def lines(chances: RuleProbabilities) -> list[str]:
     """The probabilities that are below 1, a line each."""
     rows = [("nobody hits ego", _shown(chances.clear)), ("every hard rule", _shown(chances.hard))]
-    rows += [(one.rule.name, _of_rule(one)) for one in chances.rules if one.kept != 1]
+    rows += [(rule.rule.name, _of_rule(rule)) for rule in chances.rules if rule.kept != 1]
     width = max(len(name) for name, _ in rows)
     return [f"   {name:{width}}  {what}" for name, what in rows]
 
 
 def summary(scenario: Scenario) -> Iterator[str]:
     """A line on what was counted, if obstacles have several predictions."""
-    several = [one for one in scenario.obstacles if one.alternatives]
+    several = [obstacle for obstacle in scenario.obstacles if obstacle.alternatives]
     if several:
         whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
         how = f"the likeliest world is counted, with probability {likeliest(scenario):.4g}"
@@ -36,30 +36,30 @@ def summary(scenario: Scenario) -> Iterator[str]:
 
 def likeliest(scenario: Scenario) -> float:
     """The probability that all obstacles do what is likeliest."""
-    return float(prod((one.weight for one in scenario.obstacles), start=Fraction(1)))
+    return float(prod((obstacle.weight for obstacle in scenario.obstacles), start=Fraction(1)))
 
 
 def world_lines(worlds: Sequence[AlternativeCounts]) -> Iterator[str]:
     """A line for each prediction that is not an obstacle's likeliest."""
-    for one in worlds:
+    for world in worlds:
         yield visible(
-            f"otherwise   {one.obstacle}, prediction {one.number + 1} "
-            f"({_shown(one.weight)}): {shown_count(one.traces)} maneuvers, "
-            f"{shown_count(one.satisfying)} satisfying"
+            f"otherwise   {world.obstacle}, prediction {world.number + 1} "
+            f"({_shown(world.weight)}): {shown_count(world.traces)} maneuvers, "
+            f"{shown_count(world.satisfying)} satisfying"
         )
 
 
-def _of_rule(one: RuleProbability) -> str:
-    if one.kept is None:
+def _of_rule(rule_probability: RuleProbability) -> str:
+    if rule_probability.kept is None:
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     each = [
         f"{_shown(binding.kept)} for "
         + ", ".join(f"{name} = {visible(item)}" for name, item in binding.binding.items())
-        for binding in one.bindings[:MOST_BINDINGS]
+        for binding in rule_probability.bindings[:MOST_BINDINGS]
     ]
-    if len(one.bindings) > MOST_BINDINGS:
-        each.append(f"and for {len(one.bindings) - MOST_BINDINGS:,} more")
-    return "; ".join([_shown(one.kept), *each])
+    if len(rule_probability.bindings) > MOST_BINDINGS:
+        each.append(f"and for {len(rule_probability.bindings) - MOST_BINDINGS:,} more")
+    return "; ".join([_shown(rule_probability.kept), *each])
 
 
 def _shown(number: Fraction | None) -> str:

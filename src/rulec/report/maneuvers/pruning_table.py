@@ -14,7 +14,7 @@ HEAD = ("rule", "violated by", "alone by", "for example")
 
 def table(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     """A line for every rule that some maneuver violates, and the names of the others."""
-    rows = [HEAD, *(_row(maneuvers, one) for one in prunings if one.violating)]
+    rows = [HEAD, *(_row(maneuvers, pruning) for pruning in prunings if pruning.violating)]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
     lines = [
         "  ".join(
@@ -27,7 +27,7 @@ def table(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
         )
         for row in rows
     ]
-    idle = [one.rule.name for one in prunings if not one.violating]
+    idle = [pruning.rule.name for pruning in prunings if not pruning.violating]
     if idle:
         lines.append(f"violated by none: {', '.join(idle)}")
     return lines if len(rows) > 1 else lines[1:]

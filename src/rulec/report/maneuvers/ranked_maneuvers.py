@@ -20,20 +20,31 @@ MOST_VIOLATIONS = 20
 def blocks(maneuvers: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
     """A block for each: its place, what it violates, its cells."""
     lines = []
-    for one in ranked:
-        others = f"; {shown_count(one.members)} violate the same" if one.members > 1 else ""
-        lines += ["", f"{one.place}. {maneuver_lines.in_a_line(one.maneuver)}{others}"]
-        lines.append(f"   violates {_penalty(one.penalty)}")
-        lines += [f"     {violation_line(maneuvers, v)}" for v in one.violations[:MOST_VIOLATIONS]]
-        if len(one.violations) > MOST_VIOLATIONS:
-            lines.append(f"     and {len(one.violations) - MOST_VIOLATIONS} more")
-        lines += maneuver_lines.cell_lines(maneuvers.graph, one.maneuver)
+    for ranked_maneuver in ranked:
+        others = (
+            f"; {shown_count(ranked_maneuver.members)} violate the same"
+            if ranked_maneuver.members > 1
+            else ""
+        )
+        lines += [
+            "",
+            f"{ranked_maneuver.place}. "
+            f"{maneuver_lines.in_a_line(ranked_maneuver.maneuver)}{others}",
+        ]
+        lines.append(f"   violates {_penalty(ranked_maneuver.penalty)}")
+        lines += [
+            f"     {violation_line(maneuvers, v)}"
+            for v in ranked_maneuver.violations[:MOST_VIOLATIONS]
+        ]
+        if len(ranked_maneuver.violations) > MOST_VIOLATIONS:
+            lines.append(f"     and {len(ranked_maneuver.violations) - MOST_VIOLATIONS} more")
+        lines += maneuver_lines.cell_lines(maneuvers.graph, ranked_maneuver.maneuver)
     return lines
 
 
 def violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
     """Which rule, of which article, for whom, and since when."""
-    rule = next(one for one in maneuvers.rules.rules if one.name == violation.rule)
+    rule = next(rule for rule in maneuvers.rules.rules if rule.name == violation.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
     objects = ", ".join(f"{name} = {visible(value)}" for name, value in violation.binding.items())
     bound = f" for {objects}" if objects else ""

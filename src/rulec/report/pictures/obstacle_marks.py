@@ -29,7 +29,7 @@ def obstacle_marks(graph: NavigationGraph, frame: Frame, layer: int) -> Iterator
 def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[LabelText, Rectangle]]:
     """The obstacles' names and bodies as the layer begins, or as they enter in its course."""
     start = graph.layers[layer].start_s
-    found = []
+    result = []
     for name in graph.layers[layer].objects:
         obstacle = graph.objects[name]
         first, _ = span(obstacle.motion)
@@ -38,8 +38,8 @@ def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[Label
         if body is not None and body.overlaps(frame.outline):
             left, top, right, bottom = frame.box(body)
             at = ((left + right) / 2, (top + bottom) / 2)
-            found.append((LabelText(name, at, "middle", "name"), (left, top, right, bottom)))
-    return found
+            result.append((LabelText(name, at, "middle", "name"), (left, top, right, bottom)))
+    return result
 
 
 def fits(words: LabelText, body: Rectangle) -> bool:

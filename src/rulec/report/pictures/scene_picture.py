@@ -82,7 +82,7 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
         told = f"cell {chosen}: s {low:g} … {high:g} m, d {right:g} … {left:g} m"
         marks.append(LabelText(told, (WIDTH - MARGIN, MARGIN), "end"))
     axis = list(_axis(frame))
-    placing = Placing([one.bounds for one in [*marks, *axis] if isinstance(one, LabelText)])
+    placing = Placing([mark.bounds for mark in [*marks, *axis] if isinstance(mark, LabelText)])
     marks.append(Area((rectangle(*frame.box(road.outline)),), "taken"))
     marks += [Area((rectangle(*frame.box(hole)),), "ground") for hole in road.holes()]
     order = sorted(range(len(here.cells)), key=lambda i: i == chosen)
@@ -104,10 +104,10 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     labels, key = _labels(frame, here.cells, placing)
     marks += labels
     marks += [
-        found
+        label_text
         for words, body in names
         if not fits(words, body)
-        for found in placing.first_free(beside(words, body))
+        for label_text in placing.first_free(beside(words, body))
     ]
     marks += axis
     height = frame.bottom + 14 + LINE_HEIGHT
@@ -140,16 +140,16 @@ def _labels(
     frame: Frame, cells: Sequence[Cell], placing: Placing
 ) -> tuple[list[LabelText], list[str]]:
     """The cells' labels, and what those mean that had to be shortened to a number."""
-    found, key = [], []
+    label_texts, key = [], []
     for number, cell in enumerate(cells):
         letters = in_letters(cell)
         texts = [letters, str(number)] if letters else [str(number)]
         words = placing.place(texts, [frame.box(box) for box in cell.boxes])
         if words is not None:
-            found.append(words)
+            label_texts.append(words)
         if letters and (words is None or words.text != letters):
             key.append(f"{number} {letters}")
-    return found, key
+    return label_texts, key
 
 
 def _axis(frame: Frame) -> Iterator[Mark]:

@@ -92,7 +92,9 @@ def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
 
 def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
     """The violations' numbers above their states; and where the rows begin, below them."""
-    numbered = sorted((found.decisive(one), n) for n, one in enumerate(found.violations, 1))
+    numbered = sorted(
+        (found.decisive(violation), n) for n, violation in enumerate(found.violations, 1)
+    )
     flags: list[LabelText] = []
     placing = Placing()
     deepest = top
@@ -113,7 +115,7 @@ def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], flo
 def _violations(found: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
     """A thin line through all rows, a thick one in those of the objects in question."""
     bottom = top + _ROW * len(found.rows)
-    for state in sorted({found.decisive(one) for one in found.violations}):
+    for state in sorted({found.decisive(violation) for violation in found.violations}):
         x = axis.x(state)
         yield Polyline(((x, top - 5), (x, bottom + 4)), "moment")
     for n, violation in enumerate(found.violations, 1):

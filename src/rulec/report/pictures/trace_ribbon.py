@@ -71,9 +71,13 @@ def ribbon(
     the objects to tell of, if not of all.
     """
     wanted = set(only) or set(trace.objects)
-    violations = tuple(one for one in verdict.violations if wanted.issuperset(one.binding.values()))
+    violations = tuple(
+        violation
+        for violation in verdict.violations
+        if wanted.issuperset(violation.binding.values())
+    )
     read = dict.fromkeys(name for rule in rules.rules for name in names_in(rule.formula))
-    violated = {one.rule for one in violations}
+    violated = {violation.rule for violation in violations}
     matters = {
         name for rule in rules.rules if rule.name in violated for name in names_in(rule.formula)
     }
@@ -92,7 +96,7 @@ def ribbon(
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
     """The pairs of which some state speaks; most of all that there are have defaults alone."""
     values = (state.get(name) for name in names for state in trace.states)
-    found = {
+    result = {
         (one, other): None
         for value in values
         if isinstance(value, Mapping)
@@ -101,7 +105,7 @@ def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
         for other in inner
     }
     order = {name: place for place, name in enumerate(trace.objects)}
-    return sorted(found, key=lambda pair: (order[pair[0]], order[pair[1]]))
+    return sorted(result, key=lambda pair: (order[pair[0]], order[pair[1]]))
 
 
 def _row(

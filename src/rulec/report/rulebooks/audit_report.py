@@ -41,22 +41,29 @@ def render(
         case "json":
             return _as_json(audits, compared)
         case "markdown":
-            return "\n\n".join(_as_markdown(one, compared.get(one.rulebook)) for one in audits)
+            return "\n\n".join(
+                _as_markdown(audit, compared.get(audit.rulebook)) for audit in audits
+            )
         case _:
-            return "\n\n\n".join(_as_text(one, compared.get(one.rulebook), width) for one in audits)
+            return "\n\n\n".join(
+                _as_text(audit, compared.get(audit.rulebook), width) for audit in audits
+            )
 
 
 def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     """What there is, in words and in numbers."""
-    found = audit.counts
-    of_all = f"of {found.rules:,}"
-    yield "rules", f"{found.rules:,} ({found.hard:,} hard, {found.soft:,} soft)"
-    yield "with a provision cited", f"{found.cited:,} {of_all}"
-    yield "with examples for both verdicts", f"{found.tested:,} {of_all}"
-    yield "verified in the law itself", f"{found.verified:,} {of_all}"
-    yield "examples", f"{found.examples:,}"
-    yield "provisions of the law", f"{found.articles:,}"
-    yield "words of the vocabulary in use", f"{found.words_used:,} of {found.words:,}"
+    audit_counts = audit.counts
+    of_all = f"of {audit_counts.rules:,}"
+    yield (
+        "rules",
+        f"{audit_counts.rules:,} ({audit_counts.hard:,} hard, {audit_counts.soft:,} soft)",
+    )
+    yield "with a provision cited", f"{audit_counts.cited:,} {of_all}"
+    yield "with examples for both verdicts", f"{audit_counts.tested:,} {of_all}"
+    yield "verified in the law itself", f"{audit_counts.verified:,} {of_all}"
+    yield "examples", f"{audit_counts.examples:,}"
+    yield "provisions of the law", f"{audit_counts.articles:,}"
+    yield "words of the vocabulary in use", f"{audit_counts.words_used:,} of {audit_counts.words:,}"
 
 
 def law_of(audit: Audit) -> str:
@@ -71,13 +78,13 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     blocks = [
         click.style(visible(f"{audit.rulebook}{title}"), bold=True) + "\n" + _rows(rows, width)
     ]
-    for kind, found in groupby(audit.findings, key=lambda one: one.kind):
+    for kind, audit_findings in groupby(audit.findings, key=lambda finding: finding.kind):
         blocks.append(
-            f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(found), width)}"
+            f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(audit_findings), width)}"
         )
-    for book, articles in groupby(audit.articles, key=lambda one: one.book):
+    for book, articles in groupby(audit.articles, key=lambda article: article.book):
         title = f"{click.style('provisions', bold=True)} cited in {book}, and the rules they are in"
-        rows = [(one.cite, ", ".join(one.rules)) for one in articles]
+        rows = [(article.cite, ", ".join(article.rules)) for article in articles]
         blocks.append(f"{title}\n{_rows(rows, width)}")
     if compared is not None:
         blocks.append(_changes_as_text(compared))
@@ -85,10 +92,10 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
 
 
 def _lines(found: Sequence[AuditFinding], width: int) -> str:
-    if not any(one.note for one in found):
-        names = ", ".join(visible(one.name) for one in found)
+    if not any(audit_finding.note for audit_finding in found):
+        names = ", ".join(visible(audit_finding.name) for audit_finding in found)
         return fill(names, width, initial_indent="  ", subsequent_indent="  ")
-    return _rows([(one.name, one.note) for one in found], width)
+    return _rows([(audit_finding.name, audit_finding.note) for audit_finding in found], width)
 
 
 def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
@@ -104,12 +111,14 @@ def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
 
 def _changes_as_text(compared: AuditChanges) -> str:
     lines = [
-        f"{sign} {one.kind}: {visible(one.name)}"
-        for sign, found in (("+", compared.appeared), ("-", compared.vanished))
-        for one in found
+        f"{sign} {audit_finding.kind}: {visible(audit_finding.name)}"
+        for sign, audit_findings in (("+", compared.appeared), ("-", compared.vanished))
+        for audit_finding in audit_findings
     ]
     title = click.style("changed", bold=True)
-    return f"{title}: + is new, - is gone\n" + "\n".join(f"  {one}" for one in lines or ["nothing"])
+    return f"{title}: + is new, - is gone\n" + "\n".join(
+        f"  {line}" for line in lines or ["nothing"]
+    )
 
 
 def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
@@ -122,20 +131,20 @@ def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
         table(
             ["kind", "what it is about", "note"],
             [
-                [one.kind, escaped(one.name), escaped(one.note) if one.note else ""]
-                for one in audit.findings
+                [finding.kind, escaped(finding.name), escaped(finding.note) if finding.note else ""]
+                for finding in audit.findings
             ],
         )
         if audit.findings
         else "None.",
     ]
     if audit.findings:
-        kinds = dict.fromkeys(one.kind for one in audit.findings)
+        kinds = dict.fromkeys(finding.kind for finding in audit.findings)
         blocks.append("\n".join(f"- *{kind}*: {KINDS[kind]}" for kind in kinds))
     if audit.articles:
         rows = [
-            [escaped(one.cite), code(one.book), ", ".join(map(code, one.rules))]
-            for one in audit.articles
+            [escaped(article.cite), code(article.book), ", ".join(map(code, article.rules))]
+            for article in audit.articles
         ]
         blocks += ["## Provisions of the law", table(["provision", "cited in", "rules"], rows)]
     if compared is not None:
@@ -145,9 +154,9 @@ def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
 
 def _changes_as_markdown(compared: AuditChanges) -> str:
     rows = [
-        [word, one.kind, escaped(one.name)]
-        for word, found in (("new", compared.appeared), ("gone", compared.vanished))
-        for one in found
+        [word, audit_finding.kind, escaped(audit_finding.name)]
+        for word, audit_findings in (("new", compared.appeared), ("gone", compared.vanished))
+        for audit_finding in audit_findings
     ]
     return table(["change", "kind", "what it is about"], rows) if rows else "None."
 

@@ -44,11 +44,11 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
     top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook), Heading(2, CONTENTS)]
     body = list(_body(loaded, inherited))
     index = Heading(2, "Index of provisions")
-    headings = [one for one in (*top, *body, index) if isinstance(one, Heading)]
-    names = anchors([one.text for one in headings])
-    places = {id(one): name for one, name in zip(headings, names, strict=True)}
-    contents = _contents([one for one in headings if one.level in (2, 3)], places)
-    rules = {one.text: places[id(one)] for one in headings if one.level == 3}
+    headings = [heading for heading in (*top, *body, index) if isinstance(heading, Heading)]
+    names = anchors([heading.text for heading in headings])
+    places = {id(heading): name for heading, name in zip(headings, names, strict=True)}
+    contents = _contents([heading for heading in headings if heading.level in (2, 3)], places)
+    rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
     return written(
         [*top, contents, *body, *_index(rulebook, inherited, index, rules), *_made_from(rulebook)]
     )
@@ -56,7 +56,7 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
 
 def _top(rulebook: Rulebook) -> Iterator[Block]:
     law = f"{rulebook.law}, as of {rulebook.as_of}" if rulebook.as_of else rulebook.law
-    n_hard = sum(one.strength == "hard" for one in rulebook.rules)
+    n_hard = sum(rule.strength == "hard" for rule in rulebook.rules)
     yield NO_ADVICE
     rows = [
         ["rulebook", code(rulebook.name)],
@@ -89,9 +89,9 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
 
 def _contents(headings: Sequence[Heading], places: Mapping[int, str]) -> str:
     return "\n".join(
-        f"{'  ' * (one.level - 2)}- [{escaped(one.text)}](#{places[id(one)]})"
-        for one in headings
-        if one.text != CONTENTS or one.level != 2
+        f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{places[id(heading)]})"
+        for heading in headings
+        if heading.text != CONTENTS or heading.level != 2
     )
 
 
@@ -99,23 +99,24 @@ def _index(
     rulebook: Rulebook, inherited: BookLineage, heading: Heading, places: Mapping[str, str]
 ) -> Iterator[Block]:
     yield heading
-    by_name = {one.name: one for one in rulebook.rules}
-    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    by_name = {rule.name: rule for rule in rulebook.rules}
+    laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     articles = articles_of(rulebook.rules, inherited)
     if not articles:
         yield "No provision is cited."
-    for book, cited in groupby(articles, key=lambda one: one.book):
+    for book, cited in groupby(articles, key=lambda article: article.book):
         yield f"{escaped(laws[book])}:"
         rows = []
-        for one in cited:
+        for cited_article in cited:
             links = (
-                f"[{code(name)}](#{places[rule_heading(by_name[name])]})" for name in one.rules
+                f"[{code(name)}](#{places[rule_heading(by_name[name])]})"
+                for name in cited_article.rules
             )
-            rows.append([escaped(one.cite), ", ".join(links)])
+            rows.append([escaped(cited_article.cite), ", ".join(links)])
         yield table(["provision", "rules"], rows)
 
 
 def _made_from(rulebook: Rulebook) -> Iterator[Block]:
-    names = ", ".join(code(one.name) for one in rulebook.sources)
+    names = ", ".join(code(source.name) for source in rulebook.sources)
     yield "---"
     yield f"Made by rulec {__version__} from {names}. {NO_ADVICE}"

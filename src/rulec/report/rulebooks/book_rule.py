@@ -43,8 +43,10 @@ def rule_heading(rule: Rule) -> str:
 def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> Iterator[Block]:
     """All about a rule of the rulebook at the end of a chain."""
     book = inherited.book
-    (history,) = [one for one in inherited.rules if one.name == rule.name]
-    laws = {one.name: one.law or one.title or one.name for one in inherited.books}
+    (history,) = [
+        rule_history for rule_history in inherited.rules if rule_history.name == rule.name
+    ]
+    laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
     yield Heading(3, rule_heading(rule))
     if rule.says:
@@ -80,7 +82,9 @@ def _facts(
     yield "Kind of rule", f"{kind}{weight}"
     if rule.level:
         yield "Level", code(rule.level)
-    objects = [f"every {spoken(one.type)} {code(one.name)}" for one in rule.variables]
+    objects = [
+        f"every {spoken(variable.type)} {code(variable.name)}" for variable in rule.variables
+    ]
     yield "Speaks of", listed(objects) if objects else "the road user in question and the world"
     yield "Certainty", CERTAINTY[rule.certainty]
     if rule.source:
@@ -93,7 +97,7 @@ def _facts(
 
 def _sentence(phrase: Phrase) -> str:
     first, *rest = lines(phrase)
-    items = [f"{'  ' * (one.depth - 1)}- {one.label} {escaped(one.text)}" for one in rest]
+    items = [f"{'  ' * (line.depth - 1)}- {line.label} {escaped(line.text)}" for line in rest]
     return escaped(first.text) + ("\n\n" + "\n".join(items) if items else "")
 
 
@@ -103,7 +107,10 @@ def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
     said = [(word, text) for word, text in clauses if word in _FORMULAS]
     meant = [] if rule.condition is None else [("when", formula_text(rule.condition))]
     meant.append(("require", formula_text(rule.required or rule.formula)))
-    meant += [("unless", f"{formula_text(one.formula)} {one.scope}") for one in rule.exemptions]
+    meant += [
+        ("unless", f"{formula_text(exemption.formula)} {exemption.scope}")
+        for exemption in rule.exemptions
+    ]
     yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
     if said != meant:
         yield "With definitions, options and parameters put in:"
@@ -121,7 +128,9 @@ def _clause(word: str, text: str) -> list[str]:
 def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[str]:
     word = "allowed ✔" if example.accepts else "forbidden ✘"
     name = f" ({escaped(example.label)})" if example.label else ""
-    also = listed([f"{code(one.name)}, a {spoken(one.type)}" for one in example.objects] or [""])
+    also = listed(
+        [f"{code(object_.name)}, a {spoken(object_.type)}" for object_ in example.objects] or [""]
+    )
     there = f" Also there: {also}." if also else ""
     yield f"**Example {number}{name}: {word}**{there}"
     shown = state_table(example, vocabulary)
@@ -147,7 +156,7 @@ def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:
 
 
 def _by_word(rule: tree.RuleItem) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    result: dict[str, list[str]] = {}
     for word, text in clauses_of(rule):
-        found.setdefault(word, []).extend(_clause(word, text))
-    return found
+        result.setdefault(word, []).extend(_clause(word, text))
+    return result

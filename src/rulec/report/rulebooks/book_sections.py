@@ -22,21 +22,27 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 def values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
     """Options and parameters that rules speak of, with all their values."""
-    found = [one for one in inherited.provisions if one.kind != "definition" and one.used]
-    if not found:
+    constant_histories = [
+        provision
+        for provision in inherited.provisions
+        if provision.kind != "definition" and provision.used
+    ]
+    if not constant_histories:
         return
     yield Heading(2, "Options and parameters")
     yield f"The value that counts on {at} is the one with a mark."
     head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
-    yield table(head, (row for one in found for row in _values(one)))
+    yield table(
+        head, (row for constant_history in constant_histories for row in _values(constant_history))
+    )
 
 
-def _values(one: ConstantHistory) -> Iterator[list[str]]:
-    for setting in one.settings:
+def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
+    for setting in constant_history.settings:
         dates = print_in_force(tree.InForce(setting.since, setting.until))
         yield [
-            code(one.name),
-            one.kind,
+            code(constant_history.name),
+            constant_history.kind,
             code(setting.text),
             "✔" if setting.current else "",
             dates.removeprefix("in force").strip() or "always",
@@ -47,17 +53,24 @@ def _values(one: ConstantHistory) -> Iterator[list[str]]:
 
 def definitions_section(inherited: BookLineage) -> Iterator[Block]:
     """Definitions that rules speak of, as they are in the end, and what they were before."""
-    found = [one for one in inherited.provisions if one.kind == "definition" and one.used]
-    if not found:
+    constant_histories = [
+        provision
+        for provision in inherited.provisions
+        if provision.kind == "definition" and provision.used
+    ]
+    if not constant_histories:
         return
     yield Heading(2, "Definitions")
-    for one in found:
-        last = one.settings[-1]
-        before = [f"in {code(each.book)} {code(each.text)}" for each in one.settings[:-1]]
+    for constant_history in constant_histories:
+        last = constant_history.settings[-1]
+        before = [
+            f"in {code(setting.book)} {code(setting.text)}"
+            for setting in constant_history.settings[:-1]
+        ]
         was = f" It was {listed(before)}." if before else ""
         note = f" {escaped(last.note)}" if last.note else ""
-        yield f"{code(one.name)} is defined by {code(last.book)}.{was}{note}"
-        yield fenced("\n".join(_definition(one.head, last.text)), "rulec")
+        yield f"{code(constant_history.name)} is defined by {code(last.book)}.{was}{note}"
+        yield fenced("\n".join(_definition(constant_history.head, last.text)), "rulec")
 
 
 def _definition(head: str, text: str) -> list[str]:
@@ -77,30 +90,34 @@ def left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
 
 
 def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
-    for one in inherited.rules:
-        last = one.last
+    for rule in inherited.rules:
+        last = rule.last
         if last.deed == "dropped":
-            yield [code(one.name), f"dropped by {code(last.book)}", escaped(last.because)]
+            yield [code(rule.name), f"dropped by {code(last.book)}", escaped(last.because)]
         elif last.deed == "silent":
-            yield [code(one.name), f"{code(last.book)} is silent on it", escaped(last.because)]
-        elif one.rule is not None and not in_force(one.rule.in_force, at):
-            assert one.rule.in_force is not None, "what has no dates is in force"
-            dates = print_in_force(one.rule.in_force)
-            yield [code(one.name), f"not in force on {at}", dates]
+            yield [code(rule.name), f"{code(last.book)} is silent on it", escaped(last.because)]
+        elif rule.rule is not None and not in_force(rule.rule.in_force, at):
+            assert rule.rule.in_force is not None, "what has no dates is in force"
+            dates = print_in_force(rule.rule.in_force)
+            yield [code(rule.name), f"not in force on {at}", dates]
 
 
 def words_section(loaded: Loaded) -> Iterator[Block]:
     """The words of the vocabulary that the rules use, and what always holds."""
     rulebook = loaded.rulebook
     used = used_declarations(rulebook)
-    found = [one for name, one in rulebook.vocabulary.declarations.items() if name in used]
-    if found:
+    result = [
+        declaration
+        for name, declaration in rulebook.vocabulary.declarations.items()
+        if name in used
+    ]
+    if result:
         described = _descriptions(loaded)
         yield Heading(2, "Vocabulary")
         yield "What the rules speak of, and what it can be; the default is in parentheses."
         rows = (
             [code(one.name), _about(one), _kind(one), escaped(described.get(one.name, ""))]
-            for one in found
+            for one in result
         )
         yield table(["word", "is about", "what it can be", "description"], rows)
     yield from _facts(rulebook)
@@ -111,32 +128,32 @@ def _facts(rulebook: Rulebook) -> Iterator[Block]:
         yield Heading(2, "What always holds")
         yield "Whatever the rules say, this is so in every state:"
         yield fenced(
-            "\n".join(f"fact {formula_text(one.formula)}" for one in rulebook.axioms), "rulec"
+            "\n".join(f"fact {formula_text(axiom.formula)}" for axiom in rulebook.axioms), "rulec"
         )
 
 
 def _descriptions(loaded: Loaded) -> Mapping[str, str]:
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for file in (*loaded.vocabularies, *loaded.books):
         for item in file.items:
             match item:
                 case tree.SignalItem(signals=signals):
-                    found |= {one.name.text: description(item.span) for one in signals}
+                    result |= {signal.name.text: description(item.span) for signal in signals}
                 case tree.EnumerationItem(name=name) | tree.QuantityItem(name=name):
-                    found[name.text] = description(item.span)
-    return found
+                    result[name.text] = description(item.span)
+    return result
 
 
 def _about(item: Declaration) -> str:
     if not item.parameters:
         return "the world"
-    return f"every {' and '.join(code(spoken(one)) for one in item.parameters)}"
+    return f"every {' and '.join(code(spoken(parameter)) for parameter in item.parameters)}"
 
 
 def _kind(item: Declaration) -> str:
     match item:
         case Enumeration(values=values, default=default):
-            shown = [f"({code(one)})" if one == default else code(one) for one in values]
+            shown = [f"({code(value)})" if value == default else code(value) for value in values]
             return f"one of {listed(shown)}"
         case Signal(default=default):
             return {None: "yes or no", True: "(yes) or no", False: "yes or (no)"}[default]

@@ -15,8 +15,13 @@ COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 def as_csv(found: RulebookDiff) -> str:
     """The lines, below one that names the columns."""
     rows = [_row(pair.relation, pair.first, pair.second) for pair in found.pairs]
-    rows += [_row(f"only in {found.first.name}", one.rule, None) for one in found.only_first]
-    rows += [_row(f"only in {found.second.name}", None, one.rule) for one in found.only_second]
+    rows += [
+        _row(f"only in {found.first.name}", one_sided.rule, None) for one_sided in found.only_first
+    ]
+    rows += [
+        _row(f"only in {found.second.name}", None, one_sided.rule)
+        for one_sided in found.only_second
+    ]
     return table([COLUMNS, *rows])
 
 

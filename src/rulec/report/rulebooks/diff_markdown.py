@@ -28,8 +28,8 @@ def as_markdown(found: RulebookDiff) -> str:
             parts += [f"## Only in {code(has)}", _only(rules, lacks)]
     if found.settings:
         rows = [
-            [f"{each.kind} {code(each.name)}", code(each.first), code(each.second)]
-            for each in found.settings
+            [f"{setting.kind} {code(setting.name)}", code(setting.first), code(setting.second)]
+            for setting in found.settings
         ]
         parts += ["## Set otherwise", table(["", code(one), code(other)], rows)]
     same = [code(pair.name) for pair in found.pairs if not is_worth_a_block(pair)]
@@ -65,6 +65,6 @@ def _pair(pair: RulePair, found: RulebookDiff) -> Iterator[str]:
 
 def _only(rules: Sequence[OneSided], lacks: str) -> str:
     return "\n".join(
-        f"- {one.rule.strength} rule {code(one.rule.name)}{escaped(only_why(one, lacks))}"
-        for one in rules
+        f"- {rule.rule.strength} rule {code(rule.rule.name)}{escaped(only_why(rule, lacks))}"
+        for rule in rules
     )

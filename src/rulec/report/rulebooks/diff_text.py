@@ -83,7 +83,8 @@ def about_types(pair: RulePair, found: RulebookDiff) -> str:
     if not pair.comparison.common:
         return ""
     heads = [
-        f"{book.name} speaks of ({', '.join(f'{one.name}: {one.type}' for one in rule.variables)})"
+        f"{book.name} speaks of "
+        f"({', '.join(f'{variable.name}: {variable.type}' for variable in rule.variables)})"
         for book, rule in ((found.first, pair.first), (found.second, pair.second))
     ]
     kinds = ", ".join(pair.comparison.common)
@@ -116,8 +117,8 @@ def _table(table: TraceTable) -> list[str]:
 
 def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
     lines = [
-        f"  {one.rule.strength} rule {one.rule.name}{visible(only_why(one, lacks))}"
-        for one in rules
+        f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
+        for rule in rules
     ]
     title = click.style(f"only in {has}", bold=True)
     return "\n".join([title, *lines])
@@ -125,9 +126,9 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
 
 def _settings(found: RulebookDiff) -> str:
     lines = [
-        f"  {one.kind} {one.name}: {one.first} in {found.first.name}, "
-        f"{one.second} in {found.second.name}"
-        for one in found.settings
+        f"  {setting.kind} {setting.name}: {setting.first} in {found.first.name}, "
+        f"{setting.second} in {found.second.name}"
+        for setting in found.settings
     ]
     return "\n".join([click.style("set otherwise", bold=True), *map(visible, lines)])
 

@@ -71,7 +71,7 @@ def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
     """Only the rules whose name a pattern matches, and no provisions; all without a pattern."""
     if pattern is None:
         return inherited
-    rules = tuple(one for one in inherited.rules if fnmatchcase(one.name, pattern))
+    rules = tuple(rule for rule in inherited.rules if fnmatchcase(rule.name, pattern))
     return BookLineage(inherited.books, rules, ())
 
 
@@ -88,29 +88,31 @@ def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
     trees = [chain]
     if inherited.rules:
         rules = Tree(Text("rules", "bold"))
-        for one in inherited.rules:
-            _rule(one, inherited.book, rules)
+        for rule in inherited.rules:
+            _rule(rule, inherited.book, rules)
         trees.append(rules)
     for kind in ("option", "parameter", "definition"):
-        found = [one for one in inherited.provisions if one.kind == kind]
-        if found:
+        constant_histories = [
+            provision for provision in inherited.provisions if provision.kind == kind
+        ]
+        if constant_histories:
             provisions = Tree(Text(f"{kind}s", "bold"))
-            for each in found:
-                _provision(each, inherited.book, provisions)
+            for constant_history in constant_histories:
+                _provision(constant_history, inherited.book, provisions)
             trees.append(provisions)
-    return "\n\n".join(_drawn(one, width, color=color) for one in trees)
+    return "\n\n".join(_drawn(tree_, width, color=color) for tree_ in trees)
 
 
 def forest_as_text(branches: Sequence[ExtensionTree], width: int, *, color: bool) -> str:
     """A tree for each rulebook that extends none."""
-    return "\n".join(_drawn(_grown(one), width, color=color) for one in branches)
+    return "\n".join(_drawn(_grown(branch), width, color=color) for branch in branches)
 
 
 def _grown(branch: ExtensionTree, above: Tree | None = None) -> Tree:
     label = _book(branch.book, missing=above is None)
     here = Tree(label) if above is None else above.add(label)
-    for one in branch.children:
-        _grown(one, here)
+    for child in branch.children:
+        _grown(child, here)
     return here
 
 
@@ -131,20 +133,23 @@ def _book(book: BookHeader, *, missing: bool = False) -> Text:
     details = [f"{book.law}{since}" if book.law else "", book.file]
     if missing and book.extends:
         details.append(f"extends {book.extends}, which is not here")
-    for one in filter(None, details):
-        label.append(f"\n{visible(one)}", "dim not bold")
+    for detail in filter(None, details):
+        label.append(f"\n{visible(detail)}", "dim not bold")
     return label
 
 
-def _rule(one: RuleHistory, book: str, rules: Tree) -> None:
-    gone = one.rule is None
-    label = Text(visible(one.name), "dim" if gone else "")
-    label.append(f"  {visible(provenance(one, book))}", "dim" if one.last.book != book else "")
-    if one.rule is not None and one.rule.in_force is not None:
-        label.append(f"  {print_in_force(one.rule.in_force)}", "dim")
+def _rule(rule_history: RuleHistory, book: str, rules: Tree) -> None:
+    gone = rule_history.rule is None
+    label = Text(visible(rule_history.name), "dim" if gone else "")
+    label.append(
+        f"  {visible(provenance(rule_history, book))}",
+        "dim" if rule_history.last.book != book else "",
+    )
+    if rule_history.rule is not None and rule_history.rule.in_force is not None:
+        label.append(f"  {print_in_force(rule_history.rule.in_force)}", "dim")
     here = rules.add(label)
-    told = len(one.steps) == 2 and one.last.deed == "overridden"
-    for step in () if told else one.steps[:-1]:
+    told = len(rule_history.steps) == 2 and rule_history.last.deed == "overridden"
+    for step in () if told else rule_history.steps[:-1]:
         here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
 
 
@@ -153,18 +158,20 @@ def _detail(step: LineageStep) -> str:
     return visible(f"{changed}{f', because {step.because}' if step.because else ''}")
 
 
-def _provision(one: ConstantHistory, book: str, provisions: Tree) -> None:
-    current = next((each for each in one.settings if each.current), None)
-    label = Text(visible(one.head))
+def _provision(constant_history: ConstantHistory, book: str, provisions: Tree) -> None:
+    current = next((setting for setting in constant_history.settings if setting.current), None)
+    label = Text(visible(constant_history.head))
     if current is None:
         label.append("  no value in force", "dim")
     else:
         label.append(visible(f" = {current.text}{_when(current)}  "))
         label.append(visible(_origin(current, book)), "dim")
     here = provisions.add(label)
-    for each in one.settings:
-        if not each.current:
-            here.add(Text(visible(f"{each.text}{_when(each)}  {_origin(each, book)}"), "dim"))
+    for setting in constant_history.settings:
+        if not setting.current:
+            here.add(
+                Text(visible(f"{setting.text}{_when(setting)}  {_origin(setting, book)}"), "dim")
+            )
 
 
 def _origin(setting: ConstantValue, book: str) -> str:
@@ -203,6 +210,6 @@ def forest_as_json(branches: Sequence[ExtensionTree]) -> str:
 
 
 def _members(branches: Sequence[ExtensionTree]) -> Iterator[BookHeader]:
-    for one in branches:
-        yield one.book
-        yield from _members(one.children)
+    for branch in branches:
+        yield branch.book
+        yield from _members(branch.children)

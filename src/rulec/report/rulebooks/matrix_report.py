@@ -97,7 +97,7 @@ def _as_text(found: ComparisonMatrix) -> str:
     by_rule = [["", *names], *([rule.name, *_letters(rule, names)] for rule in found.shared)]
     by_pair = [
         ["", *names],
-        *([one, *(_cell(found, one, other) for other in names)] for one in names),
+        *([name, *(_cell(found, name, other) for other in names)] for name in names),
     ]
     blocks = [
         fill(RULES, WIDTH),
@@ -130,10 +130,10 @@ def _letter(rule: SharedRule, book: str) -> str:
     return letter if rule.rules[book].strength == "hard" else letter.lower()
 
 
-def _cell(found: ComparisonMatrix, one: str, other: str) -> str:
-    if one == other:
+def _cell(found: ComparisonMatrix, left: str, right: str) -> str:
+    if left == right:
         return ""
-    counted = found.counts(one, other)
+    counted = found.counts(left, right)
     parts = [f"{counted[kind]}{sign}" for kind, sign in SIGNS.items() if counted[kind]]
     return " ".join(parts) or ABSENT
 
@@ -164,8 +164,8 @@ def _as_markdown(found: ComparisonMatrix) -> str:
             markdown_table(
                 head,
                 [
-                    [code(one), *(escaped(_cell(found, one, other)) for other in names)]
-                    for one in names
+                    [code(name), *(escaped(_cell(found, name, other)) for other in names)]
+                    for name in names
                 ],
             ),
         ]

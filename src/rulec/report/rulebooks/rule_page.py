@@ -97,21 +97,21 @@ def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
 
 def restrictions_of(rule: Rule) -> list[Phrase]:
     """When the rule applies, and its exceptions, as sentences; none of what an option rules out."""
-    found = [
-        exemption(formula, one.scope)
-        for one in rule.exemptions
-        if (formula := fold_constants(one.formula)) != Constant(False)
+    phrases = [
+        exemption(formula, exemption_.scope)
+        for exemption_ in rule.exemptions
+        if (formula := fold_constants(exemption_.formula)) != Constant(False)
     ]
     applies = None if rule.condition is None else fold_constants(rule.condition)
     if applies is None or applies == Constant(True):
-        return found
+        return phrases
     if applies == Constant(False):
         return [
             Phrase("it never counts, for its condition is false as options are set", Shape.CLAUSE)
         ]
     guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
     guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
-    return [condition(applies, guards=guards), *found]
+    return [condition(applies, guards=guards), *phrases]
 
 
 def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
@@ -126,7 +126,10 @@ def _formula(rule: Rule, width: int) -> list[str]:
         return whole
     parts = [formula_text(rule.required)]
     parts += [f"when {formula_text(rule.condition)}"] if rule.condition is not None else []
-    parts += [f"unless {formula_text(one.formula)} {one.scope}" for one in rule.exemptions]
+    parts += [
+        f"unless {formula_text(exemption_.formula)} {exemption_.scope}"
+        for exemption_ in rule.exemptions
+    ]
     written = [line for part in parts for line in formula_lines(visible(part), width)]
     return [*written, "that is", *whole]
 
@@ -144,7 +147,7 @@ def head(rule: Rule, rulebook: str, width: int) -> str:
 
 
 def _title(rule: Rule) -> str:
-    variables = ", ".join(f"{one.name}: {one.type}" for one in rule.variables)
+    variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     return f"{rule.strength} rule {rule.name}{f' ({variables})' if variables else ''}"
 
 
@@ -212,6 +215,6 @@ def _examples(page: RulePage) -> Iterator[str]:
         if trace is None:
             yield never
             continue
-        objects = ", ".join(f"{one.name}: {one.type}" for one in trace.objects)
+        objects = ", ".join(f"{object_.name}: {object_.type}" for object_ in trace.objects)
         yield f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
         yield from (f"  # where {remark}" for remark in trace.remarks)

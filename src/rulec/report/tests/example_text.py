@@ -27,9 +27,12 @@ def as_text(
     runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
 ) -> str:
     """A line for each example, what there is to say about those that failed, and the numbers."""
-    lines = [_line(one, run.rulebook.name) for run in runs for one in run.outcomes]
+    lines = [_line(outcome, run.rulebook.name) for run in runs for outcome in run.outcomes]
     problems = [
-        failure(one, run.rulebook.name) for run in runs for one in run.outcomes if not one.passed
+        failure(outcome, run.rulebook.name)
+        for run in runs
+        for outcome in run.outcomes
+        if not outcome.passed
     ]
     if problems:
         lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
@@ -58,7 +61,7 @@ def failure(one: ExampleOutcome, rulebook: str) -> Diagnostic:
     stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
     if rule.book == rulebook and len(set(stands_in)) < 2:
         return problem
-    variables = ", ".join(f"{each.name}: {each.type}" for each in rule.variables)
+    variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     head = f"{rule.name} ({variables})" if variables else rule.name
     return replace(
         problem,
@@ -75,45 +78,49 @@ def shortcomings(
     fail_on_empty: bool,
 ) -> list[str]:
     """What is less than somebody asked for, in sentences."""
-    found = []
+    names = []
     if fail_on_empty and not any(run.outcomes for run in runs):
-        found.append("there is no example to run")
+        names.append("there is no example to run")
     if covered is not None and threshold is not None:
         part = percent(rule for rules in covered for rule in rules)
         if part < threshold:
-            found.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
-    return found
+            names.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
+    return names
 
 
-def _line(one: ExampleOutcome, rulebook: str) -> str:
+def _line(example_outcome: ExampleOutcome, rulebook: str) -> str:
     verdict = (
-        click.style("pass", fg="green") if one.passed else click.style("FAIL", fg="red", bold=True)
+        click.style("pass", fg="green")
+        if example_outcome.passed
+        else click.style("FAIL", fg="red", bold=True)
     )
-    return f"{verdict}  {visible(f'{rulebook} {one.rule.name}/{one.name}')}"
+    return f"{verdict}  {visible(f'{rulebook} {example_outcome.rule.name}/{example_outcome.name}')}"
 
 
 def _summary(runs: Sequence[ExampleRun]) -> str:
     """The line that ends a run."""
-    outcomes = [one for run in runs for one in run.outcomes]
-    passed = sum(one.passed for one in outcomes)
+    outcomes = [outcome for run in runs for outcome in run.outcomes]
+    passed = sum(outcome.passed for outcome in outcomes)
     word = "example" if len(outcomes) == 1 else "examples"
     return f"{len(outcomes):,} {word}: {passed:,} passed, {len(outcomes) - passed:,} failed"
 
 
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
     """A line for each rule with its numbers, and with it, indented, what is missing."""
-    for one in rules:
-        edges = f"{one.n_edges - len(one.missing_edges):,} of {one.n_edges:,} edges"
-        values = f"{one.n_values - len(one.missing_values):,} of {one.n_values:,} values of atoms"
-        lines = [f"{one.rule}: {edges}, {values} ({as_percent(percent([one]))})"]
-        for atom, value in one.missing_values:
+    for rule in rules:
+        edges = f"{rule.n_edges - len(rule.missing_edges):,} of {rule.n_edges:,} edges"
+        values = (
+            f"{rule.n_values - len(rule.missing_values):,} of {rule.n_values:,} values of atoms"
+        )
+        lines = [f"{rule.rule}: {edges}, {values} ({as_percent(percent([rule]))})"]
+        for atom, value in rule.missing_values:
             lines.append(f"`{formula_text(atom)}` is never {'true' if value else 'false'}")
         lines += [
             f"missing: {missing_example(edge, vocabulary)}"
-            for edge in one.missing_edges[:MOST_MISSING]
+            for edge in rule.missing_edges[:MOST_MISSING]
         ]
-        if len(one.missing_edges) > MOST_MISSING:
-            more = len(one.missing_edges) - MOST_MISSING
+        if len(rule.missing_edges) > MOST_MISSING:
+            more = len(rule.missing_edges) - MOST_MISSING
             lines.append(f"and {more:,} more; --output-format json has them all")
         yield "\n  ".join(lines)
 

@@ -27,8 +27,8 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
             properties = ElementTree.SubElement(suite, "properties")
             part = f"{percent(covered[number]):.3f}"
             ElementTree.SubElement(properties, "property", {"name": "coverage", "value": part})
-        for one in run.outcomes:
-            _case(suite, run.rulebook.name, one)
+        for outcome in run.outcomes:
+            _case(suite, run.rulebook.name, outcome)
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             said = ElementTree.SubElement(suite, "system-out")
@@ -39,21 +39,24 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
 
 
 def _counts(runs: Sequence[ExampleRun]) -> dict[str, str]:
-    outcomes = [one for run in runs for one in run.outcomes]
-    failures = sum(not one.passed for one in outcomes)
+    outcomes = [outcome for run in runs for outcome in run.outcomes]
+    failures = sum(not outcome.passed for outcome in outcomes)
     return {"tests": str(len(outcomes)), "failures": str(failures), "errors": "0", "skipped": "0"}
 
 
-def _case(suite: ElementTree.Element, rulebook: str, one: ExampleOutcome) -> None:
-    attributes = {"classname": f"{rulebook}.{one.rule.name}", "name": one.name}
-    place = at(one.example.span)
+def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOutcome) -> None:
+    attributes = {
+        "classname": f"{rulebook}.{example_outcome.rule.name}",
+        "name": example_outcome.name,
+    }
+    place = at(example_outcome.example.span)
     if place is not None:
         attributes |= {"file": place.file, "line": str(place.line)}
     case = ElementTree.SubElement(
         suite, "testcase", {name: _text(value) for name, value in attributes.items()}
     )
-    if not one.passed:
-        problem = failure(one, rulebook)
+    if not example_outcome.passed:
+        problem = failure(example_outcome, rulebook)
         said = {"type": problem.code, "message": _text(problem.message)}
         element = ElementTree.SubElement(case, "failure", said)
         element.text = _text(render_diagnostics([problem], summary=False))

@@ -78,10 +78,10 @@ class Complaints:
 
     def add(self, error: RulecError) -> None:
         """Show an error, or count it if there have been many of its kind."""
-        for one in error.diagnostics:
-            self._seen[one.code] += 1
-            if self._seen[one.code] <= self._most:
-                print_diagnostics([one], summary=False)
+        for diagnostic in error.diagnostics:
+            self._seen[diagnostic.code] += 1
+            if self._seen[diagnostic.code] <= self._most:
+                print_diagnostics([diagnostic], summary=False)
 
     def close(self) -> None:
         """Say how many have not been shown."""

@@ -39,7 +39,7 @@ def _lines(text: str, width: int) -> Iterator[str]:
         return
     outside = _outside(text)
     for operator in _OPERATORS:
-        cuts = [one.start() for one in operator.finditer(text) if outside[one.start()]]
+        cuts = [match_.start() for match_ in operator.finditer(text) if outside[match_.start()]]
         if cuts:
             starts = [0, *(cut + 1 for cut in cuts)]
             for start, end in zip(starts, [*cuts, len(text)], strict=True):
@@ -59,8 +59,8 @@ def _lines(text: str, width: int) -> Iterator[str]:
 
 def _outside(text: str) -> list[bool]:
     """For every character: does it stand outside of all parentheses and brackets?"""
-    depth, found = 0, []
+    depth, result = 0, []
     for character in text:
         depth += (character in "([") - (character in ")]")
-        found.append(depth == 0)
-    return found
+        result.append(depth == 0)
+    return result

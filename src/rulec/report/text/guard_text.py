@@ -44,12 +44,12 @@ class GuardWording:
         self._reads = rule.machine.reads
         self._vocabulary = vocabulary
         self._said: dict[tuple[object, ...], str] = {}
-        for one in atoms_of(rule.formula):
-            if isinstance(one, Comparison):
-                text = comparison_text(one)
-                for relation, limit in _alike(one):
-                    self._said[one.terms, relation, limit] = text
-                    self._said.setdefault((one.terms, _DENIAL[relation], limit), _denied(text))
+        for atom in atoms_of(rule.formula):
+            if isinstance(atom, Comparison):
+                text = comparison_text(atom)
+                for relation, limit in _alike(atom):
+                    self._said[atom.terms, relation, limit] = text
+                    self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
         """What holds of exactly the letters of these cubes; ``true`` of all."""
@@ -143,24 +143,26 @@ class GuardWording:
         return visible(" and ".join(axioms)) or "true"
 
 
-def _alike(one: Comparison) -> Iterator[tuple[Relation, Fraction]]:
+def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
     """The comparison, and the one that a machine may have made of it: counts are whole numbers."""
-    yield one.relation, one.limit
-    match one.terms:
-        case ((_, Count()),) if one.limit.denominator == 1 and one.relation in _OF_WHOLE_NUMBERS:
-            relation, step = _OF_WHOLE_NUMBERS[one.relation]
-            yield relation, one.limit + step
+    yield comparison.relation, comparison.limit
+    match comparison.terms:
+        case ((_, Count()),) if (
+            comparison.limit.denominator == 1 and comparison.relation in _OF_WHOLE_NUMBERS
+        ):
+            relation, step = _OF_WHOLE_NUMBERS[comparison.relation]
+            yield relation, comparison.limit + step
 
 
 def runs(numbers: Sequence[int]) -> list[range]:
     """Ascending numbers as ranges of neighbours."""
-    found: list[range] = []
+    ranges: list[range] = []
     for number in numbers:
-        if found and found[-1].stop == number:
-            found[-1] = range(found[-1].start, number + 1)
+        if ranges and ranges[-1].stop == number:
+            ranges[-1] = range(ranges[-1].start, number + 1)
         else:
-            found.append(range(number, number + 1))
-    return found
+            ranges.append(range(number, number + 1))
+    return ranges
 
 
 def _denied(text: str) -> str:

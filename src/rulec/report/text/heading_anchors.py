@@ -9,7 +9,7 @@ from collections.abc import Sequence
 def anchors(headings: Sequence[str]) -> list[str]:
     """A name for each heading (plain text, in the order of the page), no two the same."""
     taken: set[str] = set()
-    found = []
+    names = []
     for heading in headings:
         plain = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
         name, number = plain, 0
@@ -17,5 +17,5 @@ def anchors(headings: Sequence[str]) -> list[str]:
             number += 1
             name = f"{plain}-{number}"
         taken.add(name)
-        found.append(name)
-    return found
+        names.append(name)
+    return names

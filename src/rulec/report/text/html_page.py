@@ -61,12 +61,12 @@ def _highlighted(text: str, language: str, _: str) -> str:
 
 def _name_headings(tokens: Sequence[Token]) -> None:
     """Every heading can be linked to."""
-    found = [
+    result = [
         (token, "".join(child.content for child in inline.children or ()))
         for token, inline in pairwise(tokens)
         if token.type == "heading_open"
     ]
-    for (token, _), name in zip(found, anchors([text for _, text in found]), strict=True):
+    for (token, _), name in zip(result, anchors([text for _, text in result]), strict=True):
         token.attrSet("id", name)
 
 

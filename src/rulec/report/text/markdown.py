@@ -28,10 +28,10 @@ def linked(text: str) -> str:
     """As ``escaped``, with addresses of pages as links."""
     parts = []
     end = 0
-    for found in _ADDRESS.finditer(text):
-        before = text[end : found.start()]
-        parts += [escaped(before) if before.strip() else before, f"<{found[0]}>"]
-        end = found.end()
+    for match_ in _ADDRESS.finditer(text):
+        before = text[end : match_.start()]
+        parts += [escaped(before) if before.strip() else before, f"<{match_[0]}>"]
+        end = match_.end()
     rest = text[end:]
     return "".join([*parts, escaped(rest) if rest.strip() else rest])
 
@@ -74,6 +74,6 @@ Block = Heading | str
 def written(blocks: Iterable[Block]) -> str:
     """The page, without a line end behind it."""
     return "\n\n".join(
-        f"{'#' * one.level} {escaped(one.text)}" if isinstance(one, Heading) else one
-        for one in blocks
+        f"{'#' * block.level} {escaped(block.text)}" if isinstance(block, Heading) else block
+        for block in blocks
     )

@@ -18,16 +18,20 @@ _COLORS: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "p
 
 def as_text(found: SoFar) -> str:
     """The state's number, the verdict of the rulebook, and what has changed."""
-    changes = [visible(_change(one)) for one in found.changes[:MOST_CHANGES]]
+    changes = [visible(_change(change)) for change in found.changes[:MOST_CHANGES]]
     if len(found.changes) > len(changes):
         changes.append(f"and {len(found.changes) - len(changes):,} more")
     verdict = click.style(found.verdict, fg=_COLORS.get(found.verdict))
     return f"{found.state}: {'; '.join([verdict, *changes])}"
 
 
-def _change(one: VerdictChange) -> str:
-    where = ", ".join(f"{name} = {item}" for name, item in one.binding.items())
+def _change(verdict_change: VerdictChange) -> str:
+    where = ", ".join(f"{name} = {item}" for name, item in verdict_change.binding.items())
     about = f" for {where}" if where else ""
-    left = ", not fulfilled when they parted" if one.ended and len(one.binding) > 1 else ""
-    left = left or (", not fulfilled when it left" if one.ended else "")
-    return f"{one.rule}{about}: {one.verdict}{left}"
+    left = (
+        ", not fulfilled when they parted"
+        if verdict_change.ended and len(verdict_change.binding) > 1
+        else ""
+    )
+    left = left or (", not fulfilled when it left" if verdict_change.ended else "")
+    return f"{verdict_change.rule}{about}: {verdict_change.verdict}{left}"

@@ -48,8 +48,8 @@ def _drives(count: int) -> str:
 
 def _not_judged(found: Sequence[NoDrive]) -> Iterator[str]:
     reasons: dict[str, list[str]] = {}
-    for one in found:
-        reasons.setdefault(one.why, []).append(one.ego)
+    for no_drive in found:
+        reasons.setdefault(no_drive.why, []).append(no_drive.ego)
     for why, egos in reasons.items():
         yield f"not judged  {_vehicles(egos)}: {why}"
 

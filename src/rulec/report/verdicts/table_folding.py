@@ -25,7 +25,7 @@ Titled = tuple[str, Part]
 
 def titled(parts: Sequence[Part], widest: int) -> list[Titled]:
     """All parts, their texts cut at so many characters."""
-    return [("  " * one.depth + cut(one.text, widest), one) for one in parts]
+    return [("  " * part.depth + cut(part.text, widest), part) for part in parts]
 
 
 def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
@@ -41,7 +41,7 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
     part = parts[at]
     text = cut(part.text, max(widest - 2 * depth, LEAST))
     yield "  " * depth + text, part
-    now = all(one.operator in BOOLEAN for one in operations_of(part.formula))
+    now = all(operation.operator in BOOLEAN for operation in operations_of(part.formula))
     if now and text == part.text:
         return
     for operand in _operands(parts, at):
@@ -87,10 +87,10 @@ def fitting(
     one behind them, the first, and those further back.
     """
     places = [range(n, n + 1) for n in range(len(columns))]
-    if sum(width(columns, states, one) for one in places) <= room:
+    if sum(width(columns, states, place) for place in places) <= room:
         return places
     places = _merged(columns, states, decisive)
-    at = next(n for n, one in enumerate(places) if decisive in one)
+    at = next(n for n, place in enumerate(places) if decisive in place)
     needed = [one for one in (at, at - 1) if one >= 0]
     chosen: list[int] = []
     for one in dict.fromkeys([*needed, at - 2, at + 1, 0, *range(at - 3, 0, -1)]):
@@ -116,7 +116,7 @@ def head(states: Sequence[int], places: range) -> str:
 
 def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
     """Columns that are alike and whose states follow each other as one, the decisive one alone."""
-    found: list[range] = []
+    ranges: list[range] = []
     for place, column in enumerate(columns):
         if (
             place
@@ -124,7 +124,7 @@ def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: i
             and states[place] == states[place - 1] + 1
             and column == columns[place - 1]
         ):
-            found[-1] = range(found[-1].start, place + 1)
+            ranges[-1] = range(ranges[-1].start, place + 1)
         else:
-            found.append(range(place, place + 1))
-    return found
+            ranges.append(range(place, place + 1))
+    return ranges

@@ -88,7 +88,7 @@ def _states(run: Sequence[tuple[int, str]]) -> str:
     numbers = [number for number, _ in run]
     if len(numbers) == 1:
         return f"state {numbers[0]} says"
-    spans = [f"{one[0]}-{one[-1]}" if len(one) > 1 else str(one[0]) for one in runs(numbers)]
+    spans = [f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs(numbers)]
     if len(spans) > MOST_SPANS:
         spans[MOST_SPANS:] = [f"… ({len(spans) - MOST_SPANS:,} more)"]
     return f"states {', '.join(spans)} say"
@@ -136,12 +136,12 @@ def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
 def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int) -> _Table:
     """All states of the facts and parts to be shown, with titles that are no wider."""
     whole = every_part or len(explanation.parts) <= MOST_PARTS
-    facts = [one for one in explanation.facts if whole or one.decides]
+    facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
-    cells = [_marked(_cells(one), decisive, one.changed) for one in facts]
+    cells = [_marked(_cells(fact), decisive, fact.changed) for fact in facts]
     cells += [[shown(value) for value in one.values] for _, one in parts]
     return _Table(
-        [*(_title(one, widest) for one in facts), *(title for title, _ in parts)],
+        [*(_title(fact, widest) for fact in facts), *(title for title, _ in parts)],
         len(facts),
         list(zip(*cells, strict=True)),
         [range(n, n + 1) for n in range(len(explanation.states))],

@@ -104,14 +104,14 @@ def _by_objects(
     which = np.zeros(len(rows), dtype=np.int64)
     for place in about[:n_parameters]:
         which = which * n_objects + place
-    found = np.flatnonzero(np.bincount(which))
-    if len(found) * n_states > len(group.rows) * _MOST_EMPTY:
+    result = np.flatnonzero(np.bincount(which))
+    if len(result) * n_states > len(group.rows) * _MOST_EMPTY:
         raise UnencodableError
-    number = np.zeros(int(found[-1]) + 1, dtype=np.int64)
-    number[found] = np.arange(len(found))
+    number = np.zeros(int(result[-1]) + 1, dtype=np.int64)
+    number[result] = np.arange(len(result))
     values = _values(column, rows, declaration)
     cells = number[which] * n_states + state
-    table = np.zeros(len(found) * n_states, dtype=values.dtype)
+    table = np.zeros(len(result) * n_states, dtype=values.dtype)
     table[cells] = values
     is_told = np.zeros(len(table), dtype=bool)
     is_told[cells] = True
@@ -119,7 +119,7 @@ def _by_objects(
         raise UnencodableError  # something is told twice
     columns: dict[Key, Array] = {}
     lines = zip(table.reshape(-1, n_states), is_told.reshape(-1, n_states), strict=True)
-    for one, (line, was_told) in zip(found.tolist(), lines, strict=True):
+    for one, (line, was_told) in zip(result.tolist(), lines, strict=True):
         places = [one // n_objects, one % n_objects][2 - n_parameters :] if n_parameters else []
         for place, parameter in zip(places, declaration.parameters, strict=True):
             if not vocabulary.is_subtype(group.types[place], parameter):
@@ -135,7 +135,7 @@ def _values(column: Column, rows: NDArray[np.int64], declaration: Declaration) -
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0
-        values = [one for one, is_used in zip(column.values, used, strict=True) if is_used]
+        values = [value for value, is_used in zip(column.values, used, strict=True) if is_used]
         table = np.zeros(len(used), dtype=column_dtype(declaration))
         table[used] = encode_values(values, declaration)
         return table.take(codes)

@@ -59,9 +59,9 @@ class ColumnReader:
 
         The default of an enumeration is its place among the declared values.
         """
-        found = self.columns.values.get((name, items))
-        if found is not None:
-            return found
+        result = self.columns.values.get((name, items))
+        if result is not None:
+            return result
         declaration = self._vocabulary.declarations[name]
         if isinstance(declaration, Enumeration) and declaration.default is not None:
             return declaration.values.index(declaration.default)
@@ -82,7 +82,7 @@ class ColumnReader:
         ready = scale(read)
         if ready.quantity is None:
             return digits_of_sum(read, self._summands(read.terms, bound), n_states)
-        items = tuple([bound[one] for one in ready.quantity.arguments])
+        items = tuple([bound[argument] for argument in ready.quantity.arguments])
         numbers = self.values(ready.quantity.name, items)
         if numbers is None:
             raise NotGivenError(ready.quantity.name, items)
@@ -97,17 +97,17 @@ class ColumnReader:
         self, terms: tuple[tuple[Fraction, Term], ...], bound: ObjectBinding
     ) -> list[Summand]:
         """What is summed up. Raises NotGivenError."""
-        found: list[Summand] = []
+        summands: list[Summand] = []
         for coefficient, term in terms:
             if isinstance(term, Quantity):
-                items = tuple([bound[one] for one in term.arguments])
+                items = tuple([bound[argument] for argument in term.arguments])
                 numbers = self.values(term.name, items)
                 if numbers is None:
                     raise NotGivenError(term.name, items)
-                found.append((coefficient, numbers))
+                summands.append((coefficient, numbers))
             else:
-                found.append((coefficient, self._counted(term, bound)))
-        return found
+                summands.append((coefficient, self._counted(term, bound)))
+        return summands
 
     def _counted(self, count: Count, bound: ObjectBinding) -> Array:
         """How many objects count in each state. Raises NotGivenError where that is not known."""
@@ -125,13 +125,13 @@ class ColumnReader:
 
     def _missing(self, count: Count, bound: ObjectBinding) -> NotGivenError:
         """The first thing that the body speaks of and that is not given."""
-        for one in atoms_of(count.body):
-            if isinstance(one, Atom):
-                items = tuple([bound[variable] for variable in one.arguments])
-                if self.values(one.name, items) is None:
-                    return NotGivenError(one.name, items)
+        for atom in atoms_of(count.body):
+            if isinstance(atom, Atom):
+                items = tuple([bound[variable] for variable in atom.arguments])
+                if self.values(atom.name, items) is None:
+                    return NotGivenError(atom.name, items)
                 continue
-            for _, term in one.terms:
+            for _, term in atom.terms:
                 if isinstance(term, Quantity):
                     items = tuple([bound[variable] for variable in term.arguments])
                     if self.values(term.name, items) is None:

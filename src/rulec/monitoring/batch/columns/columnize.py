@@ -79,7 +79,7 @@ class _Columnizer:
             renaming = {own: dict(zip(own, objects, strict=True)) for own in set(self._names)}
             maps = list(map(_under, maps, map(renaming.__getitem__, self._names)))
         every = set().union(*maps)
-        return [(item, [one.get(item, _NOT_GIVEN) for one in maps]) for item in every]
+        return [(item, [map_.get(item, _NOT_GIVEN) for map_ in maps]) for item in every]
 
     def _if_of_the_same(
         self, maps: Sequence[Mapping[str, Any]]
@@ -92,7 +92,10 @@ class _Columnizer:
             return [(item, list(map(itemgetter(item), maps))) for item in maps[0]]
         objects = tuple(self._traces.objects)
         return [
-            (objects[place], [one[own[place]] for one, own in zip(maps, self._names, strict=True)])
+            (
+                objects[place],
+                [map_[own[place]] for map_, own in zip(maps, self._names, strict=True)],
+            )
             for place in map(self._names[0].index, maps[0])
         ]
 

@@ -53,11 +53,11 @@ def digits_of_sum(
 
 
 def _exactly(summands: Sequence[Summand], state: int) -> Fraction:
-    found = Fraction(0)
+    result = Fraction(0)
     for coefficient, numbers in summands:
         number = numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
-        found += coefficient * exact(number)
-    return found
+        result += coefficient * exact(number)
+    return result
 
 
 def _nearest(number: Fraction) -> float:

@@ -59,21 +59,21 @@ def visited(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.i
     begins = [0]
     for piece in ends[:-1]:
         begins.append(piece[begins[-1]])
-    found = np.empty((length, n_pieces), dtype=np.intp)
+    result = np.empty((length, n_pieces), dtype=np.intp)
     now = np.array(begins) * width
     for place, row in enumerate(rows):
-        found[place] = now
+        result[place] = now
         now = onward.take(now + row)
-    states: NDArray[np.intp] = found.T.ravel()[:n_letters] // width
+    states: NDArray[np.intp] = result.T.ravel()[:n_letters] // width
     return states
 
 
 def _one_by_one(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
-    found, state = [], 0
+    numbers, state = [], 0
     for letter in letters.tolist():
-        found.append(state)
+        numbers.append(state)
         state = successors[state][letter]
-    return np.array(found, dtype=np.intp)
+    return np.array(numbers, dtype=np.intp)
 
 
 def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:

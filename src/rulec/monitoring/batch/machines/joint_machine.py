@@ -61,20 +61,20 @@ def join_machines(
 def _one_by_one(
     members: Sequence[int], machines: Sequence[LetteredMachine], most_entries: int
 ) -> Iterator[JointMachine]:
-    found: JointMachine | None = None
+    joint_machine: JointMachine | None = None
     for place in members:
         one = machines[place]
         more = None
-        if found is not None:
-            together = (*(machines[member] for member in found.members), one)
-            more = _join((*found.members, place), together, most_entries)
+        if joint_machine is not None:
+            together = (*(machines[member] for member in joint_machine.members), one)
+            more = _join((*joint_machine.members, place), together, most_entries)
         if more is None:
-            if found is not None:
-                yield found
+            if joint_machine is not None:
+                yield joint_machine
             more = _join((place,), (one,), most_entries) or _unjoined(place, *one)
-        found = more
-    if found is not None:
-        yield found
+        joint_machine = more
+    if joint_machine is not None:
+        yield joint_machine
 
 
 @lru_cache(maxsize=256)

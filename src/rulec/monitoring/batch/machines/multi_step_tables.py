@@ -46,7 +46,7 @@ def run_multi_step(
     ``letters`` is the column of all letters. Runs start in state 0.
     """
     n_states, n_letters = len(successors), len(successors[0])
-    found = np.empty(steps[0].n_traces, dtype=np.uint8)
+    result = np.empty(steps[0].n_traces, dtype=np.uint8)
     blocks = list(_step_blocks(steps, n_states, n_letters, _most_entries(steps[0].n_traces)))
     state: Array | None = None
     for place, block in enumerate(blocks):
@@ -61,11 +61,11 @@ def run_multi_step(
         end = block[-1]
         if end.n_continuing < end.n_traces:
             table = _verdicts(successors, verdicts, len(block), begins)
-            found[end.n_continuing : end.n_traces] = table.take(entry[end.n_continuing :])
+            result[end.n_continuing : end.n_traces] = table.take(entry[end.n_continuing :])
         if end.n_continuing:
             table = _next_states(successors, len(block), begins, len(blocks[place + 1]))
             state = table.take(entry[: end.n_continuing])
-    return found
+    return result
 
 
 # Many traces come some thousand at a time, and the same machines run over them each time.

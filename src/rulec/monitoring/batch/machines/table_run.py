@@ -109,12 +109,12 @@ def _run_long(
 ) -> NDArray[np.uint8]:
     """Run a machine over a few long traces, one after the other."""
     letter_of_cell = np.array(joint.letters)
-    found = np.empty(layout.n_traces, dtype=np.uint8)
+    result = np.empty(layout.n_traces, dtype=np.uint8)
     for trace in range(layout.n_traces):
         letters = letter_of_cell.take(cells[layout.places(trace, first, last)])
         state = visited(joint.successors, letters)[-1]
-        found[trace] = joint.verdicts[state][letters[-1]]
-    return found
+        result[trace] = joint.verdicts[state][letters[-1]]
+    return result
 
 
 def first_lost(

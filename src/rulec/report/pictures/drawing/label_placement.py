@@ -78,7 +78,7 @@ def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[LabelText]:
         yield LabelText(text, (x, (top + bottom) / 2), "middle", turned=turned)
 
 
-def _meet(one: Rectangle, other: Rectangle) -> bool:
+def _meet(left: Rectangle, right: Rectangle) -> bool:
     """Beside words some room is left, or two of them would read as one."""
-    beside = one[0] < other[2] + _ROOM and other[0] < one[2] + _ROOM
-    return beside and one[1] < other[3] and other[1] < one[3]
+    beside = left[0] < right[2] + _ROOM and right[0] < left[2] + _ROOM
+    return beside and left[1] < right[3] and right[1] < left[3]

@@ -77,7 +77,9 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
     match mark:
         case Area(rings):
             rounds = [_turning(ring, left=n == 0) for n, ring in enumerate(rings)]
-            path = Path.make_compound_path(*[Path([*one, one[0]], closed=True) for one in rounds])
+            path = Path.make_compound_path(
+                *[Path([*round_, round_[0]], closed=True) for round_ in rounds]
+            )
             fill = LIGHT[style.fill] if style.fill else "none"
             axes.add_patch(
                 PathPatch(path, fc=fill, ec=stroke, lw=width, ls=dash, zorder=order, clip_on=False)
