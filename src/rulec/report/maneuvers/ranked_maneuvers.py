@@ -28,8 +28,10 @@ def blocks(maneuvers: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
         )
         lines += [
             "",
-            f"{ranked_maneuver.place}. "
-            f"{maneuver_lines.in_a_line(ranked_maneuver.maneuver)}{others}",
+            (
+                f"{ranked_maneuver.place}. "
+                f"{maneuver_lines.in_a_line(ranked_maneuver.maneuver)}{others}"
+            ),
         ]
         lines.append(f"   violates {_penalty(ranked_maneuver.penalty)}")
         lines += [
