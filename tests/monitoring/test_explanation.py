@@ -7,6 +7,7 @@ import pytest
 from click import unstyle
 from hypothesis import assume, given
 
+from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.explain.explanation import explain
@@ -15,6 +16,7 @@ from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.explanation_json import explanation_data
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Rulebook
 from rulec.trace import Trace
 from support.builders.measured_vocabulary import MEASURED, SPEED, closer, gap, number, others_near
@@ -223,3 +225,14 @@ def test_bounds_in_seconds_are_those_of_the_trace():
 )
 def test_numbers_are_shown_so_that_they_can_be_told_from_the_limit(value, shown):
     assert report.shown(value) == shown
+
+
+def test_a_number_that_passes_one_of_its_limits_has_changed():
+    text = (
+        "rulebook r quantity gap in m hard rule r { require always (gap < 5 m implies gap > 1 m) }"
+    )
+    rules = compile_rulebook(parse_rulebook(text))
+    trace = Trace("t", 1.0, {}, ({"gap": 3}, {"gap": 0.5}))
+    (violation,) = verify(trace, rules).violations
+    (gap,) = explain(violation, trace, rules).facts
+    assert gap.changed

@@ -345,3 +345,21 @@ def test_nothing_is_kept_of_the_past_but_where_machines_stand():
         sizes.append({**judge.snapshot(), "states": 0})
     assert sizes[0] == sizes[-1]
     assert judge.so_far.state == 149
+
+
+BELOW_ZERO = """rulebook below
+quantity drift in m
+hard rule kept { require always drift > -2 m }
+hard rule right { require eventually drift >= 0 m }"""
+
+
+@pytest.mark.parametrize("drift", [-3, -2, -1.5, -1, 0, 0.5])
+def test_limits_below_zero_tell_numbers_apart(drift):
+    rules = compile_rulebook(parse_rulebook(BELOW_ZERO))
+    monitor = Monitor(rules)
+    monitor.step({"drift": -1})
+    so_far = monitor.step({"drift": drift})
+    assert so_far.rules == {
+        "kept": "holds so far" if drift > -2 else "violated",
+        "right": "satisfied" if drift >= 0 else "pending",
+    }
