@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
+from msgspec import convert
+
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 
@@ -41,33 +43,11 @@ class FindingData(JsonDocument, frozen=True, kw_only=True):
 
 def as_json(diagnostics: Iterable[Diagnostic]) -> str:
     """Write a list with an object for each diagnostic."""
-    return as_indented([_finding(diagnostic) for diagnostic in diagnostics])
-
-
-def _finding(diagnostic: Diagnostic) -> FindingData:
-    return FindingData(
-        code=diagnostic.code,
-        severity=diagnostic.severity,
-        message=diagnostic.message,
-        place=place_data(diagnostic.place),
-        expected=diagnostic.expected,
-        help=diagnostic.help,
-        labels=[
-            LabelData(place=place_data(label.place), message=label.message)
-            for label in diagnostic.labels
-        ],
-        notes=diagnostic.notes,
+    return as_indented(
+        [convert(diagnostic, FindingData, from_attributes=True) for diagnostic in diagnostics]
     )
 
 
 def place_data(place: SourceLocation | None) -> PlaceData | None:
     """A place in numbers."""
-    if place is None:
-        return None
-    return PlaceData(
-        file=place.file,
-        line=place.line,
-        column=place.column,
-        end_line=place.end_line,
-        end_column=place.end_column,
-    )
+    return convert(place, PlaceData | None, from_attributes=True)

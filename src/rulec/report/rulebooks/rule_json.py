@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from msgspec import UNSET, UnsetType
+from msgspec import UNSET, UnsetType, convert
 from msgspec.structs import replace
 
 from rulec.logic.english.sentence_layout import in_one_line
@@ -128,19 +128,11 @@ def _automaton(automaton: Automaton) -> AutomatonData:
     return AutomatonData(
         states=[StateData(state=state, fate=fate) for state, fate in enumerate(automaton.fates)],
         transitions=[
-            TransitionData(
-                source=transition.source,
-                target=transition.target,
-                condition=transition.condition,
-                otherwise=transition.otherwise,
-                accepted=transition.accepted,
-            )
+            convert(transition, TransitionData, from_attributes=True)
             for transition in automaton.transitions
         ],
     )
 
 
 def _trace(trace: ShownTrace | None) -> ShortestTrace | None:
-    if trace is None:
-        return None
-    return ShortestTrace(objects=trace.objects, states=trace.states, remarks=trace.remarks)
+    return convert(trace, ShortestTrace | None, from_attributes=True)
