@@ -188,3 +188,16 @@ def test_it_agrees_with_the_rulebook_as_meant(done):
         assert rule.says == history.rule.says.value
         assert rule.strength == history.rule.strength
         assert str(rule.weight) == (history.rule.weight.text if history.rule.weight else "1")
+
+
+def test_softening_may_change_level_and_weight():
+    sources = [
+        "rulebook a priority low, high signal p hard rule r { require p }",
+        "rulebook b extends a soften rule r in high weight 2",
+    ]
+    files = [parse(decode("x", text.encode()))[0] for text in sources]
+    lineage = book_lineage_of(files, "2024-01-01")
+    (history,) = lineage.rules
+    assert (history.rule.strength, history.rule.level.text) == ("soft", "high")
+    assert history.steps[0].rule.weight != history.rule.weight
+    assert history.last.clauses == ("hard or soft", "level", "weight")

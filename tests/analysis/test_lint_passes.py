@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import are_related, common_objects, conflict
-from rulec.analysis.lint.finding_notes import trace_note, undecided_diagnostic
+from rulec.analysis.lint.finding_messages import undecided_diagnostic
+from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,
     can_be_kept,
@@ -18,7 +19,7 @@ from rulec.analysis.lint.redundancy import (
     small_premises,
 )
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
-from rulec.logic.printing import in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.model import Axiom, Rule, Variable
 from rulec.trace import Trace
@@ -48,7 +49,7 @@ NEAR, FAR = ALONE[1], ALONE[2]
 def test_antecedents(text, expected):
     head = "rulebook a signal p, q default false "
     (rule,) = parse_rulebook(f"{head}hard rule r {{ require {text} }}").rules
-    found = [(one.kind, in_words(one.formula)) for one in antecedents(rule)]
+    found = [(one.kind, formula_text(one.formula)) for one in antecedents(rule)]
     assert found == expected
 
 

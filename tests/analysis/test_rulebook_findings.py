@@ -111,6 +111,11 @@ quantity speed in km/h
     [
         ("hard rule r { require always (red or green) }", ["R0801"]),
         ("hard rule r { require eventually (red and green) }", ["R0802"]),
+        # What is found of a rule by itself is not found again with others.
+        (
+            "hard rule r { require always (wet or not wet) } hard rule s { require never wet }",
+            ["R0801 `r`"],
+        ),
         (
             "hard rule r { require never wet } hard rule s { require never (wet and fog) }",
             ["R0803 `s` adds nothing: `r` forbids"],
