@@ -224,3 +224,9 @@ def test_counts_are_asked_about_at_all_sizes():
     for formula, other in product(COUNTED[1:3], repeat=2):
         one, premise = sides([always(formula), always(other)], [], ["stutter"] * 2)
         assert bool(implied_by(one, [premise])) is (COUNTED.index(formula) <= COUNTED.index(other))
+
+
+def test_premises_are_left_out_where_automata_grow(monkeypatch):
+    one, *_ = sides([eventually(NEAR)], [X], ["stutter"])
+    monkeypatch.setattr("rulec.analysis.lint.redundancy.MOST_JOINT_STATES", 1)
+    assert small_premises(one, [one]) == []

@@ -287,3 +287,11 @@ def test_the_plainest_letter_has_the_defaults():
     witnesses = LetterWitnesses(rule, VOCABULARY)
     assert (witnesses.plainest(0), witnesses.plainest(1)) == (0, 4)
     assert witnesses.nearest(7) == [(2, 1)]
+
+
+def test_what_decides_nothing_has_its_default():
+    horn = Atom("horn", ("x",))
+    either = Binary(BinaryOperator.OR, horn, Unary(Operator.NOT, horn))
+    count = Count("x", "bus", Binary(BinaryOperator.AND, Same("x", "v"), either))
+    state = witnesses_of(how_many(count, limits=(1,)), [V]).state(1)
+    assert state.values == {("horn", ("v",)): False}
