@@ -19,6 +19,7 @@ def run() -> int:
         _prepare()
         if sys.argv[1:] == ["--version"] and _said_version():
             return 0
+        # click and the diagnostics, 30 ms: not for `rulec --version`, and after signals are set.
         from rulec.cli.main import main
 
         return main()

@@ -22,3 +22,10 @@ class ExitStatus(IntEnum):
     """Ctrl-C."""
     READER_GONE = 141
     """Who read the output, such as ``head``, has left: no verdict either way."""
+
+    @classmethod
+    def after(cls, *, answered: bool = True, failed: bool) -> ExitStatus:
+        """The status of a question: whether all of it was answered comes first."""
+        if not answered:
+            return cls.NOT_ANSWERED
+        return cls.FOUND if failed else cls.OK

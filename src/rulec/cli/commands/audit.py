@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,8 +10,10 @@ import click
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import at_option, only_sources
+from rulec.cli.options.shared_options import at_option, only_sources, rulebooks_argument
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.project import answer_or_print, open_session
+from rulec.report.text.console import page_width, print_result
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -19,9 +22,7 @@ FORMATS = ("text", "markdown", "json")
 
 
 @click.command()
-@click.argument(
-    "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
-)
+@rulebooks_argument
 @click.option(
     "--output-format",
     type=click.Choice(FORMATS),
@@ -61,51 +62,30 @@ def command(
 
     Exit status: 0 done, 1 --fail-on says so, 2 a rulebook could not be read.
     """
+    # Rulebooks and their automata, 180 ms: not for --help.
     from rulec.analysis.audit.rulebook_audit import compare_audits
+    from rulec.analysis.audit.saved_audit import read_audits
     from rulec.report.rulebooks.audit_report import render
-    from rulec.report.text.console import page_width, print_result
 
-    only_sources(rulebooks, "be audited")
-    older = None if compare is None else _older(compare, run, at)
-    audits = [done for one in rulebooks if (done := _audit_or_say(one, run, at)) is not None]
+    def audit(rulebook: str) -> Audit:
+        return open_session(at).audit(rulebook, run_examples=run)
+
+    only_sources(rulebooks, "cannot be audited")
+    older = None
+    if compare is not None:
+        saved = Path(compare).suffix == ".json"
+        older = read_audits(Path(compare)) if saved else (audit(compare),)
+    answers = [answer_or_print(partial(audit, rulebook)) for rulebook in rulebooks]
+    audits = [answer for answer in answers if answer is not None]
     against = {} if older is None else compare_audits(audits, older)
     if audits or output_format == "json":
         print_result(render(audits, against, output_format, page_width()))
-    if len(audits) < len(rulebooks):
-        return ExitStatus.NOT_ANSWERED
-    found = [
-        one
-        for each in audits
-        for one in (each.findings if older is None else against[each.rulebook].appeared)
+    findings = [
+        finding
+        for done in audits
+        for finding in (done.findings if older is None else against[done.rulebook].appeared)
     ]
-    failed = any("any" in fatal or one.kind in fatal for one in found)
-    return ExitStatus.FOUND if failed else ExitStatus.OK
-
-
-def _audit(rulebook: str, run: bool, at: str) -> Audit:
-    """The audit, after its warnings."""
-    from rulec.api.rulebook_questions import audit_rulebook
-    from rulec.report.text.console import print_diagnostics
-    from rulec.settings import search_path
-
-    return audit_rulebook(rulebook, search_path(), at, print_diagnostics, run=run)
-
-
-def _audit_or_say(rulebook: str, run: bool, at: str) -> Audit | None:
-    """The audit; None, after its mistakes, if the rulebook has any."""
-    from rulec.diagnostics import RulecError
-    from rulec.report.text.console import print_diagnostics
-
-    try:
-        return _audit(rulebook, run, at)
-    except RulecError as error:
-        print_diagnostics(error.diagnostics)
-        return None
-
-
-def _older(reference: str, run: bool, at: str) -> tuple[Audit, ...]:
-    if Path(reference).suffix == ".json":
-        from rulec.analysis.audit.saved_audit import read_audits
-
-        return read_audits(Path(reference))
-    return (_audit(reference, run, at),)
+    return ExitStatus.after(
+        answered=len(audits) == len(rulebooks),
+        failed=any("any" in fatal or finding.kind in fatal for finding in findings),
+    )

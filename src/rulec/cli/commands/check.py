@@ -6,9 +6,11 @@ import sys
 
 import click
 
-from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import at_option, findings_options
 from rulec.cli.options.shell_completion import complete_sources
+from rulec.cli.output import counted, print_findings
+from rulec.files import MAX_SOURCE_BYTES
+from rulec.settings import search_path
 
 
 @click.command()
@@ -31,25 +33,17 @@ def command(
 
     Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
     """
-    from rulec.files import MAX_SOURCE_BYTES
-    from rulec.report.findings.finding_formats import render
-    from rulec.report.text.console import print_diagnostics, print_result, wants_color
+    # Rulebooks and what is remembered of them, 10 ms: not for --help.
     from rulec.rulebook.batch.batch_check import check
-    from rulec.settings import search_path
 
     def standard_input() -> bytes:
         return sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
 
     done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
-    color = wants_color(sys.stdout)
-    text = render(done.findings, output_format, color=color, complete=not done.unread)
-    if text:
-        print_result(text)
-    elif output_format == "full" and not done.unread:
-        number = len(done.files)
-        print_result(f"{number:,} {'file' if number == 1 else 'files'} checked, nothing found")
-    print_diagnostics(done.unread)
-    if done.unread:
-        return ExitStatus.NOT_ANSWERED
-    result = any(fail_on in ("warning", finding.severity) for finding in done.findings)
-    return ExitStatus.FOUND if result else ExitStatus.OK
+    return print_findings(
+        done.findings,
+        done.unread,
+        nothing=f"{counted(len(done.files), 'file')} checked",
+        output_format=output_format,
+        fail_on=fail_on,
+    )

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 
 import click
 
-from rulec.cli.options.shared_options import at_option, seconds
-from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.report.text.console import print_diagnostics, print_result
+from rulec.cli.options.shared_options import at_option, rulebook_argument, step_option
+from rulec.cli.project import open_session
+from rulec.report.text.console import print_result
 
 
 @click.command()
-@click.argument("rulebook", shell_complete=complete_rulebooks)
-@click.option(
-    "--step",
-    "step_s",
-    callback=seconds,
-    metavar="S",
-    help="The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
+@rulebook_argument
+@step_option(
+    "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
     "matters to rules with bounds in seconds.  [default: that of their examples]",
 )
 @click.option(
@@ -37,12 +32,9 @@ def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> Non
     RULEBOOK.json, which every other command takes in place of the source and which runs without
     Spot. Each file appears whole or not at all.
     """
-    from rulec.api.workflow import compile_rulebook
-    from rulec.automata.bundle.bundle_file import write_compiled
-    from rulec.settings import search_path
-
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
-    compiled = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s, at)
-    for path in write_compiled(compiled, Path(output)):
+    session = open_session(at)
+    compiled = session.compile_rulebook(rulebook, step_s=step_s)
+    for path in session.write_compiled(compiled, output):
         print_result(f"wrote {path}")

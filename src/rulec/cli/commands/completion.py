@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import click
+from click.shell_completion import get_completion_class
+
+from rulec.report.text.console import print_result
 
 SHELLS = ("bash", "fish", "zsh")
 
@@ -18,10 +21,6 @@ def command(context: click.Context, shell: str) -> None:
     zsh:   rulec completion zsh > "${fpath[1]}/_rulec"
     fish:  rulec completion fish > ~/.config/fish/completions/rulec.fish
     """  # noqa: D301 - click reads the backspace
-    from click.shell_completion import get_completion_class
-
-    from rulec.report.text.console import print_result
-
     kind = get_completion_class(shell)
     assert kind is not None, "these shells are click's own"
     program = kind(context.find_root().command, {}, "rulec", "_RULEC_COMPLETE")

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import sys
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.commands.draw_trace import trace
 from rulec.cli.options.picture_options import picture_options, write
-from rulec.cli.options.scenario_options import chosen, graph_options
-from rulec.cli.options.shared_options import RULEBOOK_HELP, Decorated, at_option
-from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.scenario_options import graph_options, read_scene
+from rulec.cli.options.shared_options import (
+    RULEBOOK_HELP,
+    at_option,
+    combined,
+    rulebook_option,
+)
+from rulec.cli.project import read_machines
+from rulec.report.text.count_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
@@ -22,9 +30,9 @@ if TYPE_CHECKING:
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
 
-def _judging_options(function: Decorated) -> Decorated:
-    for decorate in (
-        at_option,
+_judging_options = combined(
+    [
+        rulebook_option(RULEBOOK_HELP + " Left out, nothing is judged.", required=False),
         click.option(
             "--maneuver",
             "number",
@@ -32,16 +40,9 @@ def _judging_options(function: Decorated) -> Decorated:
             metavar="N",
             help="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
         ),
-        click.option(
-            "-r",
-            "--rulebook",
-            metavar="R",
-            help=RULEBOOK_HELP + " Left out, nothing is judged.",
-            shell_complete=complete_rulebooks,
-        ),
-    ):
-        function = decorate(function)
-    return function
+        at_option,
+    ]
+)
 
 
 @click.group()
@@ -74,6 +75,7 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
     its envelope. A page (HTML) has a slider for the time.
     """
+    # Cells, maneuvers and pictures, 150 ms: not for --help.
     from rulec.api.pictures import scene_drawing
 
     graph, maneuvers, maneuver = _judged(**options)
@@ -94,6 +96,7 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
     cheapest satisfying maneuver is shown.
     """
+    # As for ``scene``.
     from rulec.api.pictures import graph_drawing
 
     write(graph_drawing(*_judged(**options)), output, form)
@@ -103,24 +106,17 @@ def _judged(
     scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
 ) -> Judged:
     """The graph, with a rulebook its maneuvers, and the one that is to be shown."""
-    from itertools import islice
-
-    from rulec.api.workflow import find_maneuvers, machines, navigation_graph
+    # Maneuvers, 110 ms: not for --help.
     from rulec.planning.ranking.cheapest import cheapest
-    from rulec.report.text.console import print_diagnostics
-    from rulec.report.text.count_text import shown_count
-    from rulec.scenario import load_scenario
-    from rulec.settings import search_path
 
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
-        scene = load_scenario(scenario, chosen(options))
+        scene = read_scene(scenario, options)
         options["partition"] = options["partition"] or "paper"
-        return navigation_graph(scene, **options), None, None
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
-    scene = load_scenario(scenario, chosen(options))
-    maneuvers = find_maneuvers(scene, rules, **options)
+        return Session().navigation_graph(scene, **options), None, None
+    rules = read_machines(rulebook, at)
+    maneuvers = Session().find_maneuvers(read_scene(scenario, options), rules, **options)
     wanted = number or 1
     maneuver = None
     if wanted <= min(maneuvers.satisfying, sys.maxsize):

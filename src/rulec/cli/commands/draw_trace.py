@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.options.picture_options import picture_options, write
-from rulec.cli.options.shared_options import at_option, rulebook_option
+from rulec.cli.options.shared_options import at_option, rulebook_option, rules_option
+from rulec.cli.project import read_machines
+from rulec.diagnostics import RulecError, named
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -18,16 +22,12 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("file")
-@rulebook_option
+@rulebook_option()
 @click.option(
     "--trace", "wanted", metavar="ID", help="Draw the trace with this id.  [default: the first]"
 )
-@click.option(
-    "--rule",
-    "patterns",
-    multiple=True,
-    metavar="PATTERN",
-    help="Only what rules like PATTERN read; `*` and `?` are wild. May be given several times.",
+@rules_option(
+    "Only what rules like PATTERN read; `*` and `?` are wild. May be given several times."
 )
 @click.option(
     "--object",
@@ -52,14 +52,11 @@ def trace(
 
     Violations are marked where they are decided, with the rule and its article.
     """
+    # Verdicts and pictures, 150 ms: not for --help.
     from rulec.api.pictures import trace_drawing
-    from rulec.api.workflow import machines
-    from rulec.diagnostics import named
     from rulec.monitoring.verify import rulebook_for_trace
-    from rulec.report.text.console import print_diagnostics
-    from rulec.settings import search_path
 
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    rules = read_machines(rulebook, at)
     chosen = _trace(file, wanted)
     for item in objects:
         if item not in chosen.objects:
@@ -72,11 +69,8 @@ def trace(
 
 def _trace(file: str, wanted: str | None) -> Trace:
     """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
-    from rulec.diagnostics import RulecError
-    from rulec.trace.formats.trace_files import read_traces
-
     names: list[str] = []
-    for trace_ in read_traces(file):
+    for trace_ in Session().read_traces(file):
         if isinstance(trace_, RulecError):
             raise trace_
         if wanted in (None, trace_.id):
@@ -88,8 +82,6 @@ def _trace(file: str, wanted: str | None) -> Trace:
 
 def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
     """The rulebook with the rules alone that one of the patterns matches, if there are any."""
-    from fnmatch import fnmatchcase
-
     kept = tuple(
         rule
         for rule in rules.rules

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.scenario_options import chosen, graph_options
-from rulec.cli.options.shared_options import at_option, output_option, rulebook_option
+from rulec.cli.options.scenario_options import graph_options, read_scene
+from rulec.cli.options.shared_options import (
+    at_option,
+    output_option,
+    rulebook_option,
+    table_format_option,
+)
+from rulec.cli.output import output_stream, print_written
+from rulec.cli.project import read_machines
+from rulec.report.text.count_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format
@@ -18,7 +26,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @graph_options
-@rulebook_option
+@rulebook_option()
 @output_option
 @click.option(
     "--list",
@@ -29,12 +37,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="Write the N cheapest satisfying maneuvers.",
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["jsonl", "csv", "parquet"]),
-    help="The format of the table.  [default: what the file's name ends with, else jsonl]",
-)
+@table_format_option("table")
 @at_option
 def command(
     scenario: str,
@@ -51,25 +54,17 @@ def command(
 
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
-    from rulec.api.workflow import find_maneuvers, machines
-    from rulec.files import written_whole
+    # Maneuvers and the formats of tables, 100 ms: not for --help.
     from rulec.report.maneuvers.envelope_table import write_envelopes
-    from rulec.report.text.console import print_diagnostics, print_result
-    from rulec.report.text.count_text import shown_count
-    from rulec.scenario import load_scenario
-    from rulec.settings import search_path
     from rulec.trace.formats.trace_files import format_of
 
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
-    scene = load_scenario(scenario, chosen(options))
-    maneuvers = find_maneuvers(scene, rules, **options)
+    rules = read_machines(rulebook, at)
+    scene = read_scene(scenario, options)
+    maneuvers = Session().find_maneuvers(scene, rules, **options)
     cheapest = maneuvers.cheapest(number)
     form = form or format_of(str(output))
-    if str(output) == "-":
-        write_envelopes(maneuvers.graph, cheapest, sys.stdout.buffer, "standard output", form)
-    else:
-        with written_whole(output) as stream:
-            write_envelopes(maneuvers.graph, cheapest, stream, str(output), form)
-        written = f"{len(cheapest):,} of {shown_count(maneuvers.satisfying)} satisfying maneuvers"
-        print_result(f"wrote {written} to {output}")
+    with output_stream(output) as (stream, name):
+        write_envelopes(maneuvers.graph, cheapest, stream, name, form)
+    satisfying = shown_count(maneuvers.satisfying)
+    print_written(f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {output}", output)
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

@@ -5,6 +5,10 @@ from __future__ import annotations
 import click
 
 from rulec.cli.options.shell_completion import complete_codes
+from rulec.diagnostics import nearest_name
+from rulec.report.findings import code_pages
+from rulec.report.findings.code_registry import all_codes, code_named
+from rulec.report.text.console import print_result
 
 
 @click.command()
@@ -19,11 +23,6 @@ from rulec.cli.options.shell_completion import complete_codes
 )
 def command(code: str | None, every: bool, output_format: str) -> None:
     """Explain CODE, such as R0104: what it means, a bad example, and the mended one."""
-    from rulec.diagnostics import nearest_name
-    from rulec.report.findings import code_pages
-    from rulec.report.findings.code_registry import all_codes, code_named
-    from rulec.report.text.console import print_result
-
     if every == (code is not None):
         raise click.UsageError("give one code, or --all")
     named = None if code is None else code_named(code.upper())

@@ -9,6 +9,11 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.output import counted
+from rulec.files import MAX_SOURCE_BYTES
+from rulec.report.text.console import print_aside, print_diagnostics, print_result, wants_color
+from rulec.report.text.text_diff import as_diff, for_terminal
+from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.rulebook.batch.batch_format import Formatted
@@ -30,14 +35,14 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
     Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
     formatted.
     """
-    from rulec.report.text.console import print_aside, print_diagnostics
-    from rulec.rulebook.batch.batch_format import format_files, replace_files
-    from rulec.settings import search_path
+    # The parser of rulebooks, 75 ms: not for --help.
+    from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
 
     if "-" in paths:
         if len(paths) > 1:
             raise click.UsageError("`-` is standard input and stands alone")
-        return _standard_input(check=check, diff=diff)
+        source = sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
+        return _standard_output(formatted("standard input", None, source), check=check, diff=diff)
     files, refused = format_files(paths or ["."], search_path())
     changed = [file for file in files if file.changed]
     in_form = len(files) - len(changed)
@@ -51,16 +56,10 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
     print_diagnostics(refused)
     if changed or in_form:
         print_aside(_summary(len(changed), in_form, would=diff or check))
-    if refused:
-        return ExitStatus.NOT_ANSWERED
-    return ExitStatus.FOUND if changed and (diff or check) else ExitStatus.OK
+    return ExitStatus.after(answered=not refused, failed=bool(changed) and (diff or check))
 
 
-def _standard_input(*, check: bool, diff: bool) -> int:
-    from rulec.files import MAX_SOURCE_BYTES
-    from rulec.rulebook.batch.batch_format import formatted
-
-    file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
+def _standard_output(file: Formatted, *, check: bool, diff: bool) -> int:
     if not (check or diff):
         # Not as text: in the terminal's encoding it might be another one.
         sys.stdout.buffer.write(file.after)
@@ -72,9 +71,6 @@ def _standard_input(*, check: bool, diff: bool) -> int:
 
 
 def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
-    from rulec.report.text.console import print_result, wants_color
-    from rulec.report.text.text_diff import as_diff, for_terminal
-
     for file in changed:
         if diff:
             text = as_diff(file.name, file.before.decode(), file.after.decode())
@@ -90,11 +86,7 @@ def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
 def _summary(changed: int, unchanged: int, *, would: bool) -> str:
     parts = []
     if changed:
-        parts.append(f"{_files(changed)} {'would change' if would else 'changed'}")
+        parts.append(f"{counted(changed, 'file')} {'would change' if would else 'changed'}")
     if unchanged:
-        parts.append(f"{_files(unchanged)} in form already")
+        parts.append(f"{counted(unchanged, 'file')} in form already")
     return ", ".join(parts)
-
-
-def _files(number: int) -> str:
-    return f"{number:,} {'file' if number == 1 else 'files'}"

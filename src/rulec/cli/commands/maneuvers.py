@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.scenario_options import chosen, graph_options
+from rulec.cli.options.scenario_options import graph_options, read_scene
 from rulec.cli.options.shared_options import at_option, json_option, rulebook_option
-
-if TYPE_CHECKING:
-    from rulec.planning import Maneuvers, RankedManeuver
+from rulec.cli.project import answer_or_print, read_machines
+from rulec.report.text.console import print_result
 
 
 @click.command()
 @graph_options
-@rulebook_option
+@rulebook_option()
 @click.option(
     "--list",
     "n_listed",
@@ -84,30 +83,28 @@ def command(
 
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
-    from rulec.api.workflow import find_maneuvers, machines
+    # Maneuvers, 130 ms: not for --help.
     from rulec.planning.probability.alternative_predictions import alternative_counts
     from rulec.planning.probability.rule_probability import rule_probabilities
     from rulec.planning.trace_history import read_past
     from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers
-    from rulec.report.text.console import print_diagnostics, print_result
-    from rulec.scenario import load_scenario
-    from rulec.settings import search_path
+    from rulec.report.maneuvers.maneuver_report import as_text
 
     begin = time.perf_counter()
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    rules = read_machines(rulebook, at)
     past = None if after is None else read_past(after)
-    scene = load_scenario(scenario, chosen(options))
-    maneuvers = find_maneuvers(scene, rules, after=past, **options)
+    scene = read_scene(scenario, options)
+    maneuvers = Session().find_maneuvers(scene, rules, after=past, **options)
     listed = None if n_listed is None else maneuvers.cheapest(n_listed)
-    best = None if maneuvers.satisfying or n_ranked is not None else _best(maneuvers)
+    best = None if maneuvers.satisfying or n_ranked is not None else answer_or_print(maneuvers.best)
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
-    shown = [*(listed or ()), *(one.maneuver for one in (*(best or ()), *(ranked or ())))]
+    shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
     uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)
     answers = ManeuverAnswers(
         listed=listed,
         best=best,
         ranked=ranked,
-        chances={one.nodes: rule_probabilities(maneuvers, one) for one in shown}
+        chances={maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}
         if uncertain
         else {},
         worlds=alternative_counts(maneuvers) if worlds else None,
@@ -117,20 +114,9 @@ def command(
     seconds = time.perf_counter() - begin
     if json_output:
         # Its types take 2 ms to make, for which a text need not wait.
-        from rulec.report.maneuvers.maneuver_json import as_json as render
+        from rulec.report.maneuvers.maneuver_json import as_json
+
+        print_result(as_json(maneuvers, answers, seconds))
     else:
-        from rulec.report.maneuvers.maneuver_report import as_text as render
-    print_result(render(maneuvers, answers, seconds))
+        print_result(as_text(maneuvers, answers, seconds))
     return ExitStatus.OK if maneuvers.satisfying else ExitStatus.VIOLATED
-
-
-def _best(found: Maneuvers) -> Sequence[RankedManeuver] | None:
-    """The least violating maneuvers; what keeps them from being known is said beside the counts."""
-    from rulec.diagnostics import RulecError
-    from rulec.report.text.console import print_diagnostics
-
-    try:
-        return found.best()
-    except RulecError as error:
-        print_diagnostics(error.diagnostics)
-        return None

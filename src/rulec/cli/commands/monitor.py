@@ -9,18 +9,21 @@ from pathlib import Path
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import at_option, json_option, seconds
-from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.shared_options import (
+    at_option,
+    json_option,
+    rulebook_argument,
+    step_option,
+)
+from rulec.cli.project import open_session
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.report.text.console import Complaints, print_result
 
 
 @click.command()
-@click.argument("rulebook", shell_complete=complete_rulebooks)
-@click.option(
-    "--step",
-    "step_s",
-    callback=seconds,
-    metavar="S",
-    help="Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
+@rulebook_argument
+@step_option(
+    "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
     "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
 @click.option(
@@ -54,19 +57,16 @@ def command(
     Exit status: 0 every hard rule is kept if the trace ends here, 1 one is violated, 2 a state
     could not be judged. With --save the trace is not over, and what is pending is no violation.
     """
-    from rulec.api.workflow import compile_rulebook
-    from rulec.diagnostics import RulecError, SourceLocation
+    # Monitors and the reader of states, 60 ms: not for --help.
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
     from rulec.monitoring.online.stream_answers import answer
-    from rulec.report.text.console import Complaints, print_diagnostics, print_result
     from rulec.report.verdicts import monitor_json, monitor_lines
-    from rulec.settings import search_path
     from rulec.trace.formats.live_states import read_live
 
     saved = None if restore is None else read_saved(restore)
     step_s = step_s or step_of(saved)
-    rules = compile_rulebook(rulebook, search_path(), print_diagnostics, step_s, at)
+    rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
         monitor = Monitor(rules, step_s)
     else:
@@ -85,7 +85,5 @@ def command(
                     monitor_json.as_json(result) if json_output else monitor_lines.as_text(result)
                 )
         complaints.close()
-    if refused:
-        return ExitStatus.NOT_ANSWERED
-    lost = {"violated"} if save is not None else {"violated", "pending"}
-    return ExitStatus.VIOLATED if monitor.so_far.verdict in lost else ExitStatus.OK
+    violated = {"violated"} if save is not None else {"violated", "pending"}
+    return ExitStatus.after(answered=not refused, failed=monitor.so_far.verdict in violated)

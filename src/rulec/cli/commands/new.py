@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from pathlib import Path
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.diagnostics import SourceLocation
+from rulec.file_messages import UNWRITABLE_FILE
+from rulec.files import make_folder, written_whole
+from rulec.report.text.console import print_result
+from rulec.settings import search_path
 
 
 @click.command()
@@ -32,24 +37,14 @@ def command(name: str, output: str, base: str | None) -> None:
 
     An existing file is left alone.
     """
-    from rulec.diagnostics import SourceLocation
-    from rulec.file_messages import UNWRITABLE_FILE
-    from rulec.files import make_folder, written_whole
-    from rulec.report.text.console import print_result
-    from rulec.rulebook.template import new_rulebook, new_rulebook_upon
-    from rulec.settings import search_path
-
     name = name.removesuffix(".rules")
     if base is not None and ("/" in base or base.endswith(".rules")):
         raise click.UsageError(
             f"--extends takes a name, such as `{Path(base).stem}`: a rulebook finds another one "
             "beside itself, on the search path, or among what ships"
         )
-    today = datetime.now().astimezone().date()
-    if base is None:
-        text = new_rulebook(name, today)
-    else:
-        text = new_rulebook_upon(name, base, today, (Path(output), *search_path()))
+    folders = () if base is None else (Path(output), *search_path())
+    text = Session(folders).new_rulebook(name, base)
     path = Path(output) / f"{name}.rules"
     if path.exists() or path.is_symlink():
         way_out = "give another name, or another folder with --output"

@@ -8,8 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.cli.options.shared_options import at_option, json_option
-from rulec.cli.options.shell_completion import complete_rulebooks, complete_rules
+from rulec.api.session import Session
+from rulec.cli.options.shared_options import (
+    at_option,
+    json_option,
+    rulebook_argument,
+    text_output_option,
+)
+from rulec.cli.options.shell_completion import complete_rules
+from rulec.diagnostics import named, nearest_name
+from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
+from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -25,7 +34,7 @@ OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
 
 
 @click.command()
-@click.argument("rulebook", shell_complete=complete_rulebooks)
+@rulebook_argument
 @click.argument("rule", required=False, shell_complete=complete_rules)
 @click.option(
     "--automaton",
@@ -33,12 +42,8 @@ OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
     type=click.Choice(FORMATS),
     help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(dir_okay=False),
-    metavar="FILE",
-    help="Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
+@text_output_option(
+    "Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
 )
 @json_option
 @at_option
@@ -55,8 +60,8 @@ def command(
     The sentence in English is made from the formula, and has one reading only. Without RULE every
     rule is shown in brief, a rulebook's only one in full.
     """
+    # Rules and automata, 60 ms: not for --help.
     from rulec.report.rulebooks import rule_json, rule_page
-    from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
 
     if output is not None and automaton_format is None and not json_output:
         if Path(output).suffix.lower() in OTHERS:
@@ -71,14 +76,14 @@ def command(
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = None
     if chosen is not None:
-        one = _compiled(book, chosen, compiled)
-        page = rule_page.page_of(chosen, one.rules[0], one.vocabulary)
+        own = _compiled(book, chosen, compiled)
+        page = rule_page.page_of(chosen, own.rules[0], own.vocabulary)
     rules = book.rules if chosen is None else (chosen,)
     if json_output:
         text = rule_json.as_json(book.name, rules, book.vocabulary, page)
     elif page is None:
         text = "\n\n\n".join(
-            rule_page.summary(each, book.name, book.vocabulary, width) for each in rules
+            rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
         )
     elif automaton_format is None:
         text = rule_page.as_text(page, book.name, book.vocabulary, width)
@@ -90,36 +95,33 @@ def command(
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     """A rulebook as meant; one that was compiled long ago comes with its machines."""
+    # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
-    from rulec.rulebook.loader import load_rulebook
     from rulec.rulebook.model import Rule, Rulebook
-    from rulec.settings import search_path
 
     if Path(reference).suffix != ".json":
-        return load_rulebook(reference, search_path(), at), None
+        return Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
     rules = tuple(
         Rule(
-            one.name,
-            one.strength,
-            one.variables,
-            one.formula,
-            one.cite,
-            one.says,
-            level=one.level,
-            weight=one.weight,
-            source=one.source,
-            certainty=one.certainty,
-            book=one.book or compiled.name,
+            name=rule.name,
+            strength=rule.strength,
+            variables=rule.variables,
+            formula=rule.formula,
+            cite=rule.cite,
+            says=rule.says,
+            level=rule.level,
+            weight=rule.weight,
+            source=rule.source,
+            certainty=rule.certainty,
+            book=rule.book or compiled.name,
         )
-        for one in compiled.rules
+        for rule in compiled.rules
     )
     return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
 
 
 def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
-    from rulec.diagnostics import nearest_name
-
     if name is None:
         return book.rules[0] if len(book.rules) == 1 else None
     by_name = {rule.name: rule for rule in book.rules}
@@ -134,14 +136,13 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
     """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
-    from rulec.analysis.lineage.book_lineage import read_with_lineage
-    from rulec.settings import search_path
+    # Only for this message: the printer of rulebooks, 60 ms.
     from rulec.syntax.tree_printer import print_in_force
 
     if Path(reference).suffix == ".json":
         return ""
-    _, inherited = read_with_lineage(reference, search_path(), book.at)
-    last = next((one.steps[-1] for one in inherited.rules if one.name == name), None)
+    inherited = Session(search_path(), book.at).tree(reference)
+    last = next((rule.steps[-1] for rule in inherited.rules if rule.name == name), None)
     if last is None:
         return ""
     if last.rule is not None and last.rule.in_force is not None:
@@ -151,38 +152,32 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
 
 
 def _names(book: Rulebook) -> str:
-    from rulec.diagnostics.phrases import named
-
     return named([rule.name for rule in book.rules])
 
 
 def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
     """The rulebook with this rule alone, compiled."""
-    from rulec.api.workflow import compile_rulebook
-
     if compiled is None:
-        return compile_rulebook(replace(book, rules=(rule,)))
-    own = tuple(one for one in compiled.rules if one.name == rule.name)
-    return replace(compiled, rules=own)
+        return Session().compile_rulebook(replace(book, rules=(rule,)))
+    return replace(compiled, rules=tuple(own for own in compiled.rules if own.name == rule.name))
 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
-    from rulec.report.automata import (
-        automaton_dot,
-        automaton_layout,
-        automaton_picture,
-        automaton_text,
-    )
+    # Pictures of automata, 40 ms: only with --automaton.
+    from rulec.report.automata.automaton_dot import as_dot
+    from rulec.report.automata.automaton_layout import is_too_large
+    from rulec.report.automata.automaton_picture import as_picture
+    from rulec.report.automata.automaton_text import as_text
     from rulec.report.pictures.drawing.svg import as_svg
 
     if output_format == "text":
-        return automaton_text.as_text(automaton, width)
+        return as_text(automaton, width)
     if output_format == "dot":
-        return automaton_dot.as_dot(automaton, name)
-    if automaton_layout.is_too_large(automaton):
+        return as_dot(automaton, name)
+    if is_too_large(automaton):
         raise click.ClickException(
             f"an automaton of {len(automaton.fates):,} states and {len(automaton.transitions):,} "
             "transitions is too large to draw; see it with --automaton text, or lay it out "
             "yourself from --automaton dot"
         )
-    return as_svg(automaton_picture.as_picture(automaton, name))
+    return as_svg(as_picture(automaton, name))

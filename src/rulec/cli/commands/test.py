@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import at_option
-from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.shared_options import at_option, only_sources, rulebooks_argument
+from rulec.cli.project import answer_or_print, open_session
+from rulec.report.text.console import (
+    print_aside,
+    print_diagnostics,
+    print_result,
+    wants_color,
+)
 
 if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
@@ -26,9 +33,7 @@ def _number(
 
 
 @click.command()
-@click.argument(
-    "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
-)
+@rulebooks_argument
 @click.option(
     "--run",
     "pattern",
@@ -73,15 +78,20 @@ def command(
     Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
     could not be read or compiled.
     """
+    # Rulebooks and their automata, 130 ms: not for --help.
     from rulec.book_tests.edge_coverage import coverage
+    from rulec.book_tests.verdict_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
-    from rulec.report.text.console import print_aside, print_result, wants_color
 
-    compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
-    if compiled is not None:
-        raise click.UsageError(f"`{compiled}` is compiled and has no examples; give its source")
-    runs = [run for rulebook in rulebooks if (run := _run(rulebook, pattern, at)) is not None]
+    def run_examples(rulebook: str) -> ExampleRun:
+        run = open_session(at).test(rulebook, pattern)
+        print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
+        return run
+
+    only_sources(rulebooks, "has no examples")
+    answers = [answer_or_print(partial(run_examples, rulebook)) for rulebook in rulebooks]
+    runs = [answer for answer in answers if answer is not None]
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
     if runs or output_format != "full":
@@ -89,24 +99,5 @@ def command(
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_aside(f"rulec: {sentence}")
-    if len(runs) < len(rulebooks):
-        return ExitStatus.NOT_ANSWERED
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
-    return ExitStatus.FOUND if failed or short else ExitStatus.OK
-
-
-def _run(rulebook: str, pattern: str | None, at: str) -> ExampleRun | None:
-    """The run, after its warnings; None, after its mistakes, if the rulebook has any."""
-    from rulec.api.rulebook_questions import run_examples
-    from rulec.book_tests.verdict_coverage import uncovered_verdicts
-    from rulec.diagnostics import RulecError
-    from rulec.report.text.console import print_diagnostics
-    from rulec.settings import search_path
-
-    try:
-        run = run_examples(rulebook, search_path(), pattern, at)
-    except RulecError as error:
-        print_diagnostics(error.diagnostics)
-        return None
-    print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
-    return run
+    return ExitStatus.after(answered=len(runs) == len(rulebooks), failed=failed or bool(short))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
@@ -10,10 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.recording_options import drives_options, given, wanted
-from rulec.cli.options.scenario_options import chosen, graph_options
-from rulec.cli.options.shared_options import output_option, traces_format_option
-from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.api.session import Session
+from rulec.cli.options.recording_options import (
+    drives_options,
+    given_drives_option,
+    requested_drives,
+)
+from rulec.cli.options.scenario_options import graph_options, read_scene
+from rulec.cli.options.shared_options import output_option, rulebook_option, table_format_option
+from rulec.cli.output import output_stream, print_written
+from rulec.cli.project import read_machines
+from rulec.diagnostics import SourceLocation
+from rulec.report.text.console import progress
+from rulec.report.text.count_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.trace import Trace
@@ -24,12 +32,8 @@ MOST_TRACES = 10_000_000
 
 @click.command()
 @graph_options
-@click.option(
-    "-r",
-    "--rulebook",
-    metavar="R",
-    help="Write the traces in this rulebook's words, with the partition that it reads.",
-    shell_complete=complete_rulebooks,
+@rulebook_option(
+    "Write the traces in this rulebook's words, with the partition that it reads.", required=False
 )
 @output_option
 @click.option(
@@ -44,7 +48,7 @@ MOST_TRACES = 10_000_000
     help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
     "what ego could do.",
 )
-@traces_format_option
+@table_format_option("traces")
 @drives_options
 def command(
     scenario: str,
@@ -65,29 +69,30 @@ def command(
     """
     about = {"thresholds": thresholds, "assumed": assumed, "as_recorded": as_recorded}
     if recorded:
-        _write_drives(Path(scenario), rulebook, output, limit, form, options, about)
+        _write_drives(
+            Path(scenario),
+            output,
+            rulebook=rulebook,
+            limit=limit,
+            form=form,
+            options=options,
+            about=about,
+        )
         return
-    if option := given(about):
+    if option := given_drives_option(about):
         raise click.UsageError(f"{option} is for drives: add --recorded.")
-    from rulec.api.workflow import find_maneuvers, machines, navigation_graph
-    from rulec.files import written_whole
+    # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
     from rulec.planning.product.graph_product import count_paths
-    from rulec.report.text.console import print_diagnostics, print_result, progress
-    from rulec.report.text.count_text import shown_count
-    from rulec.scenario import load_scenario
-    from rulec.settings import search_path
     from rulec.trace.formats.table_writer import kinds_in
     from rulec.trace.formats.trace_files import format_of, write_traces
     from rulec.trace.graph_paths import all_traces
 
-    scene = load_scenario(scenario, chosen(options))
+    scene = read_scene(scenario, options)
     if rulebook is None:
         options["partition"] = options["partition"] or "paper"
-        graph = navigation_graph(scene, **options).trace_graph()
+        graph = Session().navigation_graph(scene, **options).trace_graph()
     else:
-        rules = machines(rulebook, search_path(), print_diagnostics)
-        graph = find_maneuvers(scene, rules, **options).paths
-    name = scene.name
+        graph = Session().find_maneuvers(scene, read_machines(rulebook), **options).paths
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(
@@ -96,15 +101,12 @@ def command(
         )
     wanted = total if limit is None else min(limit, total)
     with progress(f"writing {output}", wanted) as tell:
-        traces = _told(all_traces(graph, name, wanted), tell)
+        traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
         form = form or format_of(str(output))
         kinds = kinds_in(chain.from_iterable(graph.states))
-        if str(output) == "-":
-            write_traces(traces, sys.stdout.buffer, "standard output", form, kinds)
-            return
-        with written_whole(output) as stream:
-            write_traces(traces, stream, str(output), form, kinds)
-    print_result(f"wrote {wanted:,} of {shown_count(total)} traces to {output}")
+        with output_stream(output) as (stream, name):
+            write_traces(traces, stream, name, form, kinds)
+    print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", output)
 
 
 _OF_DRIVES = {"ego", "net"}
@@ -113,35 +115,30 @@ _OF_DRIVES = {"ego", "net"}
 
 def _write_drives(
     file: Path,
-    rulebook: str | None,
     output: Path,
+    *,
+    rulebook: str | None,
     limit: int | None,
     form: Format | None,
     options: Mapping[str, Any],
     about: Mapping[str, Any],
 ) -> None:
     """Write what the vehicles of a recording did."""
-    from rulec.api.workflow import machines
-    from rulec.diagnostics import SourceLocation
+    # numpy and shapely, 200 ms: only for recordings.
     from rulec.extraction.selection.requested import selected_drives
     from rulec.extraction.to_trace import Drive
-    from rulec.files import written_whole
-    from rulec.report.text.console import print_diagnostics, print_result, progress
     from rulec.scenario.recording_files import read_recording
     from rulec.scenario.scenario_messages import NOT_IN_RECORDING
-    from rulec.settings import search_path
     from rulec.trace.formats.trace_files import format_of, write_traces
 
-    if (option := _given_of_maneuvers(options)) is not None:
+    if (option := _given_maneuvers_option(options)) is not None:
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
-    book = None
-    if rulebook is not None:
-        book = machines(rulebook, search_path(), print_diagnostics)
+    book = None if rulebook is None else read_machines(rulebook)
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
     result = selected_drives(
         read_recording(file, options["net"]),
-        wanted(egos, about, vocabulary),
+        requested_drives(egos, about, vocabulary),
         str(file),
         "" if book is None else book.traffic,
         vocabulary,
@@ -163,15 +160,12 @@ def _write_drives(
         raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)
     with progress(f"writing {output}", len(result.egos)) as tell:
         form = form or format_of(str(output))
-        if str(output) == "-":
-            write_traces(traces(), sys.stdout.buffer, "standard output", form, kinds)
-            return
-        with written_whole(output) as stream:
-            write_traces(traces(), stream, str(output), form, kinds)
-    print_result(f"wrote {count:,} drives to {output}")
+        with output_stream(output) as (stream, name):
+            write_traces(traces(), stream, name, form, kinds)
+    print_written(f"{count:,} drives to {output}", output)
 
 
-def _given_of_maneuvers(options: Mapping[str, Any]) -> str | None:
+def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
     """An option that somebody has given and that means nothing for drives, if any."""
     context = click.get_current_context()
     typed = click.core.ParameterSource.COMMANDLINE
@@ -183,7 +177,8 @@ def _given_of_maneuvers(options: Mapping[str, Any]) -> str | None:
     return None
 
 
-def _told(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:
+def _counted_aloud(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:
+    """The traces, of which every hundredth is told."""
     for number, trace in enumerate(traces):
         if number % 100 == 0:
             tell(number)

@@ -12,32 +12,39 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
+from rulec.api.session import Session
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.recording_options import drives_options, egos_option, given, wanted
+from rulec.cli.options.recording_options import (
+    drives_options,
+    egos_option,
+    given_drives_option,
+    requested_drives,
+)
 from rulec.cli.options.shared_options import (
     at_option,
     json_option,
     net_option,
     rulebook_option,
-    traces_format_option,
+    table_format_option,
 )
+from rulec.cli.project import read_machines
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.report.text.console import Complaints, print_result, progress
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.diagnostics import RulecError
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.monitoring.verdict import NotJudged, Verdict
-    from rulec.report.text.console import Complaints
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
-    Items = Sequence[Trace | RulecError]
-    Answer = tuple[Items, int, Verdict | NotJudged]
+    Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@rulebook_option
+@rulebook_option()
 @click.option(
     "--explain",
     "n_explained",
@@ -50,7 +57,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Explain by every part of a formula and every state, however large the table becomes.",
 )
-@traces_format_option
+@table_format_option("traces")
 @egos_option
 @drives_options
 @net_option
@@ -78,27 +85,25 @@ def command(
 
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
-    from rulec.api.workflow import machines
-    from rulec.report.text.console import Complaints, print_diagnostics
+    # Formats of recordings, 80 ms: not for --help.
     from rulec.scenario.recording_files import is_recording
-    from rulec.settings import search_path
 
-    rules = machines(rulebook, search_path(), print_diagnostics, at)
+    rules = read_machines(rulebook, at)
     recordings = [file for file in files if is_recording(file)]
-    if not recordings and (option := "--net" if net else "--ego" if egos else given(options)):
+    if not recordings and (
+        option := "--net" if net else "--ego" if egos else given_drives_option(options)
+    ):
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain, every_part)
     if recordings:
-        about = wanted(egos, options, rules.vocabulary)
+        about = requested_drives(egos, options, rules.vocabulary)
         for file in recordings:
             run.recording(file, net, about)
     if len(recordings) < len(files):
         run.traces([file for file in files if file not in recordings], form)
     run.complaints.close()
-    if run.not_answered:
-        return ExitStatus.NOT_ANSWERED
-    return ExitStatus.VIOLATED if run.violated else ExitStatus.OK
+    return ExitStatus.after(answered=not run.not_answered, failed=run.violated)
 
 
 @dataclass
@@ -115,10 +120,10 @@ class _Run:
 
     def traces(self, files: Sequence[str], form: Format | None) -> None:
         """Judge the traces of files, with one summary for all of them."""
+        # Tables of automata and verdicts, 230 ms: not for --help, and not for recordings alone.
         from rulec.monitoring.batch.table_verdicts import rulebook_for
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import Verdict
-        from rulec.report.text.console import print_result
         from rulec.report.verdicts import verdict_json, verdict_report
         from rulec.trace import Trace
 
@@ -154,18 +159,16 @@ class _Run:
 
     def recording(self, file: str, net: Path | None, wanted: RequestedDrives) -> None:
         """Judge every drive of a recording."""
-        from rulec.api.workflow import verify_recording
-        from rulec.diagnostics import RulecError
+        # numpy and shapely, 250 ms: only for recordings.
         from rulec.extraction.recording_verdicts import DriveVerdict
         from rulec.extraction.violation_tally import ViolationTally
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
-        from rulec.report.text.console import print_result, progress
         from rulec.report.verdicts import recording_json
         from rulec.report.verdicts import recording_table as report
 
         try:
-            judged = verify_recording(Path(file), self.rules, wanted, net)
+            judged = Session().verify_recording(file, self.rules, wanted, net)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True
@@ -180,7 +183,9 @@ class _Run:
                 if isinstance(answer, DriveVerdict) and isinstance(answer.answer, Verdict):
                     chosen = answer.answer.violations[: self.to_explain]
                     self.to_explain -= len(chosen)
-                    explained = [explain(x, answer.drive.trace, judged.rules) for x in chosen]
+                    explained = [
+                        explain(violation, answer.drive.trace, judged.rules) for violation in chosen
+                    ]
                     if explained:
                         blocks.append(
                             report.drive_details(
@@ -202,35 +207,28 @@ def _answers(
     files: Sequence[str], form: Format | None, rules: CompiledRulebook
 ) -> Iterator[Answer]:
     """Traces, which of them, and its verdict, or why there is none."""
-    from rulec.diagnostics import RulecError
-    from rulec.files import opened
+    # Tables of automata, 160 ms: as for ``_Run.traces``.
+    from rulec.monitoring.batch.table_verdicts import verify_items
     from rulec.monitoring.verdict import NotJudged
-    from rulec.trace.formats.trace_files import format_of
+    from rulec.trace.formats.trace_files import format_of, read_chunks
+
+    def judged(stream: IO[bytes], name: str, form: Format, size: int | None) -> Iterator[Answer]:
+        with progress(f"judging {name}", size) as tell:
+            for chunk in read_chunks(stream, name, form):
+                traces, answers = verify_items(chunk, rules)
+                for place, answer in enumerate(answers):
+                    yield traces, place, answer
+                if size is not None:
+                    tell(stream.tell())
 
     for file in files:
         try:
             if file == "-":
-                yield from _judged(sys.stdin.buffer, "standard input", form or "jsonl", None, rules)
+                yield from judged(sys.stdin.buffer, "standard input", form or "jsonl", None)
                 continue
             with opened(Path(file)) as stream:
                 about = os.fstat(stream.fileno())
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
-                yield from _judged(stream, file, form or format_of(file), size, rules)
+                yield from judged(stream, file, form or format_of(file), size)
         except RulecError as error:
             yield [error], 0, NotJudged(None, error)
-
-
-def _judged(
-    stream: IO[bytes], name: str, form: Format, size: int | None, rules: CompiledRulebook
-) -> Iterator[Answer]:
-    from rulec.monitoring.batch.table_verdicts import verify_items
-    from rulec.report.text.console import progress
-    from rulec.trace.formats.trace_files import read_chunks
-
-    with progress(f"judging {name}", size) as tell:
-        for traces in read_chunks(stream, name, form):
-            result, answers = verify_items(traces, rules)
-            for place, answer in enumerate(answers):
-                yield result, place, answer
-            if size is not None:
-                tell(stream.tell())

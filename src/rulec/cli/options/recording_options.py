@@ -1,4 +1,4 @@
-"""Arguments for what is recorded: whose drives, by which thresholds, on which assumptions."""
+"""Arguments for recorded traffic: whose drives, thresholds, assumptions."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.shared_options import Decorated
+from rulec.cli.options.shared_options import combined
 
 if TYPE_CHECKING:
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.vocabulary import Vocabulary
 
 
-def drives_options(function: Decorated) -> Decorated:
-    """What can be chosen about the drives of a recording; ``wanted`` takes them."""
-    for decorate in (
+drives_options = combined(
+    [
         click.option(
-            "--as-recorded",
-            is_flag=True,
-            help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
-            "other side.",
+            "--assume",
+            "assumed",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="In recorded traffic: what holds all along, such as built_up=true.",
         ),
         click.option(
             "--threshold",
@@ -31,30 +31,26 @@ def drives_options(function: Decorated) -> Decorated:
             help="In recorded traffic: one of the numbers by which words are derived.",
         ),
         click.option(
-            "--assume",
-            "assumed",
-            multiple=True,
-            metavar="NAME=VALUE",
-            help="In recorded traffic: what holds all along, such as built_up=true.",
+            "--as-recorded",
+            is_flag=True,
+            help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
+            "other side.",
         ),
-    ):
-        function = decorate(function)
-    return function
+    ]
+)
+"""How the drives of a recording become traces; ``requested_drives`` takes their values."""
+
+egos_option = click.option(
+    "--ego",
+    "egos",
+    multiple=True,
+    metavar="ID",
+    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+)
 
 
-def egos_option(function: Decorated) -> Decorated:
-    """``--ego``, any number of them."""
-    return click.option(
-        "--ego",
-        "egos",
-        multiple=True,
-        metavar="ID",
-        help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
-    )(function)
-
-
-def given(options: Mapping[str, Any]) -> str | None:
-    """One of the options that somebody has given, if any."""
+def given_drives_option(options: Mapping[str, Any]) -> str | None:
+    """One of ``drives_options`` that has been given, if any."""
     names = {
         "assumed": "--assume",
         "thresholds": "--threshold",
@@ -63,14 +59,15 @@ def given(options: Mapping[str, Any]) -> str | None:
     return next((names[name] for name, value in options.items() if value), None)
 
 
-def wanted(
+def requested_drives(
     egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
 ) -> RequestedDrives:
-    """What the options say.
+    """The drives of these vehicles, with the values of ``drives_options``.
 
     Raises:
         click.BadParameter: an assumption or a threshold is none.
     """
+    # numpy and shapely, 150 ms: only for recordings.
     from rulec.extraction.selection.option_values import assumption_options, threshold_options
     from rulec.extraction.selection.requested import RequestedDrives
 

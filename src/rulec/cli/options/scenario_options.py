@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.shared_options import Decorated, net_option
+from rulec.cli.options.shared_options import combined, net_option
 from rulec.cli.options.shell_completion import complete_scenarios
 
 if TYPE_CHECKING:
-    from rulec.scenario import Choice
+    from rulec.scenario import Scenario
 
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 
@@ -21,6 +21,7 @@ def _prediction(
     context: click.Context, parameter: click.Parameter, value: str
 ) -> str | dict[str, Fraction]:
     """A kind of prediction, or several with their probabilities."""
+    # Scenarios' formats, 30 ms: not for --help.
     from rulec.scenario.alternatives import is_distribution
     from rulec.scenario.recorded.scene_choice import PREDICTIONS
 
@@ -29,7 +30,7 @@ def _prediction(
         return value
     fractions: dict[str, Fraction] = {}
     for part in value.split(","):
-        kind, _, weight = (one.strip() for one in part.partition("="))
+        kind, _, weight = (piece.strip() for piece in part.partition("="))
         if kind not in PREDICTIONS or kind in fractions:
             raise click.BadParameter(f"it has to be {known}, or each of them once with a weight")
         fractions[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
@@ -40,26 +41,27 @@ def _prediction(
     return fractions
 
 
-def _scene_options(function: Decorated) -> Decorated:
-    """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
-    for decorate in (
-        net_option,
+_scene_options = combined(
+    [
         click.option(
-            "--congested-below",
-            "congested_below_kmh",
-            type=click.FloatRange(min=0),
-            default=30.0,
-            show_default=True,
-            metavar="KMH",
-            help="In a recorded scene: traffic counts as congested below this median speed.",
+            "--ego",
+            metavar="ID",
+            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
+            "[default: the first planning problem]",
         ),
         click.option(
-            "--ego-width",
-            "ego_width_m",
-            type=click.FloatRange(min=0, max=100),
-            metavar="M",
-            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
-            "[default: as wide as the vehicle that it is, if any; else a point]",
+            "--at-time",
+            "at_s",
+            type=float,
+            metavar="S",
+            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
+            "planning problem, or the vehicle's first]",
+        ),
+        click.option(
+            "--reference",
+            metavar="LANELET",
+            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
+            "[default: the one ego is on]",
         ),
         click.option(
             "--prediction",
@@ -71,51 +73,54 @@ def _scene_options(function: Decorated) -> Decorated:
             "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
         ),
         click.option(
-            "--reference",
-            metavar="LANELET",
-            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
-            "[default: the one ego is on]",
+            "--ego-width",
+            "ego_width_m",
+            type=click.FloatRange(min=0, max=100),
+            metavar="M",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+            "[default: as wide as the vehicle that it is, if any; else a point]",
         ),
         click.option(
-            "--at-time",
-            "at_s",
-            type=float,
-            metavar="S",
-            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
-            "planning problem, or the vehicle's first]",
-        ),
-        click.option(
-            "--ego",
-            metavar="ID",
-            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
-            "[default: the first planning problem]",
-        ),
-    ):
-        function = decorate(function)
-    return function
-
-
-def chosen(options: dict[str, Any]) -> Choice:
-    """The choice that ``graph_options`` say, taken out of all options."""
-    from rulec.scenario.recorded.scene_choice import Choice
-
-    return Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
-
-
-def graph_options(function: Decorated) -> Decorated:
-    """The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
-
-    Also what can be chosen about a recorded scene, which ``chosen`` takes out again.
-    """
-    function = _scene_options(function)
-    for decorate in (
-        click.option(
-            "--adjacency",
-            type=click.Choice(["touch", "edge", "forward"]),
-            default="touch",
+            "--congested-below",
+            "congested_below_kmh",
+            type=click.FloatRange(min=0),
+            default=30.0,
             show_default=True,
-            help="Which cells are neighbours: those that meet in a point, along a border, "
-            "or along a border and not only behind.",
+            metavar="KMH",
+            help="In a recorded scene: traffic counts as congested below this median speed.",
+        ),
+        net_option,
+    ]
+)
+"""What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
+
+
+def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
+    """The scenario; what ``graph_options`` choose in a recorded one is taken out of the options.
+
+    Raises RulecError.
+    """
+    # Scenarios' formats, 30 ms: not for --help.
+    from rulec.scenario import Choice, load_scenario
+
+    choice = Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
+    return load_scenario(scenario, choice)
+
+
+graph_options = combined(
+    [
+        click.argument("scenario", shell_complete=complete_scenarios),
+        click.option(
+            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
+        ),
+        click.option(
+            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+        ),
+        click.option(
+            "--partition",
+            type=click.Choice(["paper", "fine"]),
+            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+            "paper without one]",
         ),
         click.option(
             "--extent",
@@ -126,18 +131,17 @@ def graph_options(function: Decorated) -> Decorated:
             "and half of ego's width to either side.",
         ),
         click.option(
-            "--partition",
-            type=click.Choice(["paper", "fine"]),
-            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
-            "paper without one]",
+            "--adjacency",
+            type=click.Choice(["touch", "edge", "forward"]),
+            default="touch",
+            show_default=True,
+            help="Which cells are neighbours: those that meet in a point, along a border, "
+            "or along a border and not only behind.",
         ),
-        click.option(
-            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
-        ),
-        click.option(
-            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
-        ),
-        click.argument("scenario", shell_complete=complete_scenarios),
-    ):
-        function = decorate(function)
-    return function
+        _scene_options,
+    ]
+)
+"""The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
+
+Also what can be chosen about a recorded scene, which ``read_scene`` takes out again.
+"""

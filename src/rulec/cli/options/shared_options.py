@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,11 +17,21 @@ Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
 
-
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
 
 
-def seconds(
+def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
+    """Several options as one decorator, in the order in which help lists them."""
+
+    def decorate(function: Decorated) -> Decorated:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return decorate
+
+
+def _seconds(
     context: click.Context, parameter: click.Parameter, value: str | None
 ) -> Fraction | None:
     """A step, as an option gives it."""
@@ -36,23 +46,11 @@ def seconds(
     return step
 
 
-def rulebook_option(function: Decorated) -> Decorated:
-    """``--rulebook R``, required."""
-    option = click.option(
-        "-r",
-        "--rulebook",
-        required=True,
-        metavar="R",
-        help=RULEBOOK_HELP,
-        shell_complete=complete_rulebooks,
-    )
-    return option(function)
-
-
 def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     """A date in ISO form; empty if none is given."""
     if not value:
         return ""
+    # The parser of rulebooks, 60 ms: only if a day is given.
     from rulec.syntax.literals import why_not_a_day
 
     wrong = why_not_a_day(value)
@@ -61,53 +59,76 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     return value
 
 
-def only_sources(rulebooks: Iterable[str], done: str) -> None:
-    """Compiled rulebooks do not say enough to be ``done``, such as ``"be audited"``.
+def only_sources(rulebooks: Iterable[str], lack: str) -> None:
+    """Refuse compiled rulebooks, of which a ``lack`` is told such as ``"cannot be audited"``.
 
     Raises:
         click.UsageError: one of these is compiled.
     """
     compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
     if compiled is not None:
-        raise click.UsageError(f"`{compiled}` is compiled and cannot {done}; give its source")
+        raise click.UsageError(f"`{compiled}` is compiled and {lack}; give its source")
 
 
-def output_option(function: Decorated) -> Decorated:
-    """``--output FILE``, required."""
-    option = click.option(
-        "-o",
-        "--output",
-        required=True,
-        metavar="FILE",
-        type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
-        help="The file to write; `-` is standard output.",
+rulebook_argument = click.argument("rulebook", shell_complete=complete_rulebooks)
+
+rulebooks_argument = click.argument(
+    "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
+)
+
+
+def rulebook_option(
+    help_text: str = RULEBOOK_HELP, *, required: bool = True
+) -> Callable[[Decorated], Decorated]:
+    """``--rulebook R``."""
+    return click.option(
+        "-r",
+        "--rulebook",
+        required=required,
+        metavar="R",
+        help=help_text,
+        shell_complete=complete_rulebooks,
     )
-    return option(function)
 
 
-def at_option(function: Decorated) -> Decorated:
-    """``--at DATE``: the day whose law it is."""
-    option = click.option(
-        "--at",
-        default="",
-        callback=_day,
-        metavar="DATE",
-        help="The day whose law it is: rules and parameters that were not in force then are left "
-        "out.  [default: that of the rulebook's `law` line, else today]",
+output_option = click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+    help="The file to write; `-` is standard output.",
+)
+
+
+def text_output_option(help_text: str = "Write to FILE.") -> Callable[[Decorated], Decorated]:
+    """``--output FILE`` of an answer that else goes to standard output."""
+    return click.option(
+        "-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help=help_text
     )
-    return option(function)
 
 
-def findings_options(function: Decorated) -> Decorated:
-    """``--output-format`` of findings, and ``--fail-on``: which of them make the exit status 1."""
-    for decorate in (
-        click.option(
-            "--fail-on",
-            type=click.Choice(["error", "warning"]),
-            default="error",
-            show_default=True,
-            help="What makes the exit status 1.",
-        ),
+def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
+    """``--step S``, exactly; what it is the step of differs from verb to verb."""
+    return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
+
+
+def rules_option(help_text: str) -> Callable[[Decorated], Decorated]:
+    """``--rule PATTERN``, any number of them."""
+    return click.option("--rule", "patterns", multiple=True, metavar="PATTERN", help=help_text)
+
+
+at_option = click.option(
+    "--at",
+    default="",
+    callback=_day,
+    metavar="DATE",
+    help="The day whose law it is: rules and parameters that were not in force then are left "
+    "out.  [default: that of the rulebook's `law` line, else today]",
+)
+
+findings_options = combined(
+    [
         click.option(
             "--output-format",
             type=click.Choice(FORMATS),
@@ -116,32 +137,34 @@ def findings_options(function: Decorated) -> Decorated:
             help="Text with the lines in question, a line each, JSON, GitHub annotations, "
             "SARIF 2.1.0.",
         ),
-    ):
-        function = decorate(function)
-    return function
+        click.option(
+            "--fail-on",
+            type=click.Choice(["error", "warning"]),
+            default="error",
+            show_default=True,
+            help="What makes the exit status 1.",
+        ),
+    ]
+)
+"""How findings are written, and which of them make the exit status 1."""
+
+json_option = click.option("--json", "json_output", is_flag=True, help="Print JSON.")
 
 
-def json_option(function: Decorated) -> Decorated:
-    """``--json``: output for machines."""
-    return click.option("--json", "json_output", is_flag=True, help="Print JSON.")(function)
-
-
-def traces_format_option(function: Decorated) -> Decorated:
-    """``--format``: that of files of traces."""
+def table_format_option(content: str) -> Callable[[Decorated], Decorated]:
+    """``--format`` of files of traces and tables."""
     return click.option(
         "--format",
         "form",
         type=click.Choice(["jsonl", "csv", "parquet"]),
-        help="The format of the traces.  [default: what the file's name ends with, else jsonl]",
-    )(function)
+        help=f"The format of the {content}.  [default: what the file's name ends with, else jsonl]",
+    )
 
 
-def net_option(function: Decorated) -> Decorated:
-    """``--net FILE``: the roads of SUMO's floating-car data."""
-    return click.option(
-        "--net",
-        type=click.Path(dir_okay=False, path_type=Path),
-        metavar="FILE",
-        help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
-        "ending in .net.xml beside them]",
-    )(function)
+net_option = click.option(
+    "--net",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
+    "ending in .net.xml beside them]",
+)

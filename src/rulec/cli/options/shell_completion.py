@@ -9,14 +9,15 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
+from rulec.report.findings.code_registry import all_codes
+from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
+from rulec.settings import search_path
 
 
 def complete_rulebooks(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Names of rulebooks, and files."""
-    from rulec.rulebook.files.search_path import available_rulebooks
-
     return _named(available_rulebooks(_folders()), incomplete)
 
 
@@ -24,8 +25,6 @@ def complete_sources(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Names of rulebooks and vocabularies, and files."""
-    from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
-
     vocabularies = (path.stem for path in available_vocabularies(_folders()))
     return _named([*available_rulebooks(_folders()), *vocabularies], incomplete)
 
@@ -34,6 +33,7 @@ def complete_rules(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Names of the rules of the rulebook that has been named before, with what they say."""
+    # Rulebooks and automata, 170 ms: only to complete rules.
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.rulebook.loader import load_rulebook
 
@@ -58,6 +58,7 @@ def complete_scenarios(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Names of scenarios, and files."""
+    # Scenarios' formats, 30 ms: only to complete their names.
     from rulec.scenario import available_scenarios
 
     return _named(available_scenarios(), incomplete)
@@ -67,8 +68,6 @@ def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Codes of messages, with what they are about."""
-    from rulec.report.findings.code_registry import all_codes
-
     return [
         CompletionItem(text, help=code.title)
         for text, code in all_codes().items()
@@ -78,8 +77,6 @@ def complete_codes(
 
 def _folders() -> tuple[Path, ...]:
     """The project's own folders; while a command is typed nobody wants to hear of mistakes."""
-    from rulec.settings import search_path
-
     try:
         return search_path()
     except RulecError:
