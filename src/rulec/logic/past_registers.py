@@ -135,65 +135,65 @@ class _Found:
         return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
 
 
-def _present(formula: Formula, found: _Found) -> Formula:
+def _present(formula: Formula, _found: _Found) -> Formula:
     match formula:
         case Atom() | Comparison() | Same() | Constant():
             return formula
         case Unary(operator, operand, bound):
-            inner = _present(operand, found)
+            inner = _present(operand, _found)
             if operator not in PAST:
                 return Unary(operator, inner, bound)
             span = range_of(formula)
             if operator in (UnaryOperator.WEAK_PREVIOUSLY, UnaryOperator.HISTORICALLY):
-                return Unary(NOT, _since(Constant(True), Unary(NOT, inner), span, found))
-            return _since(Constant(True), inner, span, found)
+                return Unary(NOT, _since(Constant(True), Unary(NOT, inner), span, _found))
+            return _since(Constant(True), inner, span, _found)
         case Binary(operator, left, right, bound):
-            first, second = _present(left, found), _present(right, found)
+            first, second = _present(left, _found), _present(right, _found)
             if operator not in PAST:
                 return Binary(operator, first, second, bound)
-            return _since(first, second, range_of(formula), found)
+            return _since(first, second, range_of(formula), _found)
 
 
-def _since(left: Formula, right: Formula, span: Range, found: _Found) -> Formula:
-    if found.is_settled(left) and found.is_settled(right):
+def _since(left: Formula, right: Formula, span: Range, _found: _Found) -> Formula:
+    if _found.is_settled(left) and _found.is_settled(right):
         # The same operator on the same operands needs no second register.
         key = (left, right, span)
-        if key not in found.registers:
-            found.registers[key] = Register(found.fresh("register"), left, right, span)
-        return found.registers[key].atom
-    return _unfolded(left, right, span, found)
+        if key not in _found.registers:
+            _found.registers[key] = Register(_found.fresh("register"), left, right, span)
+        return _found.registers[key].atom
+    return _unfolded(left, right, span, _found)
 
 
-def _unfolded(left: Formula, right: Formula, span: Range, found: _Found) -> Formula:
+def _unfolded(left: Formula, right: Formula, span: Range, _found: _Found) -> Formula:
     """``left since right`` in the words of the present and of one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
     """
     key = (left, right, span)
-    known = found.sinces.get(key)
+    known = _found.sinces.get(key)
     if known is not None:
         return known
     low, high = span
     if high is None:
-        before = found.fresh("memory")
+        before = _found.fresh("memory")
         now: Formula = Binary(OR, right, Binary(AND, left, before))
-        found.memories[now] = Memory(before, now)
+        _found.memories[now] = Memory(before, now)
     else:
         now = right
         for _ in range(high - low):
-            now = Binary(OR, right, Binary(AND, left, _one_ago(now, found)))
+            now = Binary(OR, right, Binary(AND, left, _one_ago(now, _found)))
     for _ in range(low):
-        now = Binary(AND, left, _one_ago(now, found))
-    found.sinces[key] = now
+        now = Binary(AND, left, _one_ago(now, _found))
+    _found.sinces[key] = now
     return now
 
 
-def _one_ago(formula: Formula, found: _Found) -> Formula:
-    if found.is_settled(formula):
-        return _since(Constant(True), formula, Range(1, 1), found)
-    if formula not in found.memories:
-        found.memories[formula] = Memory(found.fresh("memory"), formula)
-    return found.memories[formula].atom
+def _one_ago(formula: Formula, _found: _Found) -> Formula:
+    if _found.is_settled(formula):
+        return _since(Constant(True), formula, Range(1, 1), _found)
+    if formula not in _found.memories:
+        _found.memories[formula] = Memory(_found.fresh("memory"), formula)
+    return _found.memories[formula].atom
 
 
 def _is_present(formula: Formula) -> bool:

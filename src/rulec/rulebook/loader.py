@@ -258,8 +258,8 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
 def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
     """The rulebook's own first, each file's from top to bottom."""
 
-    def rank(one: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
-        place = one.place
+    def rank(diagnostic: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
+        place = diagnostic.place
         if place is None:
             return True, "", (0, 0)
         return place.file != main, place.file, place.start

@@ -20,13 +20,13 @@ class Box:
     def __str__(self) -> str:
         return f"s {self.s_min:g} to {self.s_max:g}, d {self.d_min:g} to {self.d_max:g}"
 
-    def overlaps(self, other: Box) -> bool:
+    def overlaps(self, box: Box) -> bool:
         """Whether the interiors meet, not only the borders."""
         return (
-            self.s_min < other.s_max
-            and other.s_min < self.s_max
-            and self.d_min < other.d_max
-            and other.d_min < self.d_max
+            self.s_min < box.s_max
+            and box.s_min < self.s_max
+            and self.d_min < box.d_max
+            and box.d_min < self.d_max
         )
 
     def covers(self, s: float, d: float) -> bool:

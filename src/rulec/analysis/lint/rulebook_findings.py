@@ -146,7 +146,7 @@ def _implied(
 ) -> Iterator[Diagnostic]:
     """A rule that adds nothing to others that are as hard."""
     others = [
-        sides[one] for one in names if rules[one].strength == "hard" or rule.strength == "soft"
+        sides[name] for name in names if rules[name].strength == "hard" or rule.strength == "soft"
     ]
     try:
         premises = implied_by(sides[rule.name], others)

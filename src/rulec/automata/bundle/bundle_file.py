@@ -49,8 +49,8 @@ _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
 """A string, or a list of neither lists, objects nor strings, over several lines."""
 
 
-def _on_one_line(found: re.Match[str]) -> str:
-    return found[0] if found[0].startswith('"') else re.sub(r"\s+", " ", found[0])
+def _on_one_line(match_: re.Match[str]) -> str:
+    return match_[0] if match_[0].startswith('"') else re.sub(r"\s+", " ", match_[0])
 
 
 def _declaration(

@@ -8,11 +8,11 @@ from rulec.diagnostics import Diagnostic
 from rulec.report.findings.source_excerpt import visible
 
 
-def as_lines(found: Iterable[Diagnostic]) -> str:
+def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
     """A line for each; what has no place has no prefix either."""
     return "\n".join(
         visible(f"{_where(diagnostic)}{diagnostic.code} {diagnostic.message}")
-        for diagnostic in found
+        for diagnostic in diagnostics
     )
 
 

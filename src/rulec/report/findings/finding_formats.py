@@ -9,11 +9,11 @@ from rulec.diagnostics import Diagnostic
 FORMATS = ("full", "concise", "json", "github", "sarif")
 
 
-def render(found: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
+def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
     """Diagnostics as text; empty if the format has nothing to say about nothing.
 
     Args:
-        found: the diagnostics.
+        diagnostics: those to render.
         wanted: one of FORMATS.
         color: may there be ANSI colours?
         complete: was everything read that had to be?
@@ -23,24 +23,24 @@ def render(found: Sequence[Diagnostic], wanted: str, *, color: bool, complete: b
             # Every verb imports this file for FORMATS, and few write findings.
             from rulec.report.findings.concise import as_lines
 
-            return as_lines(found)
+            return as_lines(diagnostics)
         case "json":
             # msgspec takes 8 ms.
             from rulec.report.findings.diagnostics_json import as_json
 
-            return as_json(found)
+            return as_json(diagnostics)
         case "github":
             # As above: for FORMATS alone nothing is imported.
             from rulec.report.findings.github_annotations import as_annotations
 
-            return as_annotations(found)
+            return as_annotations(diagnostics)
         case "sarif":
             # The explanations of all codes, and urllib: 6 ms.
             from rulec.report.findings.sarif import as_sarif
 
-            return as_sarif(found, complete=complete)
+            return as_sarif(diagnostics, complete=complete)
         case _:
             # As above.
             from rulec.report.findings.diagnostics_text import render_diagnostics
 
-            return render_diagnostics(found, color).rstrip("\n")
+            return render_diagnostics(diagnostics, color).rstrip("\n")

@@ -11,9 +11,9 @@ from rulec.diagnostics import Diagnostic
 from rulec.report.findings.source_excerpt import visible
 
 
-def as_annotations(found: Iterable[Diagnostic]) -> str:
+def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:
     """A command for each diagnostic, a line long whatever stands in it."""
-    return "\n".join(_command(diagnostic) for diagnostic in found)
+    return "\n".join(_command(diagnostic) for diagnostic in diagnostics)
 
 
 def _command(diagnostic: Diagnostic) -> str:

@@ -22,14 +22,14 @@ SCHEMA = (
 )
 
 
-def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
+def as_sarif(diagnostics: Sequence[Diagnostic], *, complete: bool = True) -> str:
     """One run of rulec.
 
     Args:
-        found: the results.
+        diagnostics: the results.
         complete: was everything read that had to be?
     """
-    codes = sorted({diagnostic.code for diagnostic in found})
+    codes = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
         "tool": {
             "driver": {
@@ -40,7 +40,9 @@ def as_sarif(found: Sequence[Diagnostic], *, complete: bool = True) -> str:
         },
         "columnKind": "unicodeCodePoints",
         "invocations": [{"executionSuccessful": complete}],
-        "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in found],
+        "results": [
+            _result(diagnostic, codes.index(diagnostic.code)) for diagnostic in diagnostics
+        ],
     }
     document = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(document, ensure_ascii=False, indent=2)

@@ -78,15 +78,19 @@ class _Columns:
 
 
 def graph_picture(
-    graph: NavigationGraph, found: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
+    graph: NavigationGraph,
+    accepted_edges: AcceptedEdges,
+    maneuver: Maneuver | None,
+    *,
+    judged: bool,
 ) -> Picture:
     """The picture; ``judged``: do rules tell satisfying maneuvers from others?"""
     columns = _columns(graph)
-    marks: list[Mark] = [*_edges(graph, columns, found, maneuver)]
-    marks += _nodes(graph, columns, found, maneuver)
+    marks: list[Mark] = [*_edges(graph, columns, accepted_edges, maneuver)]
+    marks += _nodes(graph, columns, accepted_edges, maneuver)
     marks += _times(graph, columns)
     below = legend(
-        list(_entries(graph, found, maneuver, judged=judged)),
+        list(_entries(graph, accepted_edges, maneuver, judged=judged)),
         list(_remarks(graph, columns)),
         WIDTH,
         MARGIN,
@@ -116,7 +120,10 @@ def _columns(graph: NavigationGraph) -> _Columns:
 
 
 def _edges(
-    graph: NavigationGraph, columns: _Columns, found: AcceptedEdges, maneuver: Maneuver | None
+    graph: NavigationGraph,
+    columns: _Columns,
+    accepted_edges: AcceptedEdges,
+    maneuver: Maneuver | None,
 ) -> list[Polyline]:
     """Every step once, those that matter more above the others."""
     half = columns.extent()[0]
@@ -127,19 +134,22 @@ def _edges(
             for target in followers:
                 (x0, y0), (x1, y1) = columns.at(p, node), columns.at(p + 1, target)
                 here = (p, (node, target)) in way
-                style = "way" if here else _fate(found, p, node, target)
+                style = "way" if here else _fate(accepted_edges, p, node, target)
                 lines.append(Polyline(((x0 + half, y0), (x1 - half, y1)), style))
     return sorted(lines, key=lambda line: _ORDER.index(line.style))
 
 
-def _fate(found: AcceptedEdges, layer: int, node: int, target: int) -> str:
-    if (node, target) in found.accepted[layer]:
+def _fate(accepted_edges: AcceptedEdges, layer: int, node: int, target: int) -> str:
+    if (node, target) in accepted_edges.accepted[layer]:
         return "satisfying"
-    return "rejected" if (node, target) in found.possible[layer] else "unused"
+    return "rejected" if (node, target) in accepted_edges.possible[layer] else "unused"
 
 
 def _nodes(
-    graph: NavigationGraph, columns: _Columns, found: AcceptedEdges, maneuver: Maneuver | None
+    graph: NavigationGraph,
+    columns: _Columns,
+    accepted_edges: AcceptedEdges,
+    maneuver: Maneuver | None,
 ) -> Iterator[Mark]:
     wide, high = columns.extent()
     for p, layer in enumerate(graph.layers):
@@ -149,9 +159,9 @@ def _nodes(
                 "chosen"
                 if maneuver and maneuver.nodes[p] == node
                 else "node"
-                if node in found.accepted_nodes[p]
+                if node in accepted_edges.accepted_nodes[p]
                 else "violated"
-                if node in found.possible_nodes[p]
+                if node in accepted_edges.possible_nodes[p]
                 else "off"
             )
             shape = rectangle(x - wide, y - high, x + wide, y + high)
@@ -172,9 +182,15 @@ def _times(graph: NavigationGraph, columns: _Columns) -> Iterator[LabelText]:
 
 
 def _entries(
-    graph: NavigationGraph, found: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
+    graph: NavigationGraph,
+    accepted_edges: AcceptedEdges,
+    maneuver: Maneuver | None,
+    *,
+    judged: bool,
 ) -> Iterator[LegendEntry]:
-    accepted, possible = (sum(map(len, edges)) for edges in (found.accepted, found.possible))
+    accepted, possible = (
+        sum(map(len, edges)) for edges in (accepted_edges.accepted, accepted_edges.possible)
+    )
     if maneuver:
         yield LegendEntry("way", "the maneuver shown")
     if judged:
@@ -182,7 +198,9 @@ def _entries(
         yield LegendEntry("rejected", f"{possible - accepted:,} steps of rejected ones alone")
         if any(
             there - kept
-            for there, kept in zip(found.possible_nodes, found.accepted_nodes, strict=True)
+            for there, kept in zip(
+                accepted_edges.possible_nodes, accepted_edges.accepted_nodes, strict=True
+            )
         ):
             yield LegendEntry("violated", "a cell of rejected ones alone")
     else:

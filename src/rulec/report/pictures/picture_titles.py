@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 
 def scene_title(
-    graph: NavigationGraph, found: Maneuvers | None, maneuver: Maneuver | None, number: int
+    graph: NavigationGraph, maneuvers: Maneuvers | None, maneuver: Maneuver | None, number: int
 ) -> str:
     """The scenario, and which maneuver is shown."""
     name = graph.scenario.name
-    if found is None:
+    if maneuvers is None:
         return f"{name}: {graph.nodes:,} cells in {len(graph.layers)} layers"
-    by = f"of {shown_count(found.satisfying)} that satisfy {found.rules.name}"
+    by = f"of {shown_count(maneuvers.satisfying)} that satisfy {maneuvers.rules.name}"
     if maneuver is None:
-        return f"{name}: no maneuver satisfies {found.rules.name}"
+        return f"{name}: no maneuver satisfies {maneuvers.rules.name}"
     margin = "" if maneuver.margin_s is None else f", margin {maneuver.margin_s:g} s"
     return f"{name}: maneuver {number} {by}; cost {maneuver.cost:.4g} 1/s{margin}"
 

@@ -43,29 +43,29 @@ class _Axis:
         return self.left + (WIDTH - MARGIN - self.left) * state / self.states
 
 
-def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
+def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
     """The picture, with the violations in words below it."""
-    trace = found.trace
-    titles = [_title(row) for row in found.rows]
+    trace = ribbon.trace
+    titles = [_title(row) for row in ribbon.rows]
     axis = _Axis(MARGIN + text_width(titles) + 10, len(trace.states), trace.step_s)
-    number = len(found.violations)
+    number = len(ribbon.violations)
     marks: list[Mark] = []
-    flags, top = _flags(found, axis, 4)
+    flags, top = _flags(ribbon, axis, 4)
     words: list[Mark] = []
     y = top
-    for row, text in zip(found.rows, titles, strict=True):
+    for row, text in zip(ribbon.rows, titles, strict=True):
         words.append(LabelText(text, (axis.left - 10, y + _ROW / 2), "end"))
         marks += _segments(row, axis, y) if row.values else _curve(row, axis, y)
         words += _values(row, axis, y) if row.values else []
         y += _ROW
-    marks += _violations(found, axis, top)
+    marks += _violations(ribbon, axis, top)
     marks += words
     marks += [*flags, *_times(axis, y)]
     y += 2 * LINE_HEIGHT + 8
     columns = int((WIDTH - 2 * MARGIN) / CHARACTER)
     by_name = {rule.name: rule for rule in rules.rules}
     explained: set[str] = set()
-    for n, violation in enumerate(found.violations[:MOST_VIOLATIONS], 1):
+    for n, violation in enumerate(ribbon.violations[:MOST_VIOLATIONS], 1):
         rule = by_name[violation.rule]
         when = "" if violation.step is None else f", at {violation.step * trace.step_s:g} s"
         told = [("ink", f"{in_a_line(violation, rule, rules.name)}{when}")]
@@ -83,17 +83,17 @@ def ribbon_picture(found: Ribbon, rules: CompiledRulebook) -> Picture:
             LabelText(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint")
         )
         y += LINE_HEIGHT
-    if found.left_out:
-        more = f"{found.left_out:,} row{'s' * (found.left_out != 1)} of defaults left out"
+    if ribbon.left_out:
+        more = f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)} of defaults left out"
         marks.append(LabelText(more, (MARGIN, y), style="faint"))
         y += LINE_HEIGHT
     return Picture(trace.id, WIDTH, y, tuple(marks))
 
 
-def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
+def _flags(ribbon: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
     """The violations' numbers above their states; and where the rows begin, below them."""
     numbered = sorted(
-        (found.decisive(violation), n) for n, violation in enumerate(found.violations, 1)
+        (ribbon.decisive(violation), n) for n, violation in enumerate(ribbon.violations, 1)
     )
     flags: list[LabelText] = []
     placing = Placing()
@@ -112,16 +112,16 @@ def _flags(found: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], flo
     return flags, deepest + LINE_HEIGHT
 
 
-def _violations(found: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
+def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
     """A thin line through all rows, a thick one in those of the objects in question."""
-    bottom = top + _ROW * len(found.rows)
-    for state in sorted({found.decisive(violation) for violation in found.violations}):
+    bottom = top + _ROW * len(ribbon.rows)
+    for state in sorted({ribbon.decisive(violation) for violation in ribbon.violations}):
         x = axis.x(state)
         yield Polyline(((x, top - 5), (x, bottom + 4)), "moment")
-    for n, violation in enumerate(found.violations, 1):
-        x = axis.x(found.decisive(violation))
+    for n, violation in enumerate(ribbon.violations, 1):
+        x = axis.x(ribbon.decisive(violation))
         about = set(violation.binding.values())
-        for place, row in enumerate(found.rows):
+        for place, row in enumerate(ribbon.rows):
             if about & set(row.objects):
                 y = top + _ROW * place
                 yield Polyline(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")

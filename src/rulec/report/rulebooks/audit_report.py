@@ -91,11 +91,13 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     return "\n\n".join(blocks)
 
 
-def _lines(found: Sequence[AuditFinding], width: int) -> str:
-    if not any(audit_finding.note for audit_finding in found):
-        names = ", ".join(visible(audit_finding.name) for audit_finding in found)
+def _lines(audit_findings: Sequence[AuditFinding], width: int) -> str:
+    if not any(audit_finding.note for audit_finding in audit_findings):
+        names = ", ".join(visible(audit_finding.name) for audit_finding in audit_findings)
         return fill(names, width, initial_indent="  ", subsequent_indent="  ")
-    return _rows([(audit_finding.name, audit_finding.note) for audit_finding in found], width)
+    return _rows(
+        [(audit_finding.name, audit_finding.note) for audit_finding in audit_findings], width
+    )
 
 
 def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:

@@ -12,15 +12,16 @@ from rulec.rulebook.model import Rule
 COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
 
-def as_csv(found: RulebookDiff) -> str:
+def as_csv(rulebook_diff: RulebookDiff) -> str:
     """The lines, below one that names the columns."""
-    rows = [_row(pair.relation, pair.first, pair.second) for pair in found.pairs]
+    rows = [_row(pair.relation, pair.first, pair.second) for pair in rulebook_diff.pairs]
     rows += [
-        _row(f"only in {found.first.name}", one_sided.rule, None) for one_sided in found.only_first
+        _row(f"only in {rulebook_diff.first.name}", one_sided.rule, None)
+        for one_sided in rulebook_diff.only_first
     ]
     rows += [
-        _row(f"only in {found.second.name}", None, one_sided.rule)
-        for one_sided in found.only_second
+        _row(f"only in {rulebook_diff.second.name}", None, one_sided.rule)
+        for one_sided in rulebook_diff.only_second
     ]
     return table([COLUMNS, *rows])
 

@@ -25,17 +25,21 @@ COLOURS: dict[RuleRelation, str] = {
 }
 
 
-def as_text(found: RulebookDiff) -> str:
+def as_text(rulebook_diff: RulebookDiff) -> str:
     """What differs first, what is the same last."""
-    one, other = found.first.name, found.second.name
-    blocks = [_head(found)]
-    blocks += ["\n".join(_pair(pair, found)) for pair in found.pairs if is_worth_a_block(pair)]
-    blocks += [_only(found.only_first, one, other)] if found.only_first else []
-    blocks += [_only(found.only_second, other, one)] if found.only_second else []
-    blocks += [_settings(found)] if found.settings else []
-    same = [pair.name for pair in found.pairs if not is_worth_a_block(pair)]
+    one, other = rulebook_diff.first.name, rulebook_diff.second.name
+    blocks = [_head(rulebook_diff)]
+    blocks += [
+        "\n".join(_pair(pair, rulebook_diff))
+        for pair in rulebook_diff.pairs
+        if is_worth_a_block(pair)
+    ]
+    blocks += [_only(rulebook_diff.only_first, one, other)] if rulebook_diff.only_first else []
+    blocks += [_only(rulebook_diff.only_second, other, one)] if rulebook_diff.only_second else []
+    blocks += [_settings(rulebook_diff)] if rulebook_diff.settings else []
+    same = [pair.name for pair in rulebook_diff.pairs if not is_worth_a_block(pair)]
     blocks += ["\n".join(_listed("the same in both: ", same))] if same else []
-    blocks.append(summary(found))
+    blocks.append(summary(rulebook_diff))
     return "\n\n".join(blocks)
 
 
@@ -44,27 +48,27 @@ def is_worth_a_block(pair: RulePair) -> bool:
     return pair.relation != "equal" or bool(pair.notes)
 
 
-def _head(found: RulebookDiff) -> str:
-    first, second = found.first, found.second
+def _head(rulebook_diff: RulebookDiff) -> str:
+    first, second = rulebook_diff.first, rulebook_diff.second
     title = click.style(f"{first.name} compared to {second.name}", bold=True)
     days = f"the law of {first.at}"
     if first.at != second.at:
         days = f"{first.name} is the law of {first.at}, {second.name} that of {second.at}"
-    return "\n".join([f"{title}; {days}", *sides(found)])
+    return "\n".join([f"{title}; {days}", *sides(rulebook_diff)])
 
 
-def sides(found: RulebookDiff) -> list[str]:
+def sides(rulebook_diff: RulebookDiff) -> list[str]:
     """A line on traffic if it keeps to different sides, which many rules differ by."""
-    first, second = found.first, found.second
+    first, second = rulebook_diff.first, rulebook_diff.second
     if {first.traffic, second.traffic} != {"left", "right"}:
         return []
     ours = f"{first.name} drives on the {first.traffic}"
     return [f"{ours}, {second.name} on the {second.traffic}: near and far change sides"]
 
 
-def verdict(pair: RulePair, found: RulebookDiff) -> str:
+def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
     """The relation in words."""
-    one, other = found.first.name, found.second.name
+    one, other = rulebook_diff.first.name, rulebook_diff.second.name
     match pair.relation:
         case "equal":
             return "the same traces are forbidden"
@@ -78,32 +82,37 @@ def verdict(pair: RulePair, found: RulebookDiff) -> str:
             return f"not decided: {pair.comparison.undecided}"
 
 
-def about_types(pair: RulePair, found: RulebookDiff) -> str:
+def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
     """Which objects the comparison is about, where one of the rules speaks of more."""
     if not pair.comparison.common:
         return ""
     heads = [
         f"{book.name} speaks of "
         f"({', '.join(f'{variable.name}: {variable.type}' for variable in rule.variables)})"
-        for book, rule in ((found.first, pair.first), (found.second, pair.second))
+        for book, rule in ((rulebook_diff.first, pair.first), (rulebook_diff.second, pair.second))
     ]
     kinds = ", ".join(pair.comparison.common)
     return f"{', '.join(heads)}; of ({kinds}), which both speak of: {pair.comparison.on_common}"
 
 
-def _pair(pair: RulePair, found: RulebookDiff) -> Iterator[str]:
+def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
     name = click.style(pair.name, bold=True)
-    words = click.style(visible(verdict(pair, found)), fg=COLOURS[pair.relation])
+    words = click.style(visible(verdict(pair, rulebook_diff)), fg=COLOURS[pair.relation])
     yield f"{name}: {words}"
-    types = about_types(pair, found)
+    types = about_types(pair, rulebook_diff)
     if types:
         yield f"  {visible(types)}"
     for what, ours, theirs in pair.notes:
         for number, line in enumerate(
-            wrap(visible(f"{what}: {ours} in {found.first.name}, {theirs} in {found.second.name}"))
+            wrap(
+                visible(
+                    f"{what}: {ours} in {rulebook_diff.first.name}, "
+                    f"{theirs} in {rulebook_diff.second.name}"
+                )
+            )
         ):
             yield f"  {'  ' * (number > 0)}{line}"
-    for forbids, allows, table in found.tables(pair):
+    for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
         yield from _table(table)
 
@@ -124,21 +133,21 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
     return "\n".join([title, *lines])
 
 
-def _settings(found: RulebookDiff) -> str:
+def _settings(rulebook_diff: RulebookDiff) -> str:
     lines = [
-        f"  {setting.kind} {setting.name}: {setting.first} in {found.first.name}, "
-        f"{setting.second} in {found.second.name}"
-        for setting in found.settings
+        f"  {setting.kind} {setting.name}: {setting.first} in {rulebook_diff.first.name}, "
+        f"{setting.second} in {rulebook_diff.second.name}"
+        for setting in rulebook_diff.settings
     ]
     return "\n".join([click.style("set otherwise", bold=True), *map(visible, lines)])
 
 
-def only_why(one: OneSided, lacks: str) -> str:
+def only_why(one_sided: OneSided, lacks: str) -> str:
     """What the other rulebook says of a rule that it does not have."""
-    if one.remark is None:
+    if one_sided.remark is None:
         return ""
-    verb = "is silent on it" if one.remark.kind == "silent" else "dropped it"
-    because = f': "{one.remark.because}"' if one.remark.because else ""
+    verb = "is silent on it" if one_sided.remark.kind == "silent" else "dropped it"
+    because = f': "{one_sided.remark.because}"' if one_sided.remark.because else ""
     return f"; {lacks} {verb}{because}"
 
 
@@ -146,15 +155,18 @@ def _listed(title: str, names: Sequence[str]) -> list[str]:
     return wrap(f"{title}{', '.join(names)}", WIDTH, subsequent_indent="  ")
 
 
-def summary(found: RulebookDiff) -> str:
+def summary(rulebook_diff: RulebookDiff) -> str:
     """The line that ends it."""
-    counted = Counter(pair.relation for pair in found.pairs)
+    counted = Counter(pair.relation for pair in rulebook_diff.pairs)
     parts = [f"{counted[one]:,} {one}" for one in COLOURS if counted[one]]
     parts += [
         f"{len(rules):,} only in {book.name}"
-        for rules, book in ((found.only_first, found.first), (found.only_second, found.second))
+        for rules, book in (
+            (rulebook_diff.only_first, rulebook_diff.first),
+            (rulebook_diff.only_second, rulebook_diff.second),
+        )
         if rules
     ]
-    number = len(found.pairs)
+    number = len(rulebook_diff.pairs)
     rules = "rule" if number == 1 else "rules"
     return f"{number:,} shared {rules}: {', '.join(parts) or 'nothing to compare'}"

@@ -74,37 +74,40 @@ class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
     pairs: Sequence[BookPairData]
 
 
-def render(found: ComparisonMatrix, output_format: str) -> str:
+def render(comparison_matrix: ComparisonMatrix, output_format: str) -> str:
     """The matrix in one of the formats of differences."""
     match output_format:
         case "json":
-            return _as_json(found)
+            return _as_json(comparison_matrix)
         case "csv":
-            return _as_csv(found)
+            return _as_csv(comparison_matrix)
         case "markdown":
-            return _as_markdown(found)
+            return _as_markdown(comparison_matrix)
         case "html":
             # markdown-it and Pygments take 0.1 s.
             from rulec.report.text.html_page import as_html
 
-            return as_html(_as_markdown(found), TITLE, "")
+            return as_html(_as_markdown(comparison_matrix), TITLE, "")
         case _:
-            return _as_text(found)
+            return _as_text(comparison_matrix)
 
 
-def _as_text(found: ComparisonMatrix) -> str:
-    names = [book.name for book in found.books]
-    by_rule = [["", *names], *([rule.name, *_letters(rule, names)] for rule in found.shared)]
+def _as_text(comparison_matrix: ComparisonMatrix) -> str:
+    names = [book.name for book in comparison_matrix.books]
+    by_rule = [
+        ["", *names],
+        *([rule.name, *_letters(rule, names)] for rule in comparison_matrix.shared),
+    ]
     by_pair = [
         ["", *names],
-        *([name, *(_cell(found, name, other) for other in names)] for name in names),
+        *([name, *(_cell(comparison_matrix, name, other) for other in names)] for name in names),
     ]
     blocks = [
         fill(RULES, WIDTH),
         _columns(by_rule),
         fill(PAIRS, WIDTH),
         _columns(by_pair),
-        _summary(found),
+        _summary(comparison_matrix),
     ]
     return "\n\n".join(blocks)
 
@@ -130,41 +133,48 @@ def _letter(rule: SharedRule, book: str) -> str:
     return letter if rule.rules[book].strength == "hard" else letter.lower()
 
 
-def _cell(found: ComparisonMatrix, left: str, right: str) -> str:
+def _cell(comparison_matrix: ComparisonMatrix, left: str, right: str) -> str:
     if left == right:
         return ""
-    counted = found.counts(left, right)
+    counted = comparison_matrix.counts(left, right)
     parts = [f"{counted[kind]}{sign}" for kind, sign in SIGNS.items() if counted[kind]]
     return " ".join(parts) or ABSENT
 
 
-def _summary(found: ComparisonMatrix) -> str:
-    counted = Counter(len(set(rule.laws.values())) == 1 for rule in found.shared)
+def _summary(comparison_matrix: ComparisonMatrix) -> str:
+    counted = Counter(len(set(rule.laws.values())) == 1 for rule in comparison_matrix.shared)
     return (
-        f"{len(found.books):,} rulebooks, {len(found.shared):,} rules that two or more of them "
-        f"have, {counted[True]:,} of them the same in all"
+        f"{len(comparison_matrix.books):,} rulebooks, "
+        f"{len(comparison_matrix.shared):,} rules that two or more of them have, "
+        f"{counted[True]:,} of them the same in all"
     )
 
 
-def _as_markdown(found: ComparisonMatrix) -> str:
-    names = [book.name for book in found.books]
+def _as_markdown(comparison_matrix: ComparisonMatrix) -> str:
+    names = [book.name for book in comparison_matrix.books]
     head = ["", *map(code, names)]
     return "\n\n".join(
         [
             f"# {TITLE}",
-            f"{escaped(_summary(found))}.",
+            f"{escaped(_summary(comparison_matrix))}.",
             "## Rule by rule",
             f"{RULES.partition(': ')[2].capitalize()}.",
             markdown_table(
                 head,
-                [[code(rule.name), *map(escaped, _letters(rule, names))] for rule in found.shared],
+                [
+                    [code(rule.name), *map(escaped, _letters(rule, names))]
+                    for rule in comparison_matrix.shared
+                ],
             ),
             "## Pair by pair",
             f"{escaped(PAIRS.partition(': ')[2].capitalize())}.",
             markdown_table(
                 head,
                 [
-                    [code(name), *(escaped(_cell(found, name, other)) for other in names)]
+                    [
+                        code(name),
+                        *(escaped(_cell(comparison_matrix, name, other)) for other in names),
+                    ]
                     for name in names
                 ],
             ),
@@ -172,11 +182,11 @@ def _as_markdown(found: ComparisonMatrix) -> str:
     )
 
 
-def _as_csv(found: ComparisonMatrix) -> str:
+def _as_csv(comparison_matrix: ComparisonMatrix) -> str:
     rows = [
         (rule.name, one, other, rule.relation(one, other) or "")
-        for rule in found.shared
-        for one, other in pairs(found.books)
+        for rule in comparison_matrix.shared
+        for one, other in pairs(comparison_matrix.books)
         if one in rule.laws and other in rule.laws
     ]
     return csv_table([("rule", "first", "second", "relation"), *rows])

@@ -5,12 +5,12 @@ from __future__ import annotations
 from rulec.analysis.lineage.rule_lineage import LineageStep, RuleHistory
 
 
-def provenance(one: RuleHistory, book: str) -> str:
+def provenance(rule_history: RuleHistory, book: str) -> str:
     """Own, inherited, overriding, or gone, and why; ``book`` is the rulebook in question."""
-    last = one.last
+    last = rule_history.last
     because = f", because {last.because}" if last.because else ""
     here = last.book == book
-    base = one.steps[-2].book if len(one.steps) > 1 else ""
+    base = rule_history.steps[-2].book if len(rule_history.steps) > 1 else ""
     match last.deed:
         case "declared":
             return "own" if here else f"inherited from {last.book}"

@@ -47,18 +47,20 @@ def as_text(
     return "\n".join([*lines, _summary(runs)])
 
 
-def failure(one: ExampleOutcome, rulebook: str) -> Diagnostic:
+def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
     """The error about an example that fails in a rulebook, which may have inherited it."""
-    problem = replace(example_warning(one), severity="error")
-    rule = one.rule
+    problem = replace(example_warning(example_outcome), severity="error")
+    rule = example_outcome.rule
     if (
-        one.accepted
+        example_outcome.accepted
         and rule.condition is not None
         and fold_constants(rule.condition) == Constant(False)
     ):
         why = "the rule's condition is false as options are set"
         return replace(problem, help=f"{why}: set them, or leave the example out")
-    stands_in = [span.source for span in (rule.span, one.example.span) if span is not None]
+    stands_in = [
+        span.source for span in (rule.span, example_outcome.example.span) if span is not None
+    ]
     if rule.book == rulebook and len(set(stands_in)) < 2:
         return problem
     variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)

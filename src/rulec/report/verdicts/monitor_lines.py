@@ -16,13 +16,13 @@ MOST_CHANGES = 20
 _COLORS: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
 
 
-def as_text(found: SoFar) -> str:
+def as_text(so_far: SoFar) -> str:
     """The state's number, the verdict of the rulebook, and what has changed."""
-    changes = [visible(_change(change)) for change in found.changes[:MOST_CHANGES]]
-    if len(found.changes) > len(changes):
-        changes.append(f"and {len(found.changes) - len(changes):,} more")
-    verdict = click.style(found.verdict, fg=_COLORS.get(found.verdict))
-    return f"{found.state}: {'; '.join([verdict, *changes])}"
+    changes = [visible(_change(change)) for change in so_far.changes[:MOST_CHANGES]]
+    if len(so_far.changes) > len(changes):
+        changes.append(f"and {len(so_far.changes) - len(changes):,} more")
+    verdict = click.style(so_far.verdict, fg=_COLORS.get(so_far.verdict))
+    return f"{so_far.state}: {'; '.join([verdict, *changes])}"
 
 
 def _change(verdict_change: VerdictChange) -> str:

@@ -46,9 +46,9 @@ def _drives(count: int) -> str:
     return f"{count:,} {'drive' if count == 1 else 'drives'}"
 
 
-def _not_judged(found: Sequence[NoDrive]) -> Iterator[str]:
+def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
     reasons: dict[str, list[str]] = {}
-    for no_drive in found:
+    for no_drive in no_drives:
         reasons.setdefault(no_drive.why, []).append(no_drive.ego)
     for why, egos in reasons.items():
         yield f"not judged  {_vehicles(egos)}: {why}"
@@ -97,16 +97,18 @@ def _some(names: Sequence[str]) -> str:
 
 
 def drive_details(
-    one: DriveVerdict,
+    drive_verdict: DriveVerdict,
     judged: RecordingVerdicts,
     explained: Sequence[Explanation],
     *,
     every_part: bool,
 ) -> str:
     """The verdict on one drive, with explanations of its first violations; nothing without one."""
-    if not isinstance(one.answer, Verdict):
+    if not isinstance(drive_verdict.answer, Verdict):
         return ""
-    text = verdict_report.as_text(one.answer, judged.rules, explained, every_part=every_part)
+    text = verdict_report.as_text(
+        drive_verdict.answer, judged.rules, explained, every_part=every_part
+    )
     return f"\n{text}"
 
 

@@ -62,14 +62,14 @@ def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
     )
 
 
-def no_time(side: tree.Amount, found: NumberByCases) -> Diagnostic:
+def no_time(side: tree.Amount, number_by_cases: NumberByCases) -> Diagnostic:
     """A bound that is no fixed time from 0 on."""
-    if not found.is_constant:
+    if not number_by_cases.is_constant:
         why = "changes from state to state"
-    elif found.dimension is None or found.cases[0][1].constant < 0:
+    elif number_by_cases.dimension is None or number_by_cases.cases[0][1].constant < 0:
         why = "is below 0"
     else:
-        why = f"is {kind_of(found.dimension)}"
+        why = f"is {kind_of(number_by_cases.dimension)}"
     return SENSELESS_BOUND.at(
         side.span,
         f"`{short(side)}` {why}; a bound is a fixed time",

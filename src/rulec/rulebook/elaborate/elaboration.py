@@ -235,11 +235,11 @@ def _checked(formula: Formula) -> Formula:
 
 
 def _as_number(
-    node: tree.Formula, found: Meaning | None, around: tree.Compare, scope: Scope
+    node: tree.Formula, meaning: Meaning | None, around: tree.Compare, scope: Scope
 ) -> NumberByCases | None:
-    if found is None or isinstance(found, NumberByCases):
-        return found
-    scope.report(say.not_comparable(node, found, around, scope))
+    if meaning is None or isinstance(meaning, NumberByCases):
+        return meaning
+    scope.report(say.not_comparable(node, meaning, around, scope))
     return None
 
 

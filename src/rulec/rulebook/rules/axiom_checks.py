@@ -51,8 +51,8 @@ def contradicted(
     for example in rule.examples if axioms else ():
         objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
         read = frozenset(
-            (one.name, one.arguments)
-            for one in required_inputs(rule.formula, objects, vocabulary.is_subtype)
+            (required_input_.name, required_input_.arguments)
+            for required_input_ in required_inputs(rule.formula, objects, vocabulary.is_subtype)
         )
         for number, state in enumerate(example.states):
             broken = _broken(ExampleValues(state, read, objects, vocabulary), axioms)

@@ -90,25 +90,25 @@ def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
 
 
 def _value(
-    fact: tree.StateLiteral, found: Atom | Quantity, scope: Scope
+    fact: tree.StateLiteral, atom: Atom | Quantity, scope: Scope
 ) -> bool | str | float | None:
     """The value that a fact states; None if it has a mistake, which is reported."""
-    if isinstance(found, Quantity):
-        return _number(fact, found, scope)
+    if isinstance(atom, Quantity):
+        return _number(fact, atom, scope)
     if fact.value is not None:
-        scope.report(say.not_a_number(fact, found, scope.symbols))
+        scope.report(say.not_a_number(fact, atom, scope.symbols))
         return None
-    if found.value is not None and fact.negated:
-        scope.report(say.denied(fact, found, scope.symbols))
+    if atom.value is not None and fact.negated:
+        scope.report(say.denied(fact, atom, scope.symbols))
         return None
-    return not fact.negated if found.value is None else found.value
+    return not fact.negated if atom.value is None else atom.value
 
 
-def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | None:
+def _number(fact: tree.StateLiteral, quantity: Quantity, scope: Scope) -> float | None:
     """A quantity's value, in the unit of its declaration."""
-    unit = scope.symbols.unit_of(found.name)
+    unit = scope.symbols.unit_of(quantity.name)
     if fact.value is None:
-        scope.report(say.without_number(fact, found, scope.symbols))
+        scope.report(say.without_number(fact, quantity, scope.symbols))
         return None
     minus = isinstance(fact.value, tree.Minus)
     node = fact.value.operand if isinstance(fact.value, tree.Minus) else fact.value
@@ -117,11 +117,11 @@ def _number(fact: tree.StateLiteral, found: Quantity, scope: Scope) -> float | N
     if given is None or unit is None:
         return None
     if given.dimension not in (None, unit.dimension):
-        scope.report(say.other_dimension(fact, found, given, unit))
+        scope.report(say.other_dimension(fact, quantity, given, unit))
         return None
     try:
         value = float(given.cases[0][1].constant / unit.factor)
     except OverflowError:
-        scope.report(say.too_large(fact, found, unit))
+        scope.report(say.too_large(fact, quantity, unit))
         return None
     return -value if minus else value

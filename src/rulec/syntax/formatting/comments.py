@@ -38,11 +38,11 @@ def comments_of(source: Source, tokens: Sequence[Token]) -> list[Comment]:
     ]
 
 
-def _comment(source: Source, found: re.Match[str]) -> Comment:
-    start = found.start()
+def _comment(source: Source, match_: re.Match[str]) -> Comment:
+    start = match_.start()
     line_start = source.text.rfind("\n", 0, start) + 1
     trails = bool(source.text[line_start:start].strip())
-    return Comment(found.group().rstrip(), start, start - line_start, trails)
+    return Comment(match_.group().rstrip(), start, start - line_start, trails)
 
 
 def blank_line_before(text: str, position: int) -> bool:
