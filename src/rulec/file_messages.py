@@ -60,7 +60,14 @@ def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     line, column = before.position(len(before.text))
     excerpt = data.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r\0")
     return NOT_UTF8.at(
-        SourceLocation(name, line, column, line, column + 1, excerpt),
+        SourceLocation(
+            file=name,
+            line=line,
+            column=column,
+            end_line=line,
+            end_column=column + 1,
+            excerpt=excerpt,
+        ),
         f"the byte 0x{data[position]:02x} is not UTF-8",
         help=way_out,
     )

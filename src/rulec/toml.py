@@ -56,4 +56,11 @@ def _syntax_error(message: str, source: Source) -> tuple[str, SourceLocation]:
         line, column = source.position(len(source.text))
     else:
         return words, SourceLocation(source.name)
-    return words, SourceLocation(source.name, line, column, line, column + 1, source.line(line))
+    return words, SourceLocation(
+        file=source.name,
+        line=line,
+        column=column,
+        end_line=line,
+        end_column=column + 1,
+        excerpt=source.line(line),
+    )

@@ -72,7 +72,14 @@ def compare_rulebooks(
     one, lineage = read_with_lineage(first, search_path, at)
     two, second_lineage = read_with_lineage(second, search_path, at)
     warn(list(dict.fromkeys((*one.warnings, *two.warnings))))
-    diff = diff_rulebooks(one.rulebook, two.rulebook, patterns, step_s, tell, most)
+    diff = diff_rulebooks(
+        first=one.rulebook,
+        second=two.rulebook,
+        patterns=patterns,
+        step_s=step_s,
+        tell=tell,
+        most=most,
+    )
     # What rules that were not asked for depend on is not asked for either.
     return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))
 

@@ -167,13 +167,13 @@ class RulebookVerbs(SessionSettings):
         from rulec.automata.thresholds import exact
 
         return compare_rulebooks(
-            first,
-            second,
-            self.search_path,
-            self.at,
-            patterns,
-            None if step_s is None else exact(step_s),
-            self._warn,
+            first=first,
+            second=second,
+            search_path=self.search_path,
+            at=self.at,
+            patterns=patterns,
+            step_s=None if step_s is None else exact(step_s),
+            warn=self._warn,
             most=witnesses,
         )
 

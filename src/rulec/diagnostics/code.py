@@ -63,7 +63,16 @@ class Code:
     ) -> Diagnostic:
         """A mistake of this kind at a place, if it has one; see ``Diagnostic``."""
         where = place.place if isinstance(place, Span) else place
-        return Diagnostic(self.code, message, where, expected, help, labels, notes, severity)
+        return Diagnostic(
+            code=self.code,
+            message=message,
+            place=where,
+            expected=expected,
+            help=help,
+            labels=labels,
+            notes=notes,
+            severity=severity,
+        )
 
     def error(
         self,

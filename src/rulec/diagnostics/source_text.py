@@ -80,4 +80,11 @@ class Span:
         line, column = self.source.position(self.start)
         end_line, end_column = self.source.position(max(self.start, self.end))
         excerpt = self.source.line(line)
-        return SourceLocation(self.source.name, line, column, end_line, end_column, excerpt)
+        return SourceLocation(
+            file=self.source.name,
+            line=line,
+            column=column,
+            end_line=end_line,
+            end_column=end_column,
+            excerpt=excerpt,
+        )

@@ -107,7 +107,15 @@ def check_state(
                 f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
                 help=_unknown_name(name, vocabulary),
             )
-        _check_value(value, declaration, declaration.parameters, objects, vocabulary, where, place)
+        _check_value(
+            value=value,
+            declaration=declaration,
+            parameters=declaration.parameters,
+            objects=objects,
+            vocabulary=vocabulary,
+            where=where,
+            place=place,
+        )
 
 
 def _check_value(
@@ -140,7 +148,15 @@ def _check_value(
                 f"`{name}` is about each `{parameters[0]}`"
             )
             raise UNKNOWN_OBJECT.error(place, message)
-        _check_value(inner, declaration, parameters[1:], objects, vocabulary, where, place)
+        _check_value(
+            value=inner,
+            declaration=declaration,
+            parameters=parameters[1:],
+            objects=objects,
+            vocabulary=vocabulary,
+            where=where,
+            place=place,
+        )
 
 
 def _look(declaration: Declaration, fitting: list[frozenset[str]]) -> _Look:

@@ -68,7 +68,13 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     distinct = tuple([states[place] for place in places])
     own_names = () if are_alike else [whose[place] for place in places]
     shared = TraceCells(
-        layout, cells, distinct, example.objects, example.present, there, example.step_s
+        layout=layout,
+        cells=cells,
+        states=distinct,
+        objects=example.objects,
+        present=example.present,
+        there=there,
+        step_s=example.step_s,
     )
     return TraceGroup(shared, order.tolist(), own_names)
 

@@ -115,14 +115,23 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     instants = deciding_instants(formula, word, rulebook.semantics)
     decides = {part for part, at in instants.items() if any(at)}
     return Explanation(
-        rule,
-        violation,
-        states,
-        decisive,
-        tuple(_facts(truths, decides, observed)),
-        tuple(_parts(rule.formula, formula, values, decides, observed, 0)),
-        _repair(rule.machine, observed, binding.first),
-        rulebook.vocabulary,
+        rule=rule,
+        violation=violation,
+        states=states,
+        decisive=decisive,
+        facts=tuple(_facts(truths, decides, observed)),
+        parts=tuple(
+            _parts(
+                written=rule.formula,
+                stepped=formula,
+                truths=values,
+                deciding=decides,
+                observed=observed,
+                depth=0,
+            )
+        ),
+        repair=_repair(rule.machine, observed, binding.first),
+        vocabulary=rulebook.vocabulary,
     )
 
 
@@ -251,12 +260,40 @@ def _parts(
     values = truths[stepped]
     shown = tuple(values[n] for n in observed.shown)
     text, decides = formula_text(written), stepped in deciding
-    yield Part(written, text, depth, shown, observed.changes(values), decides)
+    yield Part(
+        formula=written,
+        text=text,
+        depth=depth,
+        values=shown,
+        changed=observed.changes(values),
+        decides=decides,
+    )
     match written, stepped:
         case Unary(_, operand), Unary(_, same):
-            yield from _parts(operand, same, truths, deciding, observed, depth + 1)
+            yield from _parts(
+                written=operand,
+                stepped=same,
+                truths=truths,
+                deciding=deciding,
+                observed=observed,
+                depth=depth + 1,
+            )
         case Binary(_, left, right), Binary(_, same_left, same_right):
-            yield from _parts(left, same_left, truths, deciding, observed, depth + 1)
-            yield from _parts(right, same_right, truths, deciding, observed, depth + 1)
+            yield from _parts(
+                written=left,
+                stepped=same_left,
+                truths=truths,
+                deciding=deciding,
+                observed=observed,
+                depth=depth + 1,
+            )
+            yield from _parts(
+                written=right,
+                stepped=same_right,
+                truths=truths,
+                deciding=deciding,
+                observed=observed,
+                depth=depth + 1,
+            )
         case _:
             return

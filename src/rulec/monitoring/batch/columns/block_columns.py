@@ -60,7 +60,17 @@ def _group(block: Block, presence: BlockPresence, traces: NDArray[np.int64]) -> 
     there = slice(presence.starts[traces[0]], presence.starts[traces[0] + 1])
     names, types = tuple(presence.objects[there]), presence.types[there]
     stretches = presence.stretches[there]
-    return BlockGroup(block, presence, traces, layout, rows, state, names, types, stretches)
+    return BlockGroup(
+        block=block,
+        presence=presence,
+        traces=traces,
+        layout=layout,
+        rows=rows,
+        state=state,
+        objects=names,
+        types=types,
+        stretches=stretches,
+    )
 
 
 def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
