@@ -77,7 +77,7 @@ def main() -> None:
     _limit(resource.RLIMIT_AS, MEMORY_LIMIT_BYTES)
     answers = sys.stdout.buffer
     try:
-        from rulec.automata import spot_bridge
+        from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
     except ImportError as problem:
         pickle.dump(WorkerGreeting(None, str(problem)), answers)
         return
@@ -100,7 +100,7 @@ def main() -> None:
 
 
 def _answer(job: Job) -> Done | Failed:
-    from rulec.automata import spot_bridge
+    from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
     n_letters = count_letters(job.reads)
     if n_letters > MOST_LETTERS:
@@ -128,7 +128,7 @@ def _answer(job: Job) -> Done | Failed:
 
 def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
     """Facts of the group that cannot hold together, each of them needed for that."""
-    from rulec.automata import spot_bridge
+    from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
     needed = group
     for instance in group.instances:

@@ -64,9 +64,9 @@ def pint_unit(name: str) -> Unit | Refusal | None:
 def _registry() -> UnitRegistry[Any] | None:
     """Pint's units; None where Pint is missing or broken, which must not keep `m` from working."""
     try:
-        from importlib.resources import files
+        from importlib.resources import files  # 0.2 s, only for rare units
 
-        import pint
+        import pint  # 0.2 s, only for rare units
 
         registry: UnitRegistry[Any] = pint.UnitRegistry(
             None, non_int_type=Fraction, on_redefinition="ignore"

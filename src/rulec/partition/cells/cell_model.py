@@ -59,7 +59,7 @@ class Cell:
     @property
     def polygon(self) -> Polygon:
         """Shapely polygon of the cell in ``s`` and ``d`` (m)."""
-        import shapely
+        import shapely  # 0.1 s, and few ask for polygons
 
         return shapely.union_all(
             [shapely.box(b.s_min, b.d_min, b.s_max, b.d_max) for b in self.boxes]

@@ -72,7 +72,7 @@ def read_commonroad(path: Path) -> Recording:
 def _library(path: Path) -> Callable[[Path], Any]:
     # The library is optional, and takes a second to import
     try:
-        from commonroad.common.file_reader import CommonRoadFileReader
+        from commonroad.common.file_reader import CommonRoadFileReader  # an extra, and 1 s
     except ImportError:
         raise COMMONROAD_MISSING.error(
             SourceLocation(str(path)),
