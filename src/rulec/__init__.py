@@ -117,10 +117,10 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
     from rulec.report.text.listing import Listed as Listed
     from rulec.rulebook.batch.batch_check import Checked as Checked
-    from rulec.rulebook.model import Example as Example
-    from rulec.rulebook.model import Rule as Rule
-    from rulec.rulebook.model import Rulebook as Rulebook
-    from rulec.rulebook.model import Variable as Variable
+    from rulec.rulebook.rulebook_model import Example as Example
+    from rulec.rulebook.rulebook_model import Rule as Rule
+    from rulec.rulebook.rulebook_model import Rulebook as Rulebook
+    from rulec.rulebook.rulebook_model import Variable as Variable
     from rulec.scenario import Choice as Choice
     from rulec.scenario import Scenario as Scenario
     from rulec.scenario.recorded.recording import Lanelet as Lanelet
@@ -172,7 +172,7 @@ _HOME = {
     "rulec.planning.ranking.penalties": "PenaltyRank",
     "rulec.report.text.listing": "Listed",
     "rulec.rulebook.batch.batch_check": "Checked",
-    "rulec.rulebook.model": "Example Rule Rulebook Variable",
+    "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",
     "rulec.scenario.recorded.recording": "Lanelet Participant PlanningProblem Recording TrackState",
     "rulec.trace": "Trace TraceGraph",

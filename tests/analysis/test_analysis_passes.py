@@ -26,7 +26,7 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Axiom, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.witnesses.undecided import UndecidedError

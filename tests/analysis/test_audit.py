@@ -21,7 +21,7 @@ from rulec.analysis.lineage.book_lineage import book_lineage_of
 from rulec.analysis.lineage.rule_lineage import BookHeader, BookLineage, LineageStep, RuleHistory
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 from support.builders import rulebook_family as island
 
 

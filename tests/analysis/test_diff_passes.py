@@ -27,7 +27,7 @@ from rulec.analysis.lineage.rule_lineage import (
 )
 from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from support.builders.rulebooks import always, no
 from support.generators.random_rule_pairs import ALONE, VOCABULARY, X, Y, allows, formulas, sides

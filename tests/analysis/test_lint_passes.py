@@ -21,7 +21,7 @@ from rulec.analysis.lint.redundancy import (
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Axiom, Rule, Variable
+from rulec.rulebook.rulebook_model import Axiom, Rule, Variable
 from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
 from support.builders.rulebooks import always, both, eventually, implies, no

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rulec.analysis.diff.diverse_witnesses import non_default_names
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
 from support.generators.random_rule_pairs import (
     ALONE,

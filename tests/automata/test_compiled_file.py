@@ -21,7 +21,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
 from support.generators.timed_formulas import TIMED_VOCABULARY, comparison
 

@@ -24,7 +24,7 @@ from rulec.logic.formula import (
 from rulec.logic.past_registers import eliminate_past
 from rulec.logic.printing import formula_text
 from rulec.rulebook.loader import load_rulebook
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
 from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
 from support.generators.random_formulas import formulas

@@ -7,7 +7,7 @@ from rulec.automata.axiom_instances import axiom_groups, axiom_instances, linked
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 
 TOWN = """
 rulebook town

@@ -31,7 +31,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import verify
-from rulec.rulebook.model import Axiom, Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary

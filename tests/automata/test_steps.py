@@ -13,7 +13,7 @@ from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.planning.product.graph_instances import instances
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
 from support.builders.rulebooks import P, Q, always, book, implies, rule

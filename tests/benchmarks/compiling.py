@@ -29,7 +29,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.vocabulary import Signal, Vocabulary
 
 FAMILIES = {

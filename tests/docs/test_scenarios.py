@@ -9,7 +9,7 @@ import pytest
 from rulec.api.workflow import find_maneuvers
 from rulec.partition import navigation_graph
 from rulec.scenario import available_scenarios, load_scenario
-from rulec.scenario.model import SURFACES
+from rulec.scenario.scenario_model import SURFACES
 from rulec.scenario.toml import schema
 
 ROOT = Path(__file__).resolve().parents[2]

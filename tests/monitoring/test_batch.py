@@ -28,7 +28,7 @@ from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import (
     always,

@@ -17,7 +17,7 @@ from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.explanation_json import explanation_data
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.measured_vocabulary import MEASURED, SPEED, closer, gap, number, others_near
 from support.builders.rulebooks import (

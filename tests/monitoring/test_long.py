@@ -13,7 +13,7 @@ from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.batch.machines import chunked_run
 from rulec.monitoring.batch.machines.chunked_run import visited
 from rulec.monitoring.verify import verify_or_reason
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import Q, always, compile_here, eventually, far, implies, near, rule
 from support.generators.random_records import chunks, rulebooks, told

@@ -14,7 +14,7 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import NotJudged
 from rulec.monitoring.verify import verify_or_reason
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import compile_here, rule
 from support.builders.state_traces import as_trace

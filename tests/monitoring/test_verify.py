@@ -9,7 +9,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Atom, Constant, Quantity, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import verify, verify_or_reason
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
 from support.builders.measured_vocabulary import MEASURED, closer, gap, number, others_near

@@ -5,7 +5,7 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario, load_scenario
-from rulec.scenario.model import MissingLane
+from rulec.scenario.scenario_model import MissingLane
 
 ROAD = Road((0.0, 100.0), (0.0, 3.0, 6.0))
 

@@ -27,7 +27,7 @@ from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem

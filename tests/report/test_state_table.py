@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.report.verdicts.state_table import StateTable, state_table
+from rulec.report.verdicts.example_table import StateTable, state_table
 from rulec.rulebook.loader import parse_rulebook
 
 BOOK = """\

@@ -12,7 +12,7 @@ from rulec.book_tests.edge_coverage import coverage
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.report.tests.example_text import missing_example
-from rulec.rulebook.model import Example, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Example, Rulebook, Variable
 from rulec.witnesses.coverage_witness import is_possible
 from support.builders.measured_vocabulary import MEASURED, SPEED, closer, gap, number, others_near
 from support.builders.rulebooks import (

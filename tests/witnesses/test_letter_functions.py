@@ -19,7 +19,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.witnesses.letter_functions import (
     axiom_function,
     body_of,

@@ -20,7 +20,7 @@ from rulec.logic.formula import (
     Unary,
 )
 from rulec.logic.formula import UnaryOperator as Operator
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.counted_objects import MOST_COUNTED_OBJECTS

@@ -12,7 +12,7 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Count, Quantity
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import run
-from rulec.rulebook.model import Example, Variable
+from rulec.rulebook.rulebook_model import Example, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.shortest_traces import shortest_traces

@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Count, Same
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import ObjectType, Signal, Vocabulary
 from rulec.witnesses.counted_objects import (
     MOST_COUNTED_OBJECTS,

@@ -17,7 +17,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
-from rulec.rulebook.model import Axiom
+from rulec.rulebook.rulebook_model import Axiom
 from rulec.trace import Trace
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function

@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.bounds import has_seconds
 from rulec.logic.free_names import names_in
-from rulec.rulebook.model import Axiom, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.logic.formula import Atom, Comparison, Count, Formula, atoms_of
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 
 
 def used_declarations(rulebook: Rulebook) -> frozenset[str]:

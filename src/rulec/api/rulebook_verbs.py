@@ -10,13 +10,13 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
-from rulec.api.settings import SessionSettings
+from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.analysis.lineage.rule_lineage import BookLineage
-    from rulec.api.settings import Rules
+    from rulec.api.session_settings import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.book_tests.edge_coverage import RuleCoverage
     from rulec.book_tests.example_runs import ExampleRun
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.verdict import Violation
     from rulec.report.text.listing import Listed
     from rulec.rulebook.batch.batch_check import Checked
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
     from rulec.trace import Trace
     from rulec.vocabulary import Vocabulary
 
@@ -236,6 +236,6 @@ class RulebookVerbs(SessionSettings):
 
     def list(self, kind: Kind = "rulebooks") -> tuple[Listed, ...]:
         """The rulebooks, vocabularies, scenarios or codes that there are, with a title."""
-        from rulec.api.listing import listed
+        from rulec.api.name_listing import listed
 
         return listed(kind, self._folders())

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from rulec.api.settings import SessionSettings
+from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from rulec.api.settings import Rules
+    from rulec.api.session_settings import Rules
     from rulec.partition import Envelope, GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.probability.alternative_predictions import AlternativeCounts

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rulec.api.settings import SessionSettings
+from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
-    from rulec.api.settings import Rules
+    from rulec.api.session_settings import Rules
     from rulec.diagnostics import RulecError
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives

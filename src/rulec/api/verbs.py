@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.api.session import Session
-from rulec.api.settings import ignore
+from rulec.api.session_settings import ignore
 
 if TYPE_CHECKING:
-    from rulec.api.settings import Rules
+    from rulec.api.session_settings import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.diagnostics import Diagnostic
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
 
 _USUAL = Session()
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rulec.partition import GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.trace_history import Before
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
     from rulec.scenario import Scenario
     from rulec.scenario.recorded.recording import Recording
 

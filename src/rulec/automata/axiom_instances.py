@@ -2,7 +2,7 @@
 
 A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
 that they fit. Facts that count are no part of this: how many objects there are, and which, is
-another matter in every state, so traces alone can tell (``rulec.monitoring.axioms``).
+another matter in every state, so traces alone can tell (``rulec.monitoring.axiom_violations``).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.renaming import rename_variables
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
 

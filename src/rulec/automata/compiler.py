@@ -25,7 +25,7 @@ from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.version import __version__
 
 CPU_LIMIT_S = 5

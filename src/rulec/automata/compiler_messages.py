@@ -8,7 +8,7 @@ from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import formula_text
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
 _EACH = [f"not s{number}" for number in range(1, 18)]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.logic.formula import Term
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 IMPOSSIBLE = -1
 """The class of letters that no state can have, because facts of the vocabulary exclude it."""

@@ -9,7 +9,7 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 MOST_STEPS = 100
 """Machines for so many steps are kept."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 
 EXAMPLE_FAILED = Code(
     "R0406",

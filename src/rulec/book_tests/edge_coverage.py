@@ -13,8 +13,8 @@ from rulec.logic.formula import Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import letter_reader_of
-from rulec.rows import short_repr
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
+from rulec.value_display import short_repr
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
     coverage_witness,

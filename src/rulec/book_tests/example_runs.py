@@ -12,12 +12,12 @@ from rulec.book_tests.book_test_messages import EXAMPLE_FAILED
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
-from rulec.monitoring.axioms import ImpossibleStateError, check_counting_axioms
+from rulec.monitoring.axiom_violations import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import letter_reader_of, run
-from rulec.rows import Rows, short_repr
-from rulec.rulebook.model import Example, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
+from rulec.value_display import Rows, short_repr
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 ExampleKind: TypeAlias = Literal[
     "rules",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.source_text import SourceLocation, Span
-from rulec.rows import Rows, short_repr
+from rulec.value_display import Rows, short_repr
 
 Severity: TypeAlias = Literal["error", "warning"]
 

@@ -18,7 +18,7 @@ from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.map_matching import MatchedLanelets, match_to_map
 from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
-from rulec.extraction.tracks.vru_surface import on_crosswalks, on_lanes
+from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Recording, Side
 

@@ -17,13 +17,13 @@ from rulec.extraction.signals.junction_signals import junction_signals
 from rulec.extraction.signals.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map_signals import map_signals
-from rulec.extraction.signals.other_signals import other_signals
+from rulec.extraction.signals.participant_signals import other_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
-from rulec.rows import short_repr
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import known_types
+from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
 _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (

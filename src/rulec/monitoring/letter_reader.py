@@ -11,7 +11,7 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.axioms import impossible_state
+from rulec.monitoring.axiom_violations import impossible_state
 from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value

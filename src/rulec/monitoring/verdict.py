@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.rows import Rows, short_repr
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
+from rulec.value_display import Rows, short_repr
 
 
 @dataclass(frozen=True, slots=True)

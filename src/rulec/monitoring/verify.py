@@ -9,7 +9,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.monitoring.axioms import check_counting_axioms
+from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.binding import bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects

@@ -9,7 +9,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.partition.cells.cell_model import Cell
 from rulec.partition.navigation_graph import NavigationGraph
 from rulec.partition.partition_messages import NOT_A_PATH
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 Profile = tuple[tuple[float, float], ...]
 """Breakpoints (s, d): from each s on the bound is d, until the next one."""

@@ -23,9 +23,9 @@ from rulec.partition.networkx_graph import to_networkx
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
 from rulec.partition.time_margin import edges
-from rulec.rows import short_repr
 from rulec.scenario import Scenario
 from rulec.scenario.time_grid import Timing, timing
+from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
     import networkx

@@ -12,6 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
+from rulec.planning.maneuver_results import RankedManeuver, RulePruning
 from rulec.planning.product.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import Joint, Product, count_paths, explore
@@ -21,10 +22,9 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_clas
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.pruning import Blaming, violating, violating_alone
-from rulec.planning.results import RankedManeuver, RulePruning
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
-from rulec.rows import Rows, short_count
 from rulec.trace import TraceGraph
+from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph

@@ -12,7 +12,7 @@ from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.partition import PartitionName
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
 
 RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
     "paper": ("position",),

@@ -11,7 +11,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.planning.partition_choice import SUPPLIED
 from rulec.planning.product.graph_instances import GraphInstance, instances
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary

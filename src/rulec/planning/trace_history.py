@@ -20,7 +20,7 @@ from rulec.monitoring.online.snapshot_file import read_saved
 from rulec.monitoring.state_validation import check_objects
 from rulec.planning.planning_messages import UNFITTING_PAST
 from rulec.planning.product.graph_instances import HARD
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.formats.trace_files import read_traces
 

@@ -17,8 +17,8 @@ from rulec.rulebook.files.search_path import (
     read_bytes,
 )
 from rulec.rulebook.files.vocabulary_files import Vocabularies
-from rulec.rulebook.model import Rulebook, SourceFile, Traffic
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
+from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
 

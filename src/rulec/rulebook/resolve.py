@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate.constant_checks import check_constants_and_macros
-from rulec.rulebook.model import Axiom, Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
 from rulec.rulebook.overlay.priorities import pre_order
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, overlay
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.rules.axiom_checks import contradicted
 from rulec.rulebook.rules.axioms import axiom_of
 from rulec.rulebook.rules.rule_elaboration import translate_rule

@@ -1,7 +1,9 @@
 """Scenarios: the road, ego, obstacles and their prediction; reading them from files."""
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import (
+from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.scenario_files import available_scenarios, load_scenario
+from rulec.scenario.scenario_model import (
     Account,
     Alternative,
     ConstantAcceleration,
@@ -14,8 +16,6 @@ from rulec.scenario.model import (
     Stretch,
     Trajectory,
 )
-from rulec.scenario.recorded.scene_choice import Choice
-from rulec.scenario.scenario_files import available_scenarios, load_scenario
 
 __all__ = [
     "Account",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rulec.scenario.model import Alternative, Motion
+from rulec.scenario.scenario_model import Alternative, Motion
 
 _ROUNDING = Fraction(1, 1000)
 

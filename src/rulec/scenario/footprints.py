@@ -6,7 +6,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import Footprints
+from rulec.scenario.scenario_model import Footprints
 
 
 def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:

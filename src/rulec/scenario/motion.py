@@ -9,7 +9,7 @@ from typing import Literal
 
 from rulec.scenario.footprints import bounds_within, displacement_within, displacements
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import (
+from rulec.scenario.scenario_model import (
     ConstantAcceleration,
     Footprints,
     Motion,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from rulec.diagnostics import SourceLocation
-from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import XmlFormat, is_xml, root_of, short
 from rulec.scenario.scenario_messages import OTHER_CHOICE
+from rulec.scenario.scenario_model import Scenario
 
 RECORDING = XmlFormat(
     "recorded traffic",

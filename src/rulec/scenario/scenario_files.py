@@ -8,10 +8,10 @@ from pathlib import Path
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
-from rulec.scenario.model import Scenario
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import is_xml
 from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
+from rulec.scenario.scenario_model import Scenario
 from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.field_check import Findings
 from rulec.scenario.toml.field_locations import TomlText

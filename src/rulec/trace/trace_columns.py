@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.rows import short_repr
 from rulec.trace.trace_model import State
+from rulec.value_display import short_repr
 
 Key = tuple[str, tuple[str, ...]]
 """A name of the vocabulary, and the objects that it is about."""

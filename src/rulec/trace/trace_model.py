@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from rulec.diagnostics import SourceLocation
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 Value = bool | float | str
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atom
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
 from rulec.logic.printing import formula_text
-from rulec.rulebook.model import ExampleState
+from rulec.rulebook.rulebook_model import ExampleState
 from rulec.rulebook.rules.axiom_checks import ExampleValues
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import counts_read

@@ -14,7 +14,7 @@ from math import prod
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.logic.formula import Count
-from rulec.rulebook.model import ExampleState, Variable
+from rulec.rulebook.rulebook_model import ExampleState, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.joint_reads import joint_reads

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rulec.logic.formula import Binary, Comparison, Count, Formula, Term, Unary, atoms_of
 from rulec.logic.renaming import rename_variables
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices
 

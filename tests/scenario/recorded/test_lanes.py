@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.scenario.model import MissingLane
 from rulec.scenario.recorded.lane_coordinates import NARROWEST_LANE_M, lanes_along
 from rulec.scenario.recorded.reference_line import reference_line
+from rulec.scenario.scenario_model import MissingLane
 from support.builders.recordings import lanelet, recording, straight
 
 

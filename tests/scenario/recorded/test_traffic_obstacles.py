@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.lane_coordinates import lanes_along
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.traffic_obstacles import GOES_ON_S, TrafficView, traffic_obstacles
+from rulec.scenario.scenario_model import ConstantAcceleration, Footprints
 from support.builders.recordings import recording, straight, vehicle
 
 ROAD = [straight(1, 0, 200)]

@@ -11,7 +11,7 @@ from rulec.extraction.tracks.driven_road import driven_road
 from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.tracks import tracks_of
-from rulec.extraction.tracks.vru_surface import on_crosswalks, on_lanes
+from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
 from support.builders.recordings import vehicle
 
 EGO = "7"

@@ -9,7 +9,7 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import Loaded, read_rulebook
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 from rulec.toml import parsed_toml
 
 NO_LAW = {"vocabulary", "schemas", "esterle2019"}

@@ -4,7 +4,7 @@ from rulec.automata import compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
-from rulec.rulebook.model import Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 from support.generators.random_formulas import VOCABULARY
 
 P, Q = Atom("p"), Atom("q")

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from rulec.monitoring.verdict import NotJudged
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import rule
 from support.generators.timed_formulas import TIMED_VOCABULARY, timed_formulas

@@ -19,7 +19,7 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.logic.semantics import holds
-from rulec.rulebook.model import Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from support.builders.rulebooks import compile_here

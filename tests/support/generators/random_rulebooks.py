@@ -18,7 +18,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.model import Axiom, Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
 from support.builders.full_vocabulary import WORLD
 from support.generators.random_priorities import LEVELS, PAIRS, closed
 from support.generators.timed_formulas import BOOLEAN, DISTANCE, RELATIONS

@@ -15,11 +15,11 @@ from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.analysis.vocabulary_use import used_declarations
-from rulec.rows import Rows, short_repr
-from rulec.rulebook.model import Rule, Rulebook
 from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
+from rulec.value_display import Rows, short_repr
 
 
 @dataclass(frozen=True, slots=True)

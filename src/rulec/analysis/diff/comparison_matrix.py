@@ -12,7 +12,7 @@ from string import ascii_uppercase
 from rulec.analysis.diff.rule_comparison import RuleRelation, compare
 from rulec.analysis.diff.rulebook_comparison import rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
-from rulec.rulebook.model import Remark, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 
 CONVERSE: Mapping[RuleRelation, RuleRelation] = {
     "equal": "equal",

@@ -17,7 +17,7 @@ from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.thresholds import exact
 from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Unary, UnaryOperator
 from rulec.monitoring.state_view import value_in
-from rulec.rulebook.model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.witnesses.state_synthesis import subjects_of

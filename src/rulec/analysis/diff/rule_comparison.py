@@ -10,9 +10,9 @@ from typing import Literal
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.diff.diverse_witnesses import diverse_witnesses
 from rulec.analysis.shared_compilation import AnalyzedRule
-from rulec.rows import short_repr
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
+from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.undecided import UndecidedError
 

@@ -15,9 +15,9 @@ from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
 from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_table import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.rows import Rows, short_repr
-from rulec.rulebook.model import Remark, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 from rulec.trace import Trace
+from rulec.value_display import Rows, short_repr
 
 
 @dataclass(frozen=True, slots=True)

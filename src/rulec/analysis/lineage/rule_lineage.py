@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from rulec.rows import Rows, short_repr
 from rulec.syntax import tree
+from rulec.value_display import Rows, short_repr
 
 LineageAction = Literal["declared", "overridden", "softened", "dropped", "silent"]
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 
 AntecedentKind = Literal["implies", "phase", "when", "unless"]
 

@@ -12,7 +12,7 @@ from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 from rulec.witnesses.undecided import UndecidedError
 
 

@@ -11,7 +11,7 @@ from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verify import verify
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 from rulec.witnesses.undecided import UndecidedError
 
 CANNOT_BE_VIOLATED = Code(

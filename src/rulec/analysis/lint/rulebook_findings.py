@@ -22,7 +22,7 @@ from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
-from rulec.rulebook.model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.witnesses.undecided import UndecidedError
 
 

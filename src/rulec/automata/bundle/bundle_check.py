@@ -26,7 +26,7 @@ from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
 from rulec.logic.printing import formula_text
-from rulec.rulebook.model import SourceFile, Variable
+from rulec.rulebook.rulebook_model import SourceFile, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 

@@ -22,7 +22,7 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.printing import formula_text
-from rulec.rulebook.model import Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 

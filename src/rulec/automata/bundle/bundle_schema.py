@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from rulec.rulebook.model import Certainty, Semantics, Strength, Traffic
+from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffic
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 3

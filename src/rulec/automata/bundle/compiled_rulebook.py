@@ -13,8 +13,7 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
-from rulec.rows import Rows, short_repr
-from rulec.rulebook.model import (
+from rulec.rulebook.rulebook_model import (
     Certainty,
     Rulebook,
     Semantics,
@@ -23,6 +22,7 @@ from rulec.rulebook.model import (
     Traffic,
     Variable,
 )
+from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
 
 

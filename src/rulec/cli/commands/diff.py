@@ -26,7 +26,7 @@ from rulec.report.text.console import print_aside, print_diagnostics, progress, 
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
 
 
 @click.command()

@@ -23,7 +23,7 @@ from rulec.settings import search_path
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.report.automata.automaton_model import Automaton
-    from rulec.rulebook.model import Rule, Rulebook
+    from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 FORMATS = ("text", "dot", "svg")
 
@@ -97,7 +97,7 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     """A rulebook as meant; one that was compiled long ago comes with its machines."""
     # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
-    from rulec.rulebook.model import Rule, Rulebook
+    from rulec.rulebook.rulebook_model import Rule, Rulebook
 
     if Path(reference).suffix != ".json":
         return Session(search_path(), at).load_rulebook(reference), None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
-from rulec.monitoring.axioms import check_counting_axioms
+from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.batch.columns.value_encoding import UnencodableError

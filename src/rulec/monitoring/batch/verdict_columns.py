@@ -12,8 +12,8 @@ from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_a
 from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, run
 from rulec.monitoring.batch.rule_bindings import RuleBinding
-from rulec.rows import short_repr
 from rulec.trace.trace_columns import Array, Layout
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -30,8 +30,8 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
-from rulec.rows import short_repr
 from rulec.trace import Trace, Value
+from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity as QuantityDeclaration
 from rulec.vocabulary import Vocabulary
 

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
-from rulec.monitoring.axioms import check_counting_axioms
+from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape

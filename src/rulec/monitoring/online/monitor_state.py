@@ -17,7 +17,7 @@ from rulec.monitoring.online.rule_group import (
     PreparedRule,
     RuleGroup,
 )
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 class VerdictChange(NamedTuple):

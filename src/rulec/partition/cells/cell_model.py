@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, PartitionName
-from rulec.rows import short_repr
 from rulec.scenario import Box
-from rulec.scenario.model import Surface
+from rulec.scenario.scenario_model import Surface
+from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -11,7 +11,7 @@ from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)

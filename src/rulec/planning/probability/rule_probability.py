@@ -16,7 +16,7 @@ from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event, Weights, none_of
 from rulec.planning.probability.violation_events import Lost, ViolationEvents
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from functools import cached_property
 from operator import getitem
 from typing import Generic, TypeVar
 
-from rulec.planning.product.limits import largest_product, too_large
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
+from rulec.planning.product.product_limit import largest_product, too_large
 from rulec.planning.product.reachability import Step
 from rulec.trace import TraceGraph
 

@@ -9,8 +9,8 @@ from heapq import heappop, heappush
 from itertools import pairwise
 
 from rulec.planning.product.graph_product import Memory, Product, ProductNode
-from rulec.rows import short_repr
 from rulec.trace import TraceGraph
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from rulec.planning.product.graph_product import Joint, Memory, Product, explore
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
 from rulec.planning.ranking.track_product import TrackProduct, track_product
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 REJECTED: Joint = (LOST,)
 """In place of a joint state: a rule has been lost."""

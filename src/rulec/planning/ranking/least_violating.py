@@ -14,8 +14,8 @@ from itertools import count
 from operator import add, getitem, gt
 
 from rulec.planning.product.graph_product import Joint, Product, explore_with
-from rulec.planning.product.limits import largest_product, too_large
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
+from rulec.planning.product.product_limit import largest_product, too_large
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder
 
 Paying = tuple[Joint, Penalty]

@@ -12,7 +12,7 @@ from fractions import Fraction
 from math import lcm
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
 
 Penalty = tuple[int, ...]
 """For each rank the summed weights of what is violated there, in units of ``PenaltyOrder``."""

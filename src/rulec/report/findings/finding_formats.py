@@ -21,7 +21,7 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
     match wanted:
         case "concise":
             # Every verb imports this file for FORMATS, and few write findings.
-            from rulec.report.findings.concise import as_lines
+            from rulec.report.findings.one_line_diagnostics import as_lines
 
             return as_lines(diagnostics)
         case "json":

@@ -10,7 +10,7 @@ from typing import IO, Any
 from rulec.partition import Envelope, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.json_document import JsonDocument, as_line
-from rulec.scenario.model import Surface
+from rulec.scenario.scenario_model import Surface
 from rulec.trace import Value
 from rulec.trace.formats.csv_table import write_csv
 from rulec.trace.formats.trace_files import Format

@@ -18,9 +18,9 @@ from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, 
 from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
 from rulec.report.maneuvers.probabilities import likeliest
 from rulec.report.maneuvers.scene_notes import derived_signals
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
-from rulec.scenario.model import Surface
+from rulec.scenario.scenario_model import Surface
 
 
 class DerivedSignal(JsonPart, frozen=True, kw_only=True):

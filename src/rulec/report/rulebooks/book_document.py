@@ -17,7 +17,7 @@ from rulec.report.rulebooks.book_sections import (
 from rulec.report.text.heading_anchors import anchors
 from rulec.report.text.markdown import Block, Heading, code, escaped, table, written
 from rulec.rulebook.loader import Loaded
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.version import __version__
 
 NO_ADVICE = (

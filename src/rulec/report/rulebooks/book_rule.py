@@ -16,8 +16,8 @@ from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
-from rulec.report.verdicts.state_table import state_table
-from rulec.rulebook.model import Example, Rule
+from rulec.report.verdicts.example_table import state_table
+from rulec.rulebook.rulebook_model import Example, Rule
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import clauses_of, print_in_force
 from rulec.vocabulary import Vocabulary

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Sequence
 
 from rulec.analysis.diff.rulebook_comparison import RulebookDiff
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 
 COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 

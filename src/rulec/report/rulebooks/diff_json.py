@@ -16,7 +16,7 @@ from rulec.analysis.diff.rulebook_comparison import (
 )
 from rulec.logic.printing import number_in_words
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
-from rulec.rulebook.model import Certainty, Rule, Rulebook, Strength, Variable
+from rulec.rulebook.rulebook_model import Certainty, Rule, Rulebook, Strength, Variable
 from rulec.trace import Trace
 
 

@@ -16,7 +16,7 @@ from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
-from rulec.rulebook.model import Strength
+from rulec.rulebook.rulebook_model import Strength
 
 SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
 """What stands behind a number of rules."""

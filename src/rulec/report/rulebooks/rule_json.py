@@ -12,7 +12,7 @@ from rulec.logic.printing import formula_text
 from rulec.report.automata.automaton_model import Automaton, Fate
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
-from rulec.rulebook.model import Certainty, Rule, Strength, Variable
+from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
 

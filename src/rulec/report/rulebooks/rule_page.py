@@ -21,7 +21,7 @@ from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.guard_text import GuardWording
-from rulec.rulebook.model import Rule, Variable
+from rulec.rulebook.rulebook_model import Rule, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import WitnessTrace
 from rulec.witnesses.shortest_traces import shortest_traces

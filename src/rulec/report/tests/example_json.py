@@ -12,7 +12,7 @@ from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.tests.example_text import missing_example
-from rulec.rulebook.model import Rulebook
+from rulec.rulebook.rulebook_model import Rulebook
 
 ExampleVerdict = Literal["accept", "reject"]
 

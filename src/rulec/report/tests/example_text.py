@@ -16,7 +16,7 @@ from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.findings.source_excerpt import visible
-from rulec.rulebook.model import ExampleState
+from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
 
 MOST_MISSING = 5

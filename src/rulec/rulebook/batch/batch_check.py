@@ -12,7 +12,6 @@ from typing import Any, NoReturn
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
 from rulec.file_messages import UNREADABLE_FILE
-from rulec.rows import Rows, short_repr
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.search_path import (
@@ -23,6 +22,7 @@ from rulec.rulebook.files.search_path import (
     read_bytes,
     suggest,
 )
+from rulec.value_display import Rows, short_repr
 
 _STANDARD_INPUT = Path("standard input")
 

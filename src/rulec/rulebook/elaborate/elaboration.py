@@ -34,9 +34,9 @@ from rulec.rulebook.arithmetic.linear_arithmetic import (
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.bounds import bound_of
-from rulec.rulebook.elaborate.literals import literal
+from rulec.rulebook.elaborate.bound_elaboration import bound_of
 from rulec.rulebook.elaborate.macro_expansion import expand_macro
+from rulec.rulebook.elaborate.number_literals import literal
 from rulec.rulebook.elaborate.parameter_values import parameter
 from rulec.rulebook.elaborate.quantifiers import aggregate
 from rulec.rulebook.elaborate.scope import AnyArgument, Scope

@@ -11,7 +11,7 @@ from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
-from rulec.rulebook.model import Rule
+from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
 

@@ -14,7 +14,7 @@ from rulec.rulebook.files.reference_messages import (
     vocabulary_for_rulebook,
 )
 from rulec.rulebook.files.search_path import Dependency, find_base, is_same_file, read_bytes
-from rulec.rulebook.model import SourceFile
+from rulec.rulebook.rulebook_model import SourceFile
 from rulec.syntax import decode, parse, tree
 
 MOST_BASES = 50

@@ -9,7 +9,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.files.extends import source_file
 from rulec.rulebook.files.reference_messages import not_the_vocabulary
 from rulec.rulebook.files.search_path import Dependency, find_vocabulary, is_same_file, read_bytes
-from rulec.rulebook.model import SourceFile
+from rulec.rulebook.rulebook_model import SourceFile
 from rulec.syntax import decode, parse, tree
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
-from rulec.rulebook.model import Traffic
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
+from rulec.rulebook.rulebook_model import Traffic
 from rulec.syntax import tree
 
 

@@ -10,9 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Span
-from rulec.rulebook.model import Remark
 from rulec.rulebook.names.referenced_names import names_in_examples, names_used
 from rulec.rulebook.overlay import overlay_messages as say
+from rulec.rulebook.rulebook_model import Remark
 from rulec.syntax import tree
 
 

@@ -12,7 +12,7 @@ from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text
 from rulec.logic.renaming import rename_variables
 from rulec.logic.required_inputs import required_inputs
-from rulec.rulebook.model import Axiom, Example, ExampleState, Rule
+from rulec.rulebook.rulebook_model import Axiom, Example, ExampleState, Rule
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.object_choices import choices

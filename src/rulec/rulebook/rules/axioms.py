@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate.elaboration import truth
 from rulec.rulebook.elaborate.scope import SIDES, BoundVariable, Scope
-from rulec.rulebook.model import Axiom, Variable
 from rulec.rulebook.names.atom_messages import two_types
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.syntax import tree
 
 

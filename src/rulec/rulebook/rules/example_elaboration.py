@@ -12,10 +12,10 @@ from rulec.logic.formula import (
     Quantity,
 )
 from rulec.logic.required_inputs import required_inputs
-from rulec.rulebook.elaborate.literals import literal
+from rulec.rulebook.elaborate.number_literals import literal
 from rulec.rulebook.elaborate.scope import BoundVariable, Scope
-from rulec.rulebook.model import Example, ExampleState, Variable
 from rulec.rulebook.names.declaration_messages import twice, unknown_type
+from rulec.rulebook.rulebook_model import Example, ExampleState, Variable
 from rulec.rulebook.rules import example_messages as say
 from rulec.syntax import tree
 

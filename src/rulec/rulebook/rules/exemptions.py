@@ -17,7 +17,7 @@ from math import comb
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
-from rulec.rulebook.model import Exemption, ExemptionScope
+from rulec.rulebook.rulebook_model import Exemption, ExemptionScope
 
 _AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL
 

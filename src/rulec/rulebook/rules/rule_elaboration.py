@@ -14,14 +14,14 @@ from rulec.rulebook.arithmetic.size_limits import TooDeepError, TooLargeError, e
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate import rule_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
-from rulec.rulebook.elaborate.literals import exact_value
+from rulec.rulebook.elaborate.number_literals import exact_value
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.elaborate.rule_variables import variables_of
 from rulec.rulebook.elaborate.scope import Scope
-from rulec.rulebook.model import Exemption, Rule, Variable
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
+from rulec.rulebook.rulebook_model import Exemption, Rule, Variable
 from rulec.rulebook.rules.example_elaboration import example_of
 from rulec.rulebook.rules.exemptions import (
     BoundedPhaseError,

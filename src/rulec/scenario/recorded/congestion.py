@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from statistics import median
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import Obstacle
 from rulec.scenario.motion import swept
+from rulec.scenario.scenario_model import Obstacle
 
 FEWEST = 3
 """So many vehicles it takes for traffic to be congested."""

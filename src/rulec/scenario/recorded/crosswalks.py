@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.scenario.model import Stretch
 from rulec.scenario.recorded.reference_line import densified
 from rulec.scenario.recorded.traffic_obstacles import TrafficView
+from rulec.scenario.scenario_model import Stretch
 
 _NARROWEST_M = 0.1
 _EVERY_M = 0.5

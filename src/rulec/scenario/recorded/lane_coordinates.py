@@ -16,10 +16,10 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.scenario.model import MissingLane
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, densified
 from rulec.scenario.recorded.route import lanes_beside
+from rulec.scenario.scenario_model import MissingLane
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""

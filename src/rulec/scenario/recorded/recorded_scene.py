@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from rulec.scenario.model import Account, Ego, Obstacle, Road, Scenario, SignalValue
 from rulec.scenario.recorded.congestion import congested
 from rulec.scenario.recorded.crosswalks import road_crossings
 from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
@@ -18,6 +17,7 @@ from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
 from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.recorded.scene_signals import map_signals
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
+from rulec.scenario.scenario_model import Account, Ego, Obstacle, Road, Scenario, SignalValue
 
 STEP_S = 0.5
 

@@ -12,7 +12,7 @@ from typing import Literal
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 Points = NDArray[float64]
 """Places: one row each, x and y."""

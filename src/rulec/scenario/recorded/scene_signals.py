@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.scenario.model import SignalValue
 from rulec.scenario.recorded.recording import Lanelet
+from rulec.scenario.scenario_model import SignalValue
 
 LIGHT_FOR_S = 10.0
 """A light counts if all of ego's show one colour for so long from time 0 on."""

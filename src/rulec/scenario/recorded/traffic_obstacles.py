@@ -11,7 +11,13 @@ import numpy as np
 
 from rulec.scenario.alternatives import weighted
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import (
+from rulec.scenario.recorded.lane_coordinates import Lanes
+from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
+from rulec.scenario.recorded.outline_bounds import outline_bounds
+from rulec.scenario.recorded.recording import Participant, Points, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine
+from rulec.scenario.recorded.scene_choice import Prediction
+from rulec.scenario.scenario_model import (
     PEDESTRIAN,
     ConstantAcceleration,
     Footprints,
@@ -19,12 +25,6 @@ from rulec.scenario.model import (
     Obstacle,
     SignalValue,
 )
-from rulec.scenario.recorded.lane_coordinates import Lanes
-from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
-from rulec.scenario.recorded.outline_bounds import outline_bounds
-from rulec.scenario.recorded.recording import Participant, Points, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine
-from rulec.scenario.recorded.scene_choice import Prediction
 
 GOES_ON_S = 600.0
 """The time (s) for which those present at the end of a recording go on after it."""

@@ -7,9 +7,9 @@ from itertools import pairwise
 from math import isfinite
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.motion import swept
 from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO, UNFITTING_FIELD
+from rulec.scenario.scenario_model import Ego, Obstacle, Road, SignalValue
 from rulec.scenario.toml.field_check import Findings, quoted, shown
 from rulec.scenario.toml.field_locations import TomlTable
 

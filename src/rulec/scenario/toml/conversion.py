@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from rulec.diagnostics import RulecError
 from rulec.scenario.geometry import Box
-from rulec.scenario.model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
+from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
 from rulec.scenario.toml.consistency import (
     check_collision,

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import pairwise
 
-from rulec.scenario.model import PEDESTRIAN, ConstantAcceleration, Motion, Obstacle, Trajectory
 from rulec.scenario.motion import stands_forever
 from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO, MISSING_OR_UNKNOWN_FIELD
+from rulec.scenario.scenario_model import (
+    PEDESTRIAN,
+    ConstantAcceleration,
+    Motion,
+    Obstacle,
+    Trajectory,
+)
 from rulec.scenario.toml.consistency import check_signals
 from rulec.scenario.toml.field_check import Findings, quoted, read_table
 from rulec.scenario.toml.field_locations import TomlTable

@@ -8,8 +8,8 @@ from fractions import Fraction
 import msgspec
 
 from rulec.scenario.alternatives import Weighted, is_distribution, weighted
-from rulec.scenario.model import Motion
 from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
+from rulec.scenario.scenario_model import Motion
 from rulec.scenario.toml.field_check import Findings, read_table
 from rulec.scenario.toml.field_locations import TomlTable
 from rulec.scenario.toml.schema import RawObstacle, RawPrediction

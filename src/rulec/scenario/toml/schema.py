@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
-from rulec.scenario.model import SURFACES, Surface
+from rulec.scenario.scenario_model import SURFACES, Surface
 
 FARTHEST_M = 1_000_000
 MOST_OBSTACLES = 500

@@ -101,8 +101,8 @@ class Pieces:
             states += [*([";"] if index else []), gap, self.speller.spell(state)]
         ends = self.speller.closing_gap(" ", self.closing(example).start)
         broken = "\n" in self.source.text[self.opening(example).start : self.end(example)]
-        head = run(start, " ", ColumnMark(), "{")
-        return group(head, Nest(2, run(*states)), ends, "}", forced=broken)
+        opening = run(start, " ", ColumnMark(), "{")
+        return group(opening, Nest(2, run(*states)), ends, "}", forced=broken)
 
     def rule_head(self, rule: RulePieces) -> Document:
         """``hard rule NAME (variables)``."""

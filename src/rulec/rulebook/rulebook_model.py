@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from rulec.diagnostics import Span
 from rulec.logic.formula import Formula
-from rulec.rows import Rows, short_repr
+from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
 
 Strength = Literal["hard", "soft"]

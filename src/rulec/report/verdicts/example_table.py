@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.logic.english.atom_phrases import listed, spoken
-from rulec.rulebook.model import Example
+from rulec.rulebook.rulebook_model import Example
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 NOTHING = "–"

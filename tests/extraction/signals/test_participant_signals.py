@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.other_signals import (
+from rulec.extraction.signals.participant_signals import (
     LONGEST_S,
     is_oncoming,
     other_signals,

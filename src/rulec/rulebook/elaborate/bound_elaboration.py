@@ -9,7 +9,7 @@ from typing import Literal
 from rulec.logic.formula import Bound
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate import bound_messages as say
-from rulec.rulebook.elaborate.literals import exact_value
+from rulec.rulebook.elaborate.number_literals import exact_value
 from rulec.rulebook.elaborate.scope import Scope
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS

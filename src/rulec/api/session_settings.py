@@ -11,7 +11,7 @@ from rulec.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.rulebook.model import Rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
 
     Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
     """A name, a path of a source or of a compiled file (.json), or what these lead to."""

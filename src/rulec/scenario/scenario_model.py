@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal, get_args
 
-from rulec.rows import short_repr
 from rulec.scenario.geometry import Box, centred
+from rulec.value_display import short_repr
 
 Surface = Literal["carriageway", "crossing"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)

@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.rows import short_repr
+from rulec.value_display import short_repr
 
 
 @dataclass(frozen=True, slots=True)
