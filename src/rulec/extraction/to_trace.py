@@ -17,7 +17,7 @@ from rulec.extraction.signals.junction_signals import junction_signals
 from rulec.extraction.signals.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map_signals import map_signals
-from rulec.extraction.signals.participant_signals import other_signals
+from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.presence import Presence, presences
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
@@ -28,7 +28,7 @@ from rulec.vocabulary import Vocabulary
 
 _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
     ego_signals,
-    other_signals,
+    participant_signals,
     map_signals,
     junction_signals,
     crossing_signals,

@@ -6,7 +6,7 @@ import pytest
 from rulec.extraction.signals.participant_signals import (
     LONGEST_S,
     is_oncoming,
-    other_signals,
+    participant_signals,
     safe_distance,
 )
 from support.builders.drive_contexts import context_of, steady
@@ -21,7 +21,7 @@ def context(*others, ego_speed=10.0, **thresholds):
 
 def about(*others, **more):
     """The first state of each signal, of the first of the others."""
-    signals = other_signals(context(*others, **more))
+    signals = participant_signals(context(*others, **more))
     return {name: rows[0, 0] for name, rows in signals.about.items()}
 
 
@@ -71,9 +71,9 @@ def test_a_safe_gap_is_asked_for_in_egos_lane_only():
 
 def test_only_the_next_one_ahead_precedes():
     others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
-    signals = other_signals(context(*others))
+    signals = participant_signals(context(*others))
     assert signals.about["precedes"][:, 0].tolist() == [False, True, False, False]
-    oncoming = other_signals(context(steady(8, 30, 0, speed=-5), steady(9, 50, 0)))
+    oncoming = participant_signals(context(steady(8, 30, 0, speed=-5), steady(9, 50, 0)))
     assert oncoming.about["precedes"][:, 0].tolist() == [False, True]
 
 
@@ -88,7 +88,7 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     stopped = steady(8, 40, 8, **waiting)
     found = context(steady(8, 60, 8, speed=-5))
     assert found.relevant[0].all()
-    assert other_signals(found).about["oncoming"][0].all()
+    assert participant_signals(found).about["oncoming"][0].all()
     assert places.states.keys() <= stopped.states.keys()
     # Reversing is not coming: it faces ego's way
     assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
@@ -102,6 +102,8 @@ def test_what_holds_for_good():
 
 
 def test_in_the_road_is_about_vulnerable_users():
-    signals = other_signals(context(steady(8, 30, 0), steady(9, 30, 1, speed=0, kind="pedestrian")))
+    signals = participant_signals(
+        context(steady(8, 30, 0), steady(9, 30, 1, speed=0, kind="pedestrian"))
+    )
     assert signals.about["in_the_road"][:, 0].tolist() == [False, True]
     assert signals.only["in_the_road"].tolist() == [False, True]

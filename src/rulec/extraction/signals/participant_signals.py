@@ -16,7 +16,7 @@ LONGEST_S = 1000.0
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def other_signals(context: DriveContext) -> SignalColumns:
+def participant_signals(context: DriveContext) -> SignalColumns:
     """The signals of objects."""
     own, others, limits = context.ego_extents, context.extents, context.thresholds
     station = relations.station(own, others)

@@ -75,6 +75,7 @@ def pattern_of(operator: BinaryOperator, bound: Bound | None, *, inside: bool) -
         case BinaryOperator.STRONG_RELEASE:
             come = f", which must come {first}," if first else ", which must come,"
             return f"unless released before by a moment{come} at which {{}}, {always} {{}}"
-        case _:
+        case BinaryOperator.SINCE:
             before = "" if bound is None else f" a moment {span(bound, 'before')} at which"
             return f"{{}} ever since{before} {{}}"
+    raise ValueError(f"{operator} is no operator of time with a phrase")

@@ -16,7 +16,7 @@ from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
-from rulec.report.verdicts.example_table import state_table
+from rulec.report.verdicts.example_table import example_table
 from rulec.rulebook.rulebook_model import Example, Rule
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import clauses_of, print_in_force
@@ -133,7 +133,7 @@ def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[
     )
     there = f" Also there: {also}." if also else ""
     yield f"**Example {number}{name}: {word}**{there}"
-    shown = state_table(example, vocabulary)
+    shown = example_table(example, vocabulary)
     rows = [[escaped(about), *map(escaped, cells)] for about, cells in shown.rows]
     if rows:
         yield table(["state", *map(str, range(shown.n_states))], rows)

@@ -88,8 +88,9 @@ def render(comparison_matrix: ComparisonMatrix, output_format: str) -> str:
             from rulec.report.text.html_page import as_html
 
             return as_html(_as_markdown(comparison_matrix), TITLE, "")
-        case _:
+        case "text":
             return _as_text(comparison_matrix)
+    raise ValueError(f"there is no format {output_format}")
 
 
 def _as_text(comparison_matrix: ComparisonMatrix) -> str:

@@ -13,7 +13,7 @@ NOTHING = "–"
 
 
 @dataclass(frozen=True, slots=True)
-class StateTable:
+class ExampleTable:
     """``rows`` are what it is about and its value in each of the states.
 
     A value in parentheses is a default: the state does not mention it.
@@ -23,7 +23,7 @@ class StateTable:
     rows: tuple[tuple[str, tuple[str, ...]], ...]
 
 
-def state_table(example: Example, vocabulary: Vocabulary) -> StateTable:
+def example_table(example: Example, vocabulary: Vocabulary) -> ExampleTable:
     """The table, its rows in the order in which the example first mentions them."""
     mentioned = dict.fromkeys(key for state in example.states for key in state)
     rows = []
@@ -34,7 +34,7 @@ def state_table(example: Example, vocabulary: Vocabulary) -> StateTable:
             for state in example.states
         )
         rows.append((_about(item, objects), cells))
-    return StateTable(len(example.states), tuple(rows))
+    return ExampleTable(len(example.states), tuple(rows))
 
 
 def _about(item: Declaration, objects: tuple[str, ...]) -> str:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.report.verdicts.example_table import StateTable, state_table
+from rulec.report.verdicts.example_table import ExampleTable, example_table
 from rulec.rulebook.loader import parse_rulebook
 
 BOOK = """\
@@ -43,4 +43,6 @@ def test_what_an_example_says(states, rows):
     text = BOOK.format(example=f"accept {{ {states} }}")
     book = parse_rulebook(text)
     (example,) = book.rules[0].examples
-    assert state_table(example, book.vocabulary) == StateTable(len(states.split(";")), tuple(rows))
+    assert example_table(example, book.vocabulary) == ExampleTable(
+        len(states.split(";")), tuple(rows)
+    )
