@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
-from rulec.api.session import Session
+import rulec
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.text.console import print_diagnostics
 from rulec.settings import search_path
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 Answer = TypeVar("Answer")
 
 
-def open_session(at: str = "") -> Session:
+def open_session(at: str = "") -> rulec.Session:
     """A session with the project's search path that prints warnings. Raises RulecError."""
-    return Session(search_path(), at, print_diagnostics)
+    return rulec.Session(search_path(), at, print_diagnostics)
 
 
 def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.commands.draw_trace import trace
 from rulec.cli.options.picture_options import picture_options, write
 from rulec.cli.options.scenario_options import graph_options, read_scene
@@ -114,9 +114,9 @@ def _judged(
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
         scene = read_scene(scenario, options)
         options["partition"] = options["partition"] or "paper"
-        return Session().navigation_graph(scene, **options), None, None
+        return rulec.navigation_graph(scene, **options), None, None
     rules = read_machines(rulebook, at)
-    maneuvers = Session().find_maneuvers(read_scene(scenario, options), rules, **options)
+    maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **options)
     wanted = number or 1
     maneuver = None
     if wanted <= min(maneuvers.satisfying, sys.maxsize):

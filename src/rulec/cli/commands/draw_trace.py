@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.options.picture_options import picture_options, write
 from rulec.cli.options.shared_options import at_option, rulebook_option, rules_option
 from rulec.cli.project import read_machines
@@ -70,7 +70,7 @@ def trace(
 def _trace(file: str, wanted: str | None) -> Trace:
     """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
     names: list[str] = []
-    for trace_ in Session().read_traces(file):
+    for trace_ in rulec.read_traces(file):
         if isinstance(trace_, RulecError):
             raise trace_
         if wanted in (None, trace_.id):

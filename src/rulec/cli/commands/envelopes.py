@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.scenario_options import graph_options, read_scene
 from rulec.cli.options.shared_options import (
@@ -60,7 +60,7 @@ def command(
 
     rules = read_machines(rulebook, at)
     scene = read_scene(scenario, options)
-    maneuvers = Session().find_maneuvers(scene, rules, **options)
+    maneuvers = rulec.find_maneuvers(scene, rules, **options)
     cheapest = maneuvers.cheapest(number)
     form = form or format_of(str(output))
     with output_stream(output) as (stream, name):

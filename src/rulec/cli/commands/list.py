@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, get_args
 
 import click
 
+import rulec
 from rulec.api.rulebook_verbs import Kind
-from rulec.api.session import Session
 from rulec.cli.options.shared_options import json_option
 from rulec.cli.project import open_session
 from rulec.report.text.console import print_result
@@ -27,9 +27,9 @@ def command(kind: Kind | None, json_output: bool) -> None:
     # msgspec, 7 ms: not for --help.
     from rulec.report.text.listing import as_json, as_text
 
-    def session(kind: Kind) -> Session:
+    def session(kind: Kind) -> rulec.Session:
         # A mistake in the project's settings hides neither scenarios nor codes.
-        return open_session() if kind in ("rulebooks", "vocabularies") else Session()
+        return open_session() if kind in ("rulebooks", "vocabularies") else rulec.Session()
 
     kinds = KINDS[:-1] if kind is None else (kind,)
     lists: dict[str, Sequence[Listed]] = {kind: session(kind).list(kind) for kind in kinds}

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.scenario_options import graph_options, read_scene
 from rulec.cli.options.shared_options import at_option, json_option, rulebook_option
@@ -94,7 +94,7 @@ def command(
     rules = read_machines(rulebook, at)
     past = None if after is None else read_past(after)
     scene = read_scene(scenario, options)
-    maneuvers = Session().find_maneuvers(scene, rules, after=past, **options)
+    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **options)
     listed = None if n_listed is None else maneuvers.cheapest(n_listed)
     best = None if maneuvers.satisfying or n_ranked is not None else answer_or_print(maneuvers.best)
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)

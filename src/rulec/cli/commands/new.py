@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.diagnostics import SourceLocation
 from rulec.file_messages import UNWRITABLE_FILE
@@ -44,7 +44,7 @@ def command(name: str, output: str, base: str | None) -> None:
             "beside itself, on the search path, or among what ships"
         )
     folders = () if base is None else (Path(output), *search_path())
-    text = Session(folders).new_rulebook(name, base)
+    text = rulec.Session(folders).new_rulebook(name, base)
     path = Path(output) / f"{name}.rules"
     if path.exists() or path.is_symlink():
         way_out = "give another name, or another folder with --output"

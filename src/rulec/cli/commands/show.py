@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.options.shared_options import (
     at_option,
     json_option,
@@ -100,7 +100,7 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
     if Path(reference).suffix != ".json":
-        return Session(search_path(), at).load_rulebook(reference), None
+        return rulec.Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
     rules = tuple(
         Rule(
@@ -141,7 +141,7 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
 
     if Path(reference).suffix == ".json":
         return ""
-    inherited = Session(search_path(), book.at).tree(reference)
+    inherited = rulec.Session(search_path(), book.at).tree(reference)
     last = next((rule.steps[-1] for rule in inherited.rules if rule.name == name), None)
     if last is None:
         return ""
@@ -158,7 +158,7 @@ def _names(book: Rulebook) -> str:
 def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
     """The rulebook with this rule alone, compiled."""
     if compiled is None:
-        return Session().compile_rulebook(replace(book, rules=(rule,)))
+        return rulec.compile_rulebook(replace(book, rules=(rule,)))
     return replace(compiled, rules=tuple(own for own in compiled.rules if own.name == rule.name))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.options.recording_options import (
     drives_options,
     given_drives_option,
@@ -90,9 +90,9 @@ def command(
     scene = read_scene(scenario, options)
     if rulebook is None:
         options["partition"] = options["partition"] or "paper"
-        graph = Session().navigation_graph(scene, **options).trace_graph()
+        graph = rulec.navigation_graph(scene, **options).trace_graph()
     else:
-        graph = Session().find_maneuvers(scene, read_machines(rulebook), **options).paths
+        graph = rulec.find_maneuvers(scene, read_machines(rulebook), **options).paths
     total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(

@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from rulec.api.session import Session
+import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.recording_options import (
     drives_options,
@@ -168,7 +168,7 @@ class _Run:
         from rulec.report.verdicts import recording_table as report
 
         try:
-            judged = Session().verify_recording(file, self.rules, wanted, net)
+            judged = rulec.verify_recording(file, self.rules, wanted, net)
         except RulecError as error:
             self.complaints.add(error)
             self.not_answered = True
