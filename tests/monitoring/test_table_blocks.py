@@ -20,9 +20,9 @@ from rulec.monitoring.batch.table_verdicts import rulebook_for, verify_items
 from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
-from rulec.trace.arrow import trace_cuts
 from rulec.trace.formats import csv_table
 from rulec.trace.formats import table_blocks as trace_blocks
+from rulec.trace.formats.arrow import trace_cuts
 from rulec.trace.formats.table_blocks import Block
 from rulec.trace.formats.table_writer import kinds_in
 from rulec.trace.formats.trace_files import read_chunks, write_traces
@@ -31,9 +31,9 @@ from support.generators.random_records import chunks, rulebooks, told
 
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
-from rulec.trace.arrow import arrow_columns  # noqa: E402
-from rulec.trace.arrow import arrow_csv as plain_csv  # noqa: E402
-from rulec.trace.arrow import parquet as parquet_table  # noqa: E402
+from rulec.trace.formats.arrow import arrow_columns  # noqa: E402
+from rulec.trace.formats.arrow import arrow_csv as plain_csv  # noqa: E402
+from rulec.trace.formats.arrow import parquet as parquet_table  # noqa: E402
 
 
 def answers(data, form, rules):
@@ -316,7 +316,7 @@ from pathlib import Path
 import rulec
 from rulec.monitoring.batch.table_verdicts import verify_items
 from rulec.trace.formats import csv_table
-from rulec.trace.arrow import arrow_csv, parquet
+from rulec.trace.formats.arrow import arrow_csv, parquet
 from rulec.trace.formats.trace_files import read_chunks
 
 csv_table.LARGE_BYTES, arrow_csv._BLOCK_BYTES, parquet._ROWS_AT_ONCE = 1, 1 << 18, 1 << 13

@@ -9,7 +9,7 @@ import re
 from typing import NamedTuple
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.syntax.messages.whole_file import FILE_TOO_LARGE
+from rulec.file_messages import FILE_TOO_LARGE
 
 MAX_TOKENS = 1_000_000
 """Far above what a file of the permitted size holds, far below what would exhaust memory."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rulec.diagnostics import Source, SourceLocation
+from rulec.file_messages import FILE_TOO_LARGE
 from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
-from rulec.syntax.messages.whole_file import FILE_TOO_LARGE
 
 
 def decode(name: str, data: bytes) -> Source:

@@ -68,7 +68,7 @@ def write_envelopes(
         write_csv(rows, list(COLUMNS), stream)
     elif form == "parquet":
         # pyarrow takes 0.1 s and may be missing.
-        from rulec.trace.arrow.parquet import write_parquet
+        from rulec.trace.formats.arrow.parquet import write_parquet
 
         write_parquet(rows, list(COLUMNS.items()), stream, file)
     else:

@@ -8,18 +8,6 @@ from rulec.diagnostics.code import Code
 EXPECTED_BEGINNING = "expected `rulebook NAME`"
 HOW_TO_BEGIN = "a rulebook begins with `rulebook NAME`, a vocabulary with `vocabulary NAME { … }`"
 
-FILE_TOO_LARGE = Code(
-    "R0102",
-    title="a file is too large",
-    why="A rulebook or a vocabulary may have 5,000,000 bytes. No law is that long; if a program "
-    "wrote the file, split it into several rulebooks.",
-    bad="{ echo 'rulebook a signal p hard rule r { require p }'\n"
-    "  head -c 5000000 /dev/zero | tr '\\0' '#'; } | rulec check -",
-    good="{ echo 'rulebook a signal p hard rule r { require p }'\n"
-    "  head -c 50000 /dev/zero | tr '\\0' '#'; } | rulec check -",
-    kind="command",
-)
-
 EMPTY_FILE = Code(
     "R0103",
     title="a file is empty",

@@ -41,8 +41,8 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
     if columns is None:
         yield from in_chunks(_traces(stream, file))
         return
-    from rulec.trace.arrow.arrow_csv import pieces  # loads Arrow, 0.1 s
-    from rulec.trace.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
+    from rulec.trace.formats.arrow.arrow_csv import pieces  # loads Arrow, 0.1 s
+    from rulec.trace.formats.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
 
     plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
     yield from cut(plain, _table(columns, file), 2, SourceLocation(file))

@@ -54,7 +54,7 @@ def read_chunks(
         yield from json_lines.read_chunks(stream, file)
         return
     if form == "parquet":
-        from rulec.trace.arrow.parquet import read_parquet
+        from rulec.trace.formats.arrow.parquet import read_parquet
 
         yield from read_parquet(stream, file)
         return
@@ -82,7 +82,7 @@ def write_traces(
 
         write_csv(rows, columns, stream)
         return
-    from rulec.trace.arrow.parquet import write_parquet
+    from rulec.trace.formats.arrow.parquet import write_parquet
 
     own = {"step": int, "step_s": float}
     types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]

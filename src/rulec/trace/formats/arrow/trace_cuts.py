@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.arrow.arrow_columns import coded, columns_of
+from rulec.trace.formats.arrow.arrow_columns import coded, columns_of
 from rulec.trace.formats.chunks import in_chunks
 from rulec.trace.formats.table_blocks import Block, OddTableError, trace_starts
 from rulec.trace.formats.table_reader import TRACE, Row, Table, traces_in

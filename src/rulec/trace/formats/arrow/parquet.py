@@ -8,13 +8,13 @@ from itertools import islice
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.arrow.arrow_library import arrow, unavailable
+from rulec.trace.formats.arrow.arrow_library import arrow, unavailable
 from rulec.trace.formats.foreign_files import packed
 from rulec.trace.formats.table_reader import Table, check_columns, problem
 from rulec.trace.trace_model import Trace, Value
 
 if TYPE_CHECKING:
-    from rulec.trace.arrow.trace_cuts import Piece
+    from rulec.trace.formats.arrow.trace_cuts import Piece
 
 _ROWS_AT_ONCE = 1 << 16
 
@@ -51,7 +51,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except (pyarrow.ArrowException, OSError) as reason:
         yield [_unreadable("the file", reason, file)]
         return
-    from rulec.trace.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
+    from rulec.trace.formats.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
 
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError)
