@@ -142,5 +142,5 @@ def _sharing_no_rule(books: Sequence[Rulebook]) -> list[str]:
     return [
         name
         for name, rules in rules_of.items()
-        if not any(rules & others for other, others in rules_of.items() if other != name)
+        if not any(rules & rules_of[partner] for partner in rules_of if partner != name)
     ]
