@@ -1,4 +1,6 @@
-"""rulec, a compiler for traffic law: rulebooks in, automata out, every maneuver judged.
+"""A compiler for traffic law.
+
+Rulebooks in, automata out, every maneuver judged.
 
 A look at all of it::
 

@@ -86,7 +86,7 @@ def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
 
 
 def reason_in_words(problem: OSError | ValueError) -> str:
-    """Why the system refuses a file."""
+    """The system's reason for refusing a file, in words."""
     if isinstance(problem, IsADirectoryError):
         return "it is a folder"
     known = problem.strerror if isinstance(problem, OSError) else None

@@ -1,4 +1,4 @@
-"""Files: read as bytes or as text in UTF-8; written whole or not at all."""
+"""Files: read as bytes or UTF-8 text; written whole or not at all."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MAX_SOURCE_BYTES: Final = 5_000_000
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[IO[bytes]]:
-    """A stream whose bytes become the file ``path`` when the block ends well, and vanish otherwise.
+    """Open a stream that replaces a file only when the block succeeds.
 
     A file that is replaced keeps its permissions, and has to permit it.
 
@@ -69,7 +69,7 @@ def _private(name: str, flags: int) -> int:
 
 
 def _mode(path: Path) -> int:
-    """The permissions of a file, or of a new one as the umask says."""
+    """The permissions of a file, or the default ones of the umask."""
     if path.exists():
         return stat.S_IMODE(path.stat().st_mode)
     mask = os.umask(0)
@@ -125,7 +125,10 @@ def decoded(name: str, data: bytes) -> Source:
 
 
 def without_null(source: Source) -> Source:
-    """The same source, if it has no null character. Raises RulecError R0101."""
+    """The source itself, if it has no null character.
+
+    Raises RulecError R0101.
+    """
     null = source.text.find("\0")
     if null >= 0:
         raise NOT_UTF8.error(

@@ -1,4 +1,4 @@
-"""What can be asked for by name, with titles."""
+"""Names of rulebooks, vocabularies and scenarios, with their titles."""
 
 from __future__ import annotations
 

@@ -28,7 +28,9 @@ def trace_drawing(
     objects: Sequence[str] = (),
     patterns: Sequence[str] = (),
 ) -> Drawing:
-    """What rules read in a trace, over time, with the violations. Raises RulecError.
+    """Draw over time the inputs of rules in a trace, with violations.
+
+    Raises RulecError.
 
     ``objects`` are those to show, if not all; ``patterns`` have chosen the rules, for the title.
     """
@@ -45,7 +47,10 @@ def scene_drawing(
     layers: Sequence[int] = (),
     number: int = 1,
 ) -> Drawing:
-    """A scene over time, or some ``layers`` of it, with a maneuver, the ``number``-th cheapest."""
+    """Draw a scene over time, or some of its layers.
+
+    A maneuver, the ``number``-th cheapest, is shown in it if there are ``maneuvers``.
+    """
     chosen = sorted(set(layers)) or range(len(graph.layers))
     title = scene_title(graph, maneuvers, maneuver, number)
     return Drawing(title, scene_pictures(graph, chosen, maneuver), scene_legend(graph, maneuver))
@@ -70,7 +75,10 @@ def draw_trace(trace: Trace, rules: CompiledRulebook, form: str) -> bytes:
 def draw_maneuvers(
     subject: NavigationGraph | Maneuvers, maneuver: Maneuver | None, form: str, *, as_graph: bool
 ) -> bytes:
-    """The drawing of a scene or its graph as the content of a file. Raises RulecError."""
+    """Draw a scene or its graph as the content of a file.
+
+    Raises RulecError.
+    """
     maneuvers = subject if isinstance(subject, Maneuvers) else None
     graph = subject.graph if isinstance(subject, Maneuvers) else subject
     if maneuver is None and maneuvers is not None:

@@ -1,4 +1,4 @@
-"""Questions about rulebooks that are given by name or by their sources' paths."""
+"""Questions about rulebooks given by name or by path."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def run_examples(
     pattern: str | None = None,
     at: str = "",
 ) -> ExampleRun:
-    """Compile a rulebook, given by name or by its source's path, and run its examples.
+    """Compile a rulebook, given by name or path, and run its examples.
 
     ``pattern``: run only those whose ``RULE`` or ``RULE/LABEL`` it matches, ``*`` and ``?`` being
     wild. ``at``: as for ``load_rulebook``. Raises RulecError.
@@ -64,7 +64,7 @@ def compare_rulebooks(
     tell: Callable[[float], object] = lambda _: None,
     most: int = 1,
 ) -> RulebookDiff:
-    """Compare the rules of two rulebooks, given by name or by their sources' paths.
+    """Compare the rules of two rulebooks, given by name or path.
 
     ``warn`` is told what is odd in them, ``tell`` how many rules have been compared; the rest is
     as for ``rulec.analysis.diff.rulebook_comparison.diff_rulebooks``. Raises RulecError.
@@ -90,7 +90,7 @@ def analyze_rulebook(
     at: str = "",
     tell: Callable[[float], object] = lambda _: None,
 ) -> tuple[Diagnostic, ...]:
-    """Analyze a rulebook, given by name or by its source's path, by its automata.
+    """Analyze a rulebook, given by name or path, by its automata.
 
     ``tell`` is told how many rules have been looked at. ``at``: as for ``load_rulebook``. Raises
     RulecError.

@@ -53,7 +53,10 @@ class RulebookVerbs(SessionSettings):
         return loaded.rulebook
 
     def parse_rulebook(self, text: str, name: str = "<text>") -> Rulebook:
-        """Read a rulebook whose text is at hand; messages call it ``name``. Raises RulecError."""
+        """Parse the text of a rulebook.
+
+        Messages call it ``name``. Raises RulecError.
+        """
         from rulec.rulebook.loader import parse_rulebook
 
         return parse_rulebook(text, name, self._folders(), self.at)
@@ -67,7 +70,9 @@ class RulebookVerbs(SessionSettings):
     def compile_rulebook(
         self, reference: Rules, *, step_s: Fraction | float | None = None
     ) -> CompiledRulebook:
-        """Compile a rulebook: a name, the path of a source or a compiled file, or a Rulebook.
+        """Compile a rulebook.
+
+        It is a name, the path of a source or of a compiled file, or a Rulebook.
 
         Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is
         for this step (s) alone, a float meaning the decimal that is written.
@@ -89,7 +94,7 @@ class RulebookVerbs(SessionSettings):
         return tuple(write_compiled(rulebook, Path(folder)))
 
     def check(self, *references: str | Path) -> Checked:
-        """Say all that there is to say about rulebooks and vocabularies, and raise nothing.
+        """List all diagnostics of rulebooks and vocabularies, and raise nothing.
 
         Each is a name, a file, or a folder (all .rules files in it).
         """
@@ -105,7 +110,10 @@ class RulebookVerbs(SessionSettings):
         return formatted(name, None, text.encode("utf-8", "surrogatepass")).after.decode()
 
     def test(self, reference: str | Path, pattern: str | None = None) -> ExampleRun:
-        """Run a rulebook's examples, or those whose RULE or RULE/LABEL a pattern matches."""
+        """Run a rulebook's examples.
+
+        With a ``pattern`` only those whose RULE or RULE/LABEL it matches.
+        """
         from rulec.api.rulebook_questions import run_examples
 
         return run_examples(reference, self.search_path, pattern, self.at)
@@ -125,7 +133,9 @@ class RulebookVerbs(SessionSettings):
     def explain(
         self, subject: str | Violation, trace: Trace | None = None, rules: Rules | None = None
     ) -> Code | Explanation:
-        """Explain a code such as R0104, or a violation of rules by a trace, state by state.
+        """Explain a code such as R0104, or a trace's violation of rules.
+
+        A violation is explained state by state.
 
         Raises KeyError for a code that there is not.
         """
@@ -151,7 +161,7 @@ class RulebookVerbs(SessionSettings):
         step_s: Fraction | float | None = None,
         witnesses: int = 1,
     ) -> RulebookDiff:
-        """Compare the rules of two rulebooks, with up to so many witnesses for each difference.
+        """Compare the rules of two rulebooks, with witnesses for each difference.
 
         Args:
             first: a name, or the path of a source.
@@ -178,7 +188,10 @@ class RulebookVerbs(SessionSettings):
         )
 
     def analyze(self, reference: str | Path) -> tuple[Diagnostic, ...]:
-        """Find what is odd in a rulebook by its rules' automata. Raises RulecError."""
+        """Find defects of a rulebook by its rules' automata.
+
+        Raises RulecError.
+        """
         from rulec.api.rulebook_questions import analyze_rulebook
 
         return analyze_rulebook(reference, self.search_path, self.at)
@@ -190,7 +203,7 @@ class RulebookVerbs(SessionSettings):
         return audit_rulebook(reference, self.search_path, self.at, self._warn, run=run_examples)
 
     def tree(self, reference: str | Path) -> BookLineage:
-        """Say where everything in a rulebook comes from, and what became of it on the way."""
+        """Trace everything in a rulebook to its origin and through its changes."""
         from rulec.analysis.lineage.book_lineage import read_with_lineage
 
         return read_with_lineage(reference, self.search_path, self.at)[1]
@@ -198,7 +211,7 @@ class RulebookVerbs(SessionSettings):
     lineage = tree
 
     def show(self, reference: str | Path, rule: str, *, width: int = 80) -> str:
-        """A rule in English, as a formula, as an automaton, and by examples: text.
+        """Describe a rule in English, by formula, automaton and examples, as text.
 
         Raises KeyError for a rule that there is not, RulecError.
         """
@@ -215,7 +228,10 @@ class RulebookVerbs(SessionSettings):
         return rule_page.as_text(page, book.name, book.vocabulary, width)
 
     def doc(self, reference: str | Path, form: Literal["html", "markdown"] = "html") -> str:
-        """A rulebook as a document for lawyers, in HTML or Markdown. Raises RulecError."""
+        """Write a rulebook as a document for lawyers, in HTML or Markdown.
+
+        Raises RulecError.
+        """
         from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.report.rulebooks.book_document import CONTENTS, as_markdown, title_of
         from rulec.report.text.html_page import as_html
@@ -226,7 +242,10 @@ class RulebookVerbs(SessionSettings):
         return as_html(text, title_of(loaded.rulebook), CONTENTS) if form == "html" else text
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
-        """The text of a rulebook to start from, perhaps built upon another. Raises RulecError."""
+        """The text of a rulebook to start from, perhaps extending another.
+
+        Raises RulecError.
+        """
         from rulec.rulebook import template
 
         today = datetime.now().astimezone().date()

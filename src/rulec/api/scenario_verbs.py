@@ -30,7 +30,10 @@ class ScenarioVerbs(SessionSettings):
     """The verbs of a session that are about scenarios and pictures."""
 
     def load_scenario(self, reference: str | Path, choice: Choice | None = None) -> Scenario:
-        """Read a scenario by its name or path; the choice is for recorded scenes."""
+        """Load a scenario by its name or path.
+
+        The choice is for recorded scenes.
+        """
         from rulec.scenario import load_scenario
 
         return load_scenario(reference, choice)
@@ -38,7 +41,10 @@ class ScenarioVerbs(SessionSettings):
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
-        """A scenario as cells over time, and which cell leads to which. Raises RulecError."""
+        """Build the navigation graph of a scenario: cells over time, and their successors.
+
+        Raises RulecError.
+        """
         from rulec.api.workflow import navigation_graph
 
         return navigation_graph(scenario, **options)
@@ -51,7 +57,7 @@ class ScenarioVerbs(SessionSettings):
         after: Before | None = None,
         **options: Unpack[GraphOptions],
     ) -> Maneuvers:
-        """Count the maneuvers of a scenario that keep every hard rule, without enumerating them.
+        """Count the maneuvers that keep every hard rule, without enumerating them.
 
         ``after`` is what was before, up to one step before the scenario begins: a trace, a
         ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
@@ -62,7 +68,10 @@ class ScenarioVerbs(SessionSettings):
         return find_maneuvers(scenario, self._compiled(rules), after=after, **options)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
-        """The bounds of a maneuver, layer by layer. Raises RulecError R0609 for no path."""
+        """The bounds of a maneuver, layer by layer.
+
+        Raises RulecError R0609 for no path.
+        """
         from rulec.partition import envelope
 
         return envelope(graph, nodes)
@@ -81,7 +90,10 @@ class ScenarioVerbs(SessionSettings):
         limit: int = 10_000_000,
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
-        """The maneuvers of a scenario as traces, lazily, in the words of the rules if given."""
+        """Generate the maneuvers of a scenario lazily as traces.
+
+        They are in the words of the rules if these are given.
+        """
         from rulec.trace.graph_paths import all_traces
 
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
@@ -99,7 +111,7 @@ class ScenarioVerbs(SessionSettings):
         return rule_probabilities(maneuvers, maneuver)
 
     def alternative_counts(self, maneuvers: Maneuvers) -> tuple[AlternativeCounts, ...]:
-        """What is left if an obstacle does something less likely, prediction by prediction."""
+        """Counts of maneuvers for each less likely prediction of an obstacle."""
         from rulec.planning.probability.alternative_predictions import alternative_counts
 
         return tuple(alternative_counts(maneuvers))
@@ -113,7 +125,7 @@ class ScenarioVerbs(SessionSettings):
         as_graph: bool = False,
         form: PictureFormat = "svg",
     ) -> bytes:
-        """Draw a scene over time, a navigation graph, or a trace as its rules read it.
+        """Draw a scene over time, a navigation graph, or a judged trace.
 
         Args:
             subject: a graph, the maneuvers of one, or a trace.

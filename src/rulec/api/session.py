@@ -1,4 +1,4 @@
-"""A session: every verb of rulec, with one search path, one day, one listener for warnings."""
+"""A session: all verbs, with shared search path, day and warning listener."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all verbs of a session share: the search path, the day, where warnings go."""
+"""Settings shared by all verbs of a session."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def ignore(_: Sequence[Diagnostic]) -> None:
 
 @dataclass(frozen=True)
 class SessionSettings:
-    """Where rulebooks are looked for, on which day they are the law, and who hears warnings.
+    """Search path of rulebooks, day of the law, and listener for warnings.
 
     Args:
         search_path: folders of rulebooks and vocabularies, before those that ship with rulec.

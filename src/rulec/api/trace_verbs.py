@@ -35,7 +35,10 @@ class TraceVerbs(SessionSettings):
         return read_traces(path)
 
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
-        """Write traces to a file, in the format that its name says. Raises RulecError."""
+        """Write traces to a file, in the format of its name.
+
+        Raises RulecError.
+        """
         from rulec.files import written_whole
         from rulec.trace.formats.table_writer import kinds_in
         from rulec.trace.formats.trace_files import format_of, write_traces
@@ -58,7 +61,7 @@ class TraceVerbs(SessionSettings):
     def verify_many(
         self, traces: Iterable[Trace | RulecError], rules: Rules
     ) -> Iterator[Verdict | NotJudged]:
-        """Judge any number of traces, many times as fast; the verdicts come in their order.
+        """Judge many traces fast, and yield their verdicts in order.
 
         In place of a verdict that cannot be given there is a ``NotJudged``.
         """
@@ -67,7 +70,10 @@ class TraceVerbs(SessionSettings):
         return verify_many(traces, self._compiled(rules))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces that are given as arrays; one answer for each rule and binding."""
+        """Judge traces given as arrays.
+
+        There is one answer for each rule and binding.
+        """
         from rulec.monitoring.batch.engine import verify_columns
 
         return list(verify_columns(columns, self._compiled(rules).fitted_to(columns.step_s)))
@@ -79,7 +85,10 @@ class TraceVerbs(SessionSettings):
         return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
 
     def read_recording(self, path: str | Path, net: str | Path | None = None) -> Recording:
-        """Read recorded traffic; ``net`` is the road network of SUMO's data. Raises RulecError."""
+        """Read recorded traffic.
+
+        ``net`` is the road network of SUMO's data. Raises RulecError.
+        """
         from rulec.scenario.recording_files import read_recording
 
         return read_recording(Path(path), None if net is None else Path(net))
@@ -91,7 +100,7 @@ class TraceVerbs(SessionSettings):
         wanted: RequestedDrives | None = None,
         net: str | Path | None = None,
     ) -> RecordingVerdicts:
-        """Judge what the vehicles of recorded traffic did; each in turn is ego.
+        """Judge the drives of recorded vehicles, each in turn as ego.
 
         Args:
             recording: a file of CommonRoad or SUMO, or what has been read from it.

@@ -1,4 +1,4 @@
-"""The verbs of a session with the usual settings, as functions of the package ``rulec``."""
+"""The verbs of a session with default settings, as functions of ``rulec``."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ def compile_rulebook(
     step_s: Fraction | float | None = None,
     at: str = "",
 ) -> CompiledRulebook:
-    """Compile a rulebook: a name, the path of a source or a compiled file, or a Rulebook.
+    """Compile a rulebook.
+
+    It is a name, the path of a source or of a compiled file, or a Rulebook.
 
     Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is for
     this step (s) alone, a float meaning the decimal that is written. ``warn`` is called with what

@@ -39,7 +39,7 @@ def machines(
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     at: str = "",
 ) -> CompiledRulebook:
-    """Compile rules so that they fit themselves to the step of any trace.
+    """Compile rules into automata that adapt to any trace's step.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
     than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
@@ -110,7 +110,9 @@ def find_maneuvers(
     after: Before | None = None,
     **options: Unpack[GraphOptions],
 ) -> Maneuvers:
-    """Count the maneuvers that keep every hard rule (algorithm 1 of the paper).
+    """Count the maneuvers that keep every hard rule.
+
+    Algorithm 1 of the paper.
 
     ``after``: what was before, up to one step before the scenario begins: a trace, a ``Monitor``
     that has taken one, or its snapshot. Without a ``partition`` it is the one whose relations the
@@ -129,7 +131,10 @@ def verify_recording(
     wanted: RequestedDrives | None = None,
     net: str | Path | None = None,
 ) -> RecordingVerdicts:
-    """Verify what the vehicles of recorded traffic did; ``net`` is for SUMO's data."""
+    """Judge the drives of recorded vehicles.
+
+    ``net`` is for SUMO's data.
+    """
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.scenario.recording_files import read_recording

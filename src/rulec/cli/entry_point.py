@@ -1,4 +1,4 @@
-"""Where the program starts: prepared for signals before the rest is imported."""
+"""Start of the program, with signals prepared before the other imports."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.version import __version__
 
 
 def run() -> int:
-    """Run the command line as a process of its own and return its exit status."""
+    """Run the command line as a process, and return its exit status."""
     try:
         _prepare()
         if sys.argv[1:] == ["--version"] and _said_version():
@@ -51,7 +51,9 @@ def _prepare() -> None:
 
 
 def _said_version() -> bool:
-    """Scripts ask for the version often, and it needs nothing that ``main`` imports.
+    """Print the version, without the imports of ``main``, and report success.
+
+    Scripts ask for the version often.
 
     What cannot be written is left to ``main``, which knows what to say of that.
     """
@@ -64,7 +66,10 @@ def _said_version() -> bool:
 
 
 def _let_go_of(stream: TextIO) -> None:
-    """What cannot be written Python would try again when it exits, with a status of its own."""
+    """Flush a stream, or redirect it to the null device.
+
+    Python would try again at exit to write what is left, and end with a status of its own.
+    """
     try:
         stream.flush()
     except OSError:

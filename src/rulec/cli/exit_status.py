@@ -1,4 +1,4 @@
-"""How rulec's commands end."""
+"""Exit statuses of rulec's commands."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ class ExitStatus(IntEnum):
 
     @classmethod
     def after(cls, *, answered: bool = True, failed: bool) -> ExitStatus:
-        """The status of a question: whether all of it was answered comes first."""
+        """The status of a question that was answered in full or not.
+
+        An incomplete answer counts before a failure.
+        """
         if not answered:
             return cls.NOT_ANSWERED
         return cls.FOUND if failed else cls.OK

@@ -1,4 +1,4 @@
-"""The program ``rulec``: finds the verb, and turns whatever happens into words and a status."""
+"""The program ``rulec``: find the verb, report exceptions, set the status."""
 
 from __future__ import annotations
 
@@ -117,7 +117,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _unwritable(problem: OSError) -> int:
-    """Files have their own diagnostics; so it is standard output that could not be written."""
+    """Report that standard output cannot be written, and return the status.
+
+    Files have diagnostics of their own.
+    """
     # What is still buffered must not fail again when Python exits.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
@@ -127,7 +130,7 @@ def _unwritable(problem: OSError) -> int:
 
 
 def _say(text: str, usage: click.Context | None = None) -> None:
-    """A message on standard error. If that cannot be written, the status has to do."""
+    """Print a message on standard error, if that can be written."""
     with suppress(OSError):
         if usage is not None:
             click.echo(f"{usage.get_usage()}\nTry '{usage.command_path} --help'.\n", err=True)

@@ -1,4 +1,4 @@
-"""Where a verb's answer goes, and the exit status that findings lead to."""
+"""Destinations of a verb's answer, and the exit status of findings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from rulec.report.text.console import print_diagnostics, print_result, wants_col
 
 @contextmanager
 def output_stream(output: Path) -> Iterator[tuple[IO[bytes], str]]:
-    """A file that appears whole, or for `-` standard output, with its name in messages.
+    """Open a file that appears whole, or for `-` standard output.
+
+    With it comes its name in messages.
 
     Raises RulecError R0702.
     """
@@ -29,7 +31,7 @@ def output_stream(output: Path) -> Iterator[tuple[IO[bytes], str]]:
 
 
 def is_standard_output(output: Path) -> bool:
-    """Whether there is no file to write, and so nothing to say about it."""
+    """Test for standard output, after which no file is reported."""
     return str(output) == "-"
 
 
@@ -52,7 +54,7 @@ def print_findings(
     output_format: str,
     fail_on: str,
 ) -> ExitStatus:
-    """Print what was found in sources, then why others could not be read.
+    """Print findings in sources, then reasons for unread ones.
 
     Args:
         findings: what is wrong or odd.

@@ -1,4 +1,4 @@
-"""The session of the working folder, and what every verb does when rulebooks are wrong."""
+"""The session of the working folder, and the handling of wrong rulebooks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ def open_session(at: str = "") -> rulec.Session:
 
 
 def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
-    """A rulebook as automata for traces of any step, after its warnings. Raises RulecError."""
+    """Compile a rulebook for traces of any step, and print its warnings.
+
+    Raises RulecError.
+    """
     # The tables of automata, 20 ms: not for --help.
     from rulec.api.workflow import machines
 
@@ -32,7 +35,7 @@ def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
 
 @contextmanager
 def errors_added_to(diagnostics: list[Diagnostic]) -> Iterator[None]:
-    """Go on after what follows, with its mistakes added to those of others."""
+    """Run a block and collect its errors instead of raising them."""
     try:
         yield
     except RulecError as error:
@@ -40,7 +43,7 @@ def errors_added_to(diagnostics: list[Diagnostic]) -> Iterator[None]:
 
 
 def answer_or_print(ask: Callable[[], Answer]) -> Answer | None:
-    """The answer to a question; None, after its mistakes, if it cannot be answered."""
+    """The answer to a question, or None after its errors are printed."""
     try:
         return ask()
     except RulecError as error:

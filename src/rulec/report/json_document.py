@@ -1,4 +1,4 @@
-"""JSON outputs: typed documents, which msgspec turns into data and into published schemas.
+"""JSON outputs: typed documents, turned by msgspec into data and schemas.
 
 A document's class is its JSON: the fields are the keys, in this order, and one that is ``UNSET``
 is not there. ``docs/schemas`` is generated from the classes, see ``src/tools/json_schemas.py``.

@@ -1,4 +1,4 @@
-"""``rulec check``: all that is to say about rulebooks and vocabularies, and nothing written."""
+"""``rulec check``: all diagnostics of rulebooks and vocabularies, without any output file."""
 
 from __future__ import annotations
 

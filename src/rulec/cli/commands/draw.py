@@ -105,7 +105,7 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
 def _judged(
     scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
 ) -> Judged:
-    """The graph, with a rulebook its maneuvers, and the one that is to be shown."""
+    """The graph, with a rulebook its maneuvers, and the one shown."""
     # Maneuvers, 110 ms: not for --help.
     from rulec.planning.ranking.cheapest import cheapest
 

@@ -68,7 +68,10 @@ def trace(
 
 
 def _trace(file: str, wanted: str | None) -> Trace:
-    """The trace that is asked for. Raises RulecError if it, or one before it, cannot be read."""
+    """The wanted trace of a file.
+
+    Raises RulecError if it, or one before it, cannot be read.
+    """
     names: list[str] = []
     for trace_ in rulec.read_traces(file):
         if isinstance(trace_, RulecError):
@@ -81,7 +84,7 @@ def _trace(file: str, wanted: str | None) -> Trace:
 
 
 def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
-    """The rulebook with the rules alone that one of the patterns matches, if there are any."""
+    """The rulebook restricted to rules that match a pattern, if any."""
     kept = tuple(
         rule
         for rule in rules.rules

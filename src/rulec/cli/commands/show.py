@@ -1,4 +1,4 @@
-"""``rulec show``: a rule in English, as a formula, as an automaton, and by examples."""
+"""``rulec show``: a rule in English, by formula, automaton and examples."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def command(
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
-    """A rulebook as meant; one that was compiled long ago comes with its machines."""
+    """Load a rulebook; a file compiled earlier comes with its automata."""
     # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -135,7 +135,10 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
-    """What has been done to a rule that was there; empty if there was none, or if nobody knows."""
+    """Explain the absence of a rule that was dropped or overridden.
+
+    Empty if there was none, or if nobody knows.
+    """
     # Only for this message: the printer of rulebooks, 60 ms.
     from rulec.syntax.tree_printer import print_in_force
 

@@ -1,4 +1,4 @@
-"""``rulec traces``: all maneuvers of a scenario, or what recorded vehicles did, as traces."""
+"""``rulec traces``: maneuvers of a scenario, or recorded drives, as traces."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def _write_drives(
 
 
 def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
-    """An option that somebody has given and that means nothing for drives, if any."""
+    """A given option that means nothing for recorded drives, if any."""
     context = click.get_current_context()
     typed = click.core.ParameterSource.COMMANDLINE
     for parameter in context.command.params:

@@ -1,4 +1,4 @@
-"""``rulec tree``: what a rulebook inherits, overrides and drops, and who extends whom."""
+"""``rulec tree``: inheritance of a rulebook's items, and the forest of extensions."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def command(
 
 @dataclass
 class _Run:
-    """What is asked of every file, and what has become of those so far."""
+    """Settings for every file, and the results so far."""
 
     rules: CompiledRulebook
     json_output: bool

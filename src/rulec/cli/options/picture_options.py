@@ -1,4 +1,4 @@
-"""Arguments of the pictures of ``rulec draw``: where they go, and in which format."""
+"""Arguments of ``rulec draw`` for the output file and its format."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ picture_options = combined(
 
 
 def write(drawing: Drawing, output: Path, form: str | None) -> None:
-    """Write a picture in this format, else in the one that the file's name says."""
+    """Write a picture in the given format, else the file name's."""
     # Fonts and layout, 5 ms: not for --help.
     from rulec.report.pictures.drawing.picture_formats import as_bytes, format_of
 

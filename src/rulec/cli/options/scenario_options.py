@@ -1,4 +1,4 @@
-"""Arguments for scenarios: how one is cut into cells, and what can be chosen in a recorded one."""
+"""Arguments for a scenario's partition and for choices in recorded scenes."""
 
 from __future__ import annotations
 
@@ -96,7 +96,9 @@ _scene_options = combined(
 
 
 def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
-    """The scenario; what ``graph_options`` choose in a recorded one is taken out of the options.
+    """Load the scenario.
+
+    Choices in a recorded one are taken out of ``graph_options``.
 
     Raises RulecError.
     """

@@ -21,7 +21,7 @@ _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
 
 
 def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
-    """Several options as one decorator, in the order in which help lists them."""
+    """Combine several options into one decorator, in the order of the help."""
 
     def decorate(function: Decorated) -> Decorated:
         for option in reversed(options):
@@ -60,7 +60,7 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
 
 
 def only_sources(rulebooks: Iterable[str], lack: str) -> None:
-    """Refuse compiled rulebooks, of which a ``lack`` is told such as ``"cannot be audited"``.
+    """Refuse compiled rulebooks, with a reason such as ``"cannot be audited"``.
 
     Raises:
         click.UsageError: one of these is compiled.
@@ -109,7 +109,10 @@ def text_output_option(help_text: str = "Write to FILE.") -> Callable[[Decorated
 
 
 def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """``--step S``, exactly; what it is the step of differs from verb to verb."""
+    """The option ``--step S``, read exactly.
+
+    Its meaning differs from verb to verb.
+    """
     return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
 
 

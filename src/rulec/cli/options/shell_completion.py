@@ -1,4 +1,4 @@
-"""What a shell offers while somebody types: names that rulec knows, and files."""
+"""Shell completion of file names and of names that rulec knows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def complete_sources(
 def complete_rules(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Names of the rules of the rulebook that has been named before, with what they say."""
+    """Complete rule names of the given rulebook, with their titles."""
     # Rulebooks and automata, 170 ms: only to complete rules.
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.rulebook.loader import load_rulebook
@@ -74,7 +74,10 @@ def complete_codes(
 
 
 def _folders() -> tuple[Path, ...]:
-    """The project's own folders; while a command is typed nobody wants to hear of mistakes."""
+    """The project's own folders; empty if its settings are wrong.
+
+    While a command is typed nobody wants to hear of mistakes.
+    """
     try:
         return search_path()
     except RulecError:

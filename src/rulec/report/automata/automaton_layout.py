@@ -83,7 +83,7 @@ def _broken(text: str) -> tuple[str, ...]:
 
 
 class _AutomatonLayout:
-    """States stand in every other layer; between them pass the lines, each with its condition.
+    """Layered layout: states in every other layer, lines with conditions between.
 
     A line that goes on past a layer has a place of its own there, so that it passes no text.
     """
@@ -126,7 +126,7 @@ class _AutomatonLayout:
         self._layers[2 * level].append(state)
 
     def _add_way(self, transition: Transition, level: Sequence[int]) -> None:
-        """The places that a line passes; its condition stands next to its source."""
+        """Add the places that a line passes, with its condition near its source."""
         start, end = 2 * level[transition.source], 2 * level[transition.target]
         step = 1 if start < end else -1
         way = [transition.source]
@@ -169,7 +169,7 @@ class _AutomatonLayout:
         return next(number for number, layer in enumerate(self._layers) if box in layer)
 
     def _band(self, box: int) -> float:
-        """Half the height of the layer that a box is in, where lines run straight."""
+        """Half the height of a box's layer, where lines run straight."""
         layer = self._layers[self._layer_of(box)]
         return max(self._heights[one] for one in layer) / 2
 
@@ -194,7 +194,7 @@ class _AutomatonLayout:
         return (STATE_HEIGHT + LINE * (len(self._texts[state]) - 1)) / 2
 
     def _ports(self, x: dict[int, float]) -> dict[tuple[int, int], float]:
-        """Where on the upper or lower side of its states each line begins (0) and ends (1)."""
+        """Positions on states' sides where each line begins (0) and ends (1)."""
         sides: dict[tuple[int, bool], list[tuple[float, int, int]]] = {}
         for number, (_, way) in enumerate(self._ways):
             for end, state, beside in ((0, way[0], way[1]), (1, way[-1], way[-2])):
@@ -222,7 +222,7 @@ class _AutomatonLayout:
 
 
 def _levels(automaton: Automaton) -> list[int]:
-    """For each state how far down it stands: below all states with a smaller number that it meets.
+    """The level of each state: below every smaller-numbered state that it meets.
 
     States are numbered breadth-first from the start. Those in which the verdict is final come last,
     for nothing leads away from them.

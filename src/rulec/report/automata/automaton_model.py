@@ -1,4 +1,4 @@
-"""A rule's automaton for people: its states, and what leads from each to each, in words."""
+"""A rule's automaton for people: states, and transitions in words."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class Automaton:
-    """States from 0, where traces start, each with its fate; transitions from the open ones."""
+    """States from 0, the initial one, and transitions from the open ones.
+
+    Each state has its fate.
+    """
 
     fates: tuple[Fate, ...]
     transitions: tuple[Transition, ...]

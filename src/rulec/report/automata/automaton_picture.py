@@ -1,4 +1,4 @@
-"""A rule's automaton as a picture: states, transitions with their conditions, a legend."""
+"""Picture of a rule's automaton: states, transitions with conditions, a legend."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _transition(line: TransitionLine) -> Iterator[Mark]:
 
 
 def _loop(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
-    """A loop beside its state, and the direction in which it comes back."""
+    """A loop beside its state, and the direction of its return."""
     start, (out, _), (x, y) = corners
     side = 1 if out > start[0] else -1
     reach, end = out + side * 6, (x + side * 6, y)
@@ -144,7 +144,7 @@ def _state(state: AutomatonState, fate: Fate) -> Iterator[Mark]:
 
 
 def _rounded(left: float, top: float, right: float, bottom: float) -> Iterator[Point]:
-    """The outline of a rectangle with round corners, clockwise from the upper left one."""
+    """Outline of a rounded rectangle, clockwise from the upper left corner."""
     centres = (
         (left + CORNER, top + CORNER),
         (right - CORNER, top + CORNER),

@@ -21,7 +21,10 @@ _FINAL = {
 
 
 def as_text(automaton: Automaton, width: int) -> str:
-    """A paragraph for each state; the last column is the verdict on a trace that ends there."""
+    """Write a paragraph for each state.
+
+    The last column is the verdict on a trace that ends there.
+    """
     number = len(automaton.fates)
     head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
     if automaton.transitions:

@@ -1,4 +1,4 @@
-"""Boxes in layers, in an order with few crossing links, and with room for each.
+"""Layered layout of boxes with few crossing links.
 
 The layered drawing of Sugiyama, Tagawa, Toda, "Methods for visual understanding of hierarchical
 system structures" (1981): orders by barycentres, then places by least squares.
@@ -15,7 +15,7 @@ SWEEPS = 24
 
 @dataclass(frozen=True, slots=True)
 class LayoutBox:
-    """How far a box reaches to the left and right of the point at which its links arrive."""
+    """Extent of a box, left and right of its links' point of arrival."""
 
     left: float
     right: float
@@ -105,7 +105,7 @@ def _placed(
 def _apart(
     layer: Sequence[int], boxes: Mapping[int, LayoutBox], wanted: Mapping[int, float]
 ) -> dict[int, float]:
-    """Places as near as possible to those wanted, in this order and without overlaps.
+    """Places nearest to those wanted, in order and without overlaps.
 
     Least squares under an order: pool adjacent violators.
     """

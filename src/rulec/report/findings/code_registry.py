@@ -33,7 +33,7 @@ def all_codes() -> dict[str, Code]:
 
 
 def code_named(text: str) -> Code | None:
-    """The code with this text, such as ``R0104``; None if there is none."""
+    """The code with a text such as ``R0104``, or None."""
     for path in message_files():
         if f'"{text}"' in path.read_text(encoding="utf-8"):
             return next((code for code in _defined_in(path) if code.code == text), None)

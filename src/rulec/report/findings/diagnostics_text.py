@@ -1,4 +1,4 @@
-"""Diagnostics as plain text: the place, the line with the place underlined, and the way out."""
+"""Diagnostics as plain text, with underlined source lines and help."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _worth_showing(mark: Underline) -> bool:
 
 
 def _by_file(diagnostic: Diagnostic) -> list[tuple[str, list[Underline]]]:
-    """The primary place first; other places in its file with it, those in other files behind."""
+    """The marks of a diagnostic by file, the primary place's file first."""
     marks = (
         [] if diagnostic.place is None else [Underline(diagnostic.place, diagnostic.expected, "^")]
     )
@@ -104,7 +104,7 @@ def _number_width(diagnostic: Diagnostic) -> int:
 
 
 def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str, str]]:
-    """What stands left of the frame, the text right of it, and its style."""
+    """Line number left of the frame, text right of it, and style."""
     before: int | None = None
     in_order = sorted(marks, key=lambda mark: mark.place.start)
     for number, group in groupby(in_order, key=lambda mark: mark.place.line):

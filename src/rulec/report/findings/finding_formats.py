@@ -1,4 +1,4 @@
-"""What was found in rulebooks, in the format that somebody asked for."""
+"""Findings about rulebooks in each output format."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FORMATS = ("full", "concise", "json", "github", "sarif")
 
 
 def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
-    """Diagnostics as text; empty if the format has nothing to say about nothing.
+    """Render diagnostics; empty if the format has nothing for none.
 
     Args:
         diagnostics: those to render.

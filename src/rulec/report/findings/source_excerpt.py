@@ -26,7 +26,7 @@ class Underline:
 
 
 def visible(text: str) -> str:
-    """The text with control characters, line ends and reordering marks written as escapes."""
+    """Escape control characters, line ends and reordering marks in a text."""
     return text if text.isprintable() else "".join(_shown(character) for character in text)
 
 
@@ -51,7 +51,10 @@ def _width(shown: str) -> int:
 
 
 def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
-    """The line that all marks share, then an underline for each; with each its mark's sign."""
+    """The line shared by all marks, then an underline for each.
+
+    With each comes its mark's sign.
+    """
     excerpt = marks[0].place.excerpt
     primary = next((mark for mark in marks if mark.sign == "^"), marks[0])
     cells, first, cut_before, cut_after = _window(excerpt, primary.place)
@@ -68,14 +71,14 @@ def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
 
 
 def _end_column(place: SourceLocation, length: int) -> int:
-    """A place that goes on over further lines is underlined to its first line's end."""
+    """End of an underline, at most the first line's end."""
     if place.end_line is not None and place.line is not None and place.end_line > place.line:
         return length + 1
     return place.end_column or (place.column or 1) + 1
 
 
 def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, bool]:
-    """The characters to show, as shown, the index of the first, and whether either end is cut."""
+    """The characters shown, the first one's index, and marks for cut ends."""
     column = (place.column or 1) - 1
     # A hostile line may have millions of characters: look only at what can be shown.
     start = max(0, column - MAX_WIDTH)

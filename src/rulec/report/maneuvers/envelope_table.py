@@ -1,4 +1,4 @@
-"""The envelopes of maneuvers as a table, for trajectory planners that read columns."""
+"""Table of maneuvers' envelopes, for trajectory planners that read columns."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _rows(
 
 
 def stretches(bounds: Envelope) -> Iterator[tuple[float, float, float, float]]:
-    """The stretches on which both bounds are constant: s from and to, then d right and left."""
+    """Stretches with constant bounds: s from and to, d right and left."""
     right, left = dict(bounds.d_right), dict(bounds.d_left)
     low = high = 0.0
     for start, end in pairwise([*sorted({*right, *left}), bounds.s_max]):

@@ -12,7 +12,10 @@ from rulec.report.text.count_text import shown_count
 
 
 def count_lines(maneuvers: Maneuvers, classes: HomotopyClasses) -> list[str]:
-    """How many classes there are and how many satisfy; where verdicts differ within one, why."""
+    """Counts of homotopy classes and of satisfying ones.
+
+    Where verdicts differ within a class, the reason.
+    """
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
     lines = [f"classes     {satisfying} of {total} satisfying"]
     if classes.divided:

@@ -15,7 +15,7 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 
 @dataclass(frozen=True, slots=True)
 class ManeuverAnswers:
-    """Answers to further questions than how many there are; None is what was not asked.
+    """Answers to further questions about maneuvers, None where not asked.
 
     ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
     longer list of them in ``ranked``. ``chances`` are those of maneuvers, given by their nodes.
@@ -31,5 +31,5 @@ class ManeuverAnswers:
 
 
 def horizon_s(graph: NavigationGraph) -> float:
-    """The time from the first layer's start to the last one's, in seconds."""
+    """Time from the first layer's start to the last one's, in seconds."""
     return float((len(graph.layers) - 1) * graph.step)

@@ -1,4 +1,7 @@
-"""Maneuvers, what they violate and how probable that is, as JSON; docs/commands.md describes it."""
+"""Maneuvers, their violations and probabilities as JSON.
+
+docs/commands.md describes it.
+"""
 
 from __future__ import annotations
 

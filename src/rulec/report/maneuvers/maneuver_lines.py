@@ -41,7 +41,7 @@ def cell_lines(graph: NavigationGraph, maneuver: Maneuver) -> list[str]:
 
 
 def relations_in_time(graph: NavigationGraph, maneuver: Maneuver, objects: Collection[str]) -> str:
-    """When it comes into which relation to some of the objects, and onto which surface."""
+    """Times at which the maneuver's relations to objects, or its surface, change."""
     told = [
         (f"{layer.start_s:g} s", _label(layer.cells[index], objects))
         for layer, index in zip(graph.layers, maneuver.nodes, strict=True)

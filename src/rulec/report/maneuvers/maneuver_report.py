@@ -1,4 +1,4 @@
-"""The counts of maneuvers, and what was asked for beside them, as text."""
+"""Text report of counts of maneuvers and of further answers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST_DEFAULTS = 4
 
 
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
-    """The counts in a few lines, and a block for every maneuver that was asked for."""
+    """Write the counts, and a block for each maneuver asked for."""
     graph, rules = maneuvers.graph, maneuvers.rules
     names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
@@ -76,7 +76,10 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
-    """A line for each rule that the past has violated, which no maneuver can mend."""
+    """A line for each rule already violated by the past.
+
+    No maneuver can mend that.
+    """
     for violation in violations[:MOST_VIOLATIONS]:
         where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
         about = f" for {where}" if where else ""
@@ -86,7 +89,7 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
 
 
 def _by_default(names: Sequence[str]) -> Iterator[str]:
-    """A line for what nobody has said, so that it was taken to be as usual."""
+    """A line for the inputs without information, taken at their defaults."""
     if not names:
         return
     shown = ", ".join(names[:MOST_DEFAULTS])

@@ -1,4 +1,4 @@
-"""How probable it is that maneuvers keep rules, as text."""
+"""Probabilities that maneuvers keep rules, as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which rule prunes how many maneuvers, as a table."""
+"""Table of rules by the number of maneuvers that they prune."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ HEAD = ("rule", "violated by", "alone by", "for example")
 
 
 def table(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
-    """A line for every rule that some maneuver violates, and the names of the others."""
+    """A line for each rule that prunes maneuvers; names of the others."""
     rows = [HEAD, *(_row(maneuvers, pruning) for pruning in prunings if pruning.violating)]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
     lines = [

@@ -45,7 +45,7 @@ def blocks(maneuvers: Maneuvers, ranked: Sequence[RankedManeuver]) -> list[str]:
 
 
 def violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
-    """Which rule, of which article, for whom, and since when."""
+    """The violated rule with its article, its binding and its time."""
     rule = next(rule for rule in maneuvers.rules.rules if rule.name == violation.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
     objects = ", ".join(f"{name} = {visible(value)}" for name, value in violation.binding.items())
@@ -54,7 +54,7 @@ def violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
 
 
 def when_lost(maneuvers: Maneuvers, violation: Violation) -> str:
-    """When the rule cannot be kept any more."""
+    """The time from which the rule cannot be kept any more."""
     if violation.step is None:
         return "by how it ends"
     return f"cannot be kept any more from {maneuvers.graph.layers[violation.step].start_s:g} s on"

@@ -1,4 +1,4 @@
-"""What became of a recorded scene: what is left out, continued, and derived."""
+"""Notes on a recorded scene: left out, continued and derived data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.scenario import Account
 
 
 def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[Any, str]]:
-    """The signals that the recording supplies, each with its value and the reason for it."""
+    """Signals supplied by the recording, each with value and reason."""
     supplied = maneuvers.paths.states[0][0]
     return {
         name: (supplied[name], because)
@@ -21,7 +21,7 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
 
 
 def lines(maneuvers: Maneuvers, account: Account) -> Iterator[str]:
-    """The same as text."""
+    """Notes on a recorded scene, as lines of text."""
     kept = account.recorded - account.left_out
     out = f", {account.left_out} left out: not on this road" if account.left_out else ""
     yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"

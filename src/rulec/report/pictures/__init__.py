@@ -1,1 +1,4 @@
-"""Pictures: laid out as marks by pure functions, then written as SVG, PNG or a page."""
+"""Pictures: marks laid out by pure functions, then written as files.
+
+The formats are SVG, PNG and HTML pages.
+"""

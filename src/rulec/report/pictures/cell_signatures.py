@@ -17,7 +17,10 @@ _MEANING: dict[PartitionName, str] = {
 
 
 def in_letters(cell: Cell) -> str:
-    """A letter an obstacle, in the order of the layer's objects; with ``fine`` two."""
+    """A cell's signature: a letter for each obstacle, with ``fine`` two.
+
+    They are in the order of the layer's objects.
+    """
     if len(cell.objects) > MOST_SPELLED:
         return ""
     letters = [
@@ -37,7 +40,7 @@ def in_full(cell: Cell) -> str:
 
 
 def meaning(graph: NavigationGraph) -> str:
-    """What the letters stand for, and whose they are."""
+    """Explanation of the letters, and the obstacles that they are about."""
     names = list(graph.objects)
     whose = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
     return f"{_MEANING[graph.partition]}; {whose}"

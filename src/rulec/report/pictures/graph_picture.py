@@ -1,4 +1,7 @@
-"""The navigation graph: a column of cells for every layer, and the steps between them."""
+"""Picture of the navigation graph: a column of cells for every layer.
+
+The steps run between the columns.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ _ORDER = ("unused", "rejected", "satisfying", "way")
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
-    """Where nodes stand: those of a layer above each other, the road's left lane on top."""
+    """Positions of nodes: a layer's above each other, left lane on top."""
 
     sizes: tuple[int, ...]
     labels: tuple[tuple[str, ...], ...]
@@ -55,7 +58,7 @@ class _Columns:
 
     @property
     def legible(self) -> bool:
-        """Is there room for labels?"""
+        """Sufficient room for labels."""
         return self.row >= LINE_HEIGHT and self.half_width * 2 <= self.column * 0.75
 
     @property

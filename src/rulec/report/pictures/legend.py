@@ -1,4 +1,4 @@
-"""What styles and words in a picture mean."""
+"""Legend of a picture's styles and words."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class LegendEntry:
 def legend(
     entries: Sequence[LegendEntry], words: Sequence[str], width: float, margin: float
 ) -> Picture:
-    """Swatches with their words, in as many lines as it takes, then lines of words."""
+    """Lay out swatches with their words, then lines of words."""
     marks: list[Mark] = []
     x, y = margin, LINE_HEIGHT
     for entry in entries:

@@ -13,7 +13,7 @@ from rulec.scenario.motion import span, swept
 
 
 def obstacle_marks(graph: NavigationGraph, frame: Frame, layer: int) -> Iterator[Mark]:
-    """What each obstacle sweeps in the layer, and where it is as the layer begins."""
+    """Area swept by each obstacle in the layer, and its initial place."""
     start = graph.layers[layer].start_s
     for name in graph.layers[layer].objects:
         obstacle = graph.objects[name]
@@ -27,7 +27,7 @@ def obstacle_marks(graph: NavigationGraph, frame: Frame, layer: int) -> Iterator
 
 
 def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[LabelText, Rectangle]]:
-    """The obstacles' names and bodies as the layer begins, or as they enter in its course."""
+    """Obstacles' names and bodies at the layer's start or their entry."""
     start = graph.layers[layer].start_s
     result = []
     for name in graph.layers[layer].objects:
@@ -43,13 +43,13 @@ def bodies(graph: NavigationGraph, frame: Frame, layer: int) -> list[tuple[Label
 
 
 def fits(words: LabelText, body: Rectangle) -> bool:
-    """Is there room for the words inside?"""
+    """Test for room for the words inside a body."""
     left, top, right, bottom = words.bounds
     return body[0] <= left and right <= body[2] and body[1] <= top and bottom <= body[3]
 
 
 def beside(words: LabelText, body: Rectangle) -> Iterator[LabelText]:
-    """Places for a name that does not fit into its body: next to it, or just above or below."""
+    """Places for a name beside its body, or just above or below."""
     left, top, right, bottom = words.bounds
     half, (x, y) = (right - left) / 2 + 5, words.at
     lift = (body[3] - body[1] + bottom - top) / 2 + 1
@@ -66,7 +66,7 @@ def beside(words: LabelText, body: Rectangle) -> Iterator[LabelText]:
 
 
 def ego_marks(graph: NavigationGraph, frame: Frame, placing: Placing) -> Iterator[Mark]:
-    """Ego as the first layer begins, at least so large that it can be seen."""
+    """Ego at the first layer's start, large enough to be seen."""
     ego = graph.scenario.ego
     x, y = frame.at(ego.s, ego.d)
     half_length = max(ego.length / 2 * frame.along, 4)

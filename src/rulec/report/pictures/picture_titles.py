@@ -1,4 +1,4 @@
-"""What stands above a picture."""
+"""Titles of pictures."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def scene_title(
 
 
 def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int) -> str:
-    """The scenario, the size of its graph, and how many maneuvers there are."""
+    """The scenario, the size of its graph, and the number of maneuvers."""
     counts = f"{graph.scenario.name}: {graph.nodes:,} nodes, {graph.edges:,} edges"
     if found is None:
         return f"{counts}, {shown_count(maneuvers)} maneuvers"
@@ -39,7 +39,10 @@ def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int)
 
 
 def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
-    """The trace, and what came of it; ``only`` of these rules and objects, if there are any."""
+    """The trace and its verdict.
+
+    ``only``: of these rules and objects, if there are any.
+    """
     number = len(verdict.violations)
     words = "no violation" if not number else "1 violation" if number == 1 else None
     return f"{verdict.trace}: {words or f'{number:,} violations'} by {rules.name}" + (

@@ -1,4 +1,4 @@
-"""Where places on the road are in a picture of it."""
+"""Map places on the road to places in its picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LANE_HEIGHT = 46.0
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where places on the road are in the picture."""
+    """Mapping of places on the road to places in the picture."""
 
     outline: Box
     top: float

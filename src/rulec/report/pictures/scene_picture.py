@@ -1,4 +1,4 @@
-"""The scene in one layer: the road, its cells with their signatures, and what obstacles sweep."""
+"""Picture of a scene's layer: road, cells with signatures, obstacles."""
 
 from __future__ import annotations
 
@@ -38,12 +38,15 @@ _TAKEN = {
 def scene_pictures(
     graph: NavigationGraph, layers: Sequence[int], maneuver: Maneuver | None
 ) -> list[Picture]:
-    """A picture for each of these layers; ``maneuver`` is shown by its cells and its bounds."""
+    """A picture for each layer.
+
+    ``maneuver`` is shown by its cells and its bounds.
+    """
     return [_picture(graph, layer, maneuver) for layer in layers]
 
 
 def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
-    """What the colours and the letters mean."""
+    """Legend of the scene's colours and letters."""
     entries = [LegendEntry("cell", "a cell"), LegendEntry("crossing", "a cell on a crossing")]
     if all(cell.surface == "carriageway" for layer in graph.layers for cell in layer.cells):
         del entries[1]
@@ -139,7 +142,7 @@ def _lane_marks(frame: Frame, road: Road) -> Iterator[Polyline]:
 def _labels(
     frame: Frame, cells: Sequence[Cell], placing: Placing
 ) -> tuple[list[LabelText], list[str]]:
-    """The cells' labels, and what those mean that had to be shortened to a number."""
+    """The cells' labels, and explanations of those shortened to a number."""
     label_texts, key = [], []
     for number, cell in enumerate(cells):
         letters = in_letters(cell)

@@ -1,4 +1,4 @@
-"""A ribbon laid out: rows of values over time, violations at the state that decides them."""
+"""Picture of a ribbon: values over time, violations at their decisive states."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ _COLOURS = 7
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Where a state begins, from left to right; states are ``step_s`` apart."""
+    """Time axis: the left end of each state.
+
+    States are ``step_s`` apart.
+    """
 
     left: float
     states: int
@@ -91,7 +94,7 @@ def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
 
 
 def _flags(ribbon: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
-    """The violations' numbers above their states; and where the rows begin, below them."""
+    """Numbers of violations above their states, and the rows' upper end."""
     numbered = sorted(
         (ribbon.decisive(violation), n) for n, violation in enumerate(ribbon.violations, 1)
     )
@@ -113,7 +116,7 @@ def _flags(ribbon: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], fl
 
 
 def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
-    """A thin line through all rows, a thick one in those of the objects in question."""
+    """Lines at violations, thicker in the rows of the objects concerned."""
     bottom = top + _ROW * len(ribbon.rows)
     for state in sorted({ribbon.decisive(violation) for violation in ribbon.violations}):
         x = axis.x(state)
@@ -137,7 +140,7 @@ def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _values(row: RibbonRow, axis: _Axis, y: float) -> Iterator[LabelText]:
-    """What the segments say, where there is room."""
+    """Values of the segments with room for them."""
     for run in row.runs:
         if run.value is not None:
             left, right = axis.x(run.first), axis.x(run.last + 1)
@@ -172,7 +175,10 @@ def _times(axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _title(row: RibbonRow) -> str:
-    """What a row is about; of a quantity its extremes, between which the curve runs."""
+    """A row's title; for a quantity with its extremes.
+
+    The curve runs between these.
+    """
     text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
     if row.values:
         return text

@@ -1,4 +1,4 @@
-"""A trace as a ribbon: what it says about whom, row by row over time, and where it is violated."""
+"""A trace as a ribbon: values in rows over time, and violations."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity
 
 @dataclass(frozen=True, slots=True)
 class ValueRun:
-    """The states from ``first`` to ``last``, both included, in which a value is the same.
+    """A run of states, ``first`` to ``last`` included, with a constant value.
 
     ``value`` is None where nothing is said, or who it is about is not there.
     """
@@ -43,14 +43,17 @@ class RibbonRow:
 
     @property
     def title(self) -> str:
-        """As a rule would say it."""
+        """The row's title in the words of a rule."""
         about = f"({', '.join(self.objects)})" if self.objects else ""
         return f"{self.name}{about}" + (f" in {self.unit}" if self.unit else "")
 
 
 @dataclass(frozen=True, slots=True)
 class Ribbon:
-    """The rows of a trace and what it violates; ``left_out`` more have nothing but defaults."""
+    """The rows of a trace, and its violations.
+
+    ``left_out`` more rows have nothing but defaults.
+    """
 
     trace: Trace
     rows: tuple[RibbonRow, ...]
@@ -58,14 +61,19 @@ class Ribbon:
     violations: tuple[Violation, ...]
 
     def decisive(self, violation: Violation) -> int:
-        """The state after which a rule is violated for good; behind the last if the end decides."""
+        """The state that decides a violation.
+
+        It lies behind the last one if the end decides.
+        """
         return len(self.trace.states) if violation.step is None else violation.step
 
 
 def ribbon(
     trace: Trace, rules: CompiledRulebook, verdict: Verdict, only: Collection[str] = ()
 ) -> Ribbon:
-    """The rows that the rules read: first what is about nobody, then object by object, then pairs.
+    """Collect the rows that the rules read.
+
+    First what is about nobody, then object by object, then pairs.
 
     What the trace does not speak of has a row only if a rule that is violated reads it. ``only``:
     the objects to tell of, if not of all.
@@ -94,7 +102,10 @@ def ribbon(
 
 
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
-    """The pairs of which some state speaks; most of all that there are have defaults alone."""
+    """Pairs of objects mentioned in some state.
+
+    Most of all that there are have defaults alone.
+    """
     values = (state.get(name) for name in names for state in trace.states)
     result = {
         (one, other): None

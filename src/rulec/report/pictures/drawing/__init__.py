@@ -1,1 +1,1 @@
-"""Marks in px, their styles, and the files that pictures are written to."""
+"""Marks in px, their styles, and writers of picture files."""

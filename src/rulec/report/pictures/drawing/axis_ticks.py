@@ -6,7 +6,10 @@ from math import ceil, floor, log10
 
 
 def ticks(low: float, high: float, at_most: int) -> list[float]:
-    """Multiples of 1, 2 or 5 times a power of ten from ``low`` to ``high``, both included."""
+    """Round axis ticks from ``low`` to ``high``, both included.
+
+    They are multiples of 1, 2 or 5 times a power of ten.
+    """
     span = high - low
     power = 10.0 ** floor(log10(span / at_most))
     # The logarithm may be rounded down from a whole number, so that 10 would just not be enough.

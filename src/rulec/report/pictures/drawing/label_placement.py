@@ -36,11 +36,11 @@ class Placing:
         return True
 
     def first_free(self, choices: Iterable[LabelText]) -> list[LabelText]:
-        """The first of these that has its place to itself, taken; empty if none has."""
+        """Take the first choice whose place is free; empty if none is."""
         return list(islice(filter(self.take, choices), 1))
 
     def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> LabelText | None:
-        """The first of the texts that fits into one of the rooms, upright if it can be.
+        """Place the first text that fits into a room, upright if possible.
 
         Of the large rooms that in the middle is tried first. None if no text fits anywhere.
         """
@@ -79,6 +79,9 @@ def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[LabelText]:
 
 
 def _meet(left: Rectangle, right: Rectangle) -> bool:
-    """Beside words some room is left, or two of them would read as one."""
+    """Test two labels for overlap, with some room beside their words.
+
+    Without it two of them would read as one.
+    """
     beside = left[0] < right[2] + _ROOM and right[0] < left[2] + _ROOM
     return beside and left[1] < right[3] and right[1] < left[3]

@@ -1,4 +1,4 @@
-"""What a picture is made of, before anything is drawn: areas, lines and words, in px.
+"""Marks that a picture consists of: areas, lines and words, in px.
 
 ``y`` grows downwards. A style is a name in ``styles.STYLES``; a tip is what a reader is told who
 points at a mark.
@@ -44,7 +44,7 @@ class Polyline:
 
 @dataclass(frozen=True, slots=True)
 class LabelText:
-    """A line of text whose middle is at the height of ``at``; ``turned`` runs upwards."""
+    """A line of text, vertically centred on ``at``; ``turned`` runs upwards."""
 
     text: str
     at: Point
@@ -82,7 +82,7 @@ def rectangle(left: float, top: float, right: float, bottom: float) -> tuple[Poi
 
 
 def moved(mark: Mark, right: float, down: float) -> Mark:
-    """The same mark elsewhere."""
+    """A copy of the mark at another place."""
 
     def there(points: Iterable[Point]) -> tuple[Point, ...]:
         return tuple((x + right, y + down) for x, y in points)

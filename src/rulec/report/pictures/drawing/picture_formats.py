@@ -1,4 +1,4 @@
-"""A drawing as the bytes of a file, in one of three formats."""
+"""A drawing as the bytes of an SVG, PNG or HTML file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Format = Literal["svg", "png", "html"]
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """Pictures under one title, one for each moment, and what their colours mean."""
+    """Titled pictures, one for each moment, with a legend of their colours."""
 
     title: str
     pictures: Sequence[Picture]

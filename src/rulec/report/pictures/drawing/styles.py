@@ -1,4 +1,4 @@
-"""How marks look, on light and on dark ground.
+"""Styles of marks, on light and on dark ground.
 
 The two colours that tell verdicts apart are blue and vermilion of Okabe and Ito's palette (Color
 Universal Design, 2008), lightened for dark ground; dashes repeat what they say.
@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """Names of colours, the width of the line in px, and its dashes (on, off) in px.
+    """Colour names, line width in px, and dashes (on, off) in px.
 
     A halo keeps words apart from what they stand on.
     """
@@ -105,7 +105,10 @@ DARK: Mapping[str, str] = MappingProxyType(
 
 
 def as_css(used: Collection[str]) -> str:
-    """The styles as CSS classes, light, and dark where the reader prefers that on a screen."""
+    """CSS classes of the styles, light and dark.
+
+    Dark is for a screen whose reader prefers that.
+    """
     dark = "\n".join(f"  {rule}" for rule in _rules(used, DARK, shape=False))
     return "\n".join(
         [

@@ -1,4 +1,4 @@
-"""A picture as SVG that needs nothing else: light and dark, with tips."""
+"""A self-contained SVG picture, light and dark, with tips."""
 
 from __future__ import annotations
 
