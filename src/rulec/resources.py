@@ -1,4 +1,4 @@
-"""Where rulec's own files are: at the top of a checkout, or inside an installed package."""
+"""Locations of rulec's own files, in a checkout or an installed package."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def rulebooks_folder() -> Path:
 
 
 def package_files() -> Iterator[tuple[str, os.stat_result]]:
-    """The files of code and grammar that rulec consists of, in an order that stays."""
+    """Files of code and grammar in rulec, in a fixed order."""
     folders = [str(_PACKAGE), str(_folder("grammar"))]
     while folders:
         with os.scandir(folders.pop()) as scandir_iterator:

@@ -1,4 +1,7 @@
-"""A project's own settings: ``rulec.toml``, found in the working folder or above it."""
+"""A project's settings from ``rulec.toml``.
+
+It is found in the working folder or above it.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ _HOW = 'such as `search_path = ["rulebooks"]`'
 
 
 def search_path(folder: Path | None = None) -> tuple[Path, ...]:
-    """The folders in which names of rulebooks and vocabularies are looked for first.
+    """Folders searched first for rulebooks and vocabularies.
 
     Args:
         folder: where to look for ``rulec.toml``, and above which, if not in the working folder; no

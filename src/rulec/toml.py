@@ -1,4 +1,4 @@
-"""TOML files, read alike on every Python, with the place of what is wrong."""
+"""TOML files, read alike on every Python, with places of errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How values show themselves: a short ``repr``, rows of plain dicts, Arrow, HTML in a notebook."""
+"""Display of values: short ``repr``, rows of plain dicts, Arrow, HTML."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_ITEMS = 3
 
 
 def short_repr(value: Any) -> str:
-    """A dataclass as Python writes it, in one line: what is long is shortened."""
+    """A dataclass's ``repr`` in one line, with long values shortened."""
     name = type(value).__name__
     pairs = [f"{field}={_brief(item)}" for field, item in _items(value)]
     text = ", ".join(pairs)
@@ -64,7 +64,10 @@ class Rows:
 
     @abstractmethod
     def rows(self) -> Sequence[dict[str, Any]]:
-        """The rows, with the same keys each: texts, numbers, truth values, None, lists, dicts."""
+        """Rows as dicts with equal keys and plain values.
+
+        The values are texts, numbers, truth values, None, lists and dicts.
+        """
 
     def to_arrow(self) -> Any:
         """The rows as a ``pyarrow.Table``; ImportError if pyarrow is not installed."""

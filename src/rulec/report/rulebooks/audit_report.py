@@ -22,7 +22,7 @@ Compared = Mapping[str, AuditChanges]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparedAudit(Audit):
-    """An audit, and what has changed since an older one if there was any."""
+    """An audit, and its changes since an older one, if any."""
 
     changes: AuditChanges | None
 
@@ -51,7 +51,7 @@ def render(
 
 
 def counts(audit: Audit) -> Iterator[tuple[str, str]]:
-    """What there is, in words and in numbers."""
+    """Counts of the audit, each with its name in words."""
     audit_counts = audit.counts
     of_all = f"of {audit_counts.rules:,}"
     yield (
@@ -67,7 +67,7 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
 
 
 def law_of(audit: Audit) -> str:
-    """Which law it is, and of which day."""
+    """The rulebook's law and its day."""
     since = f", as of {audit.as_of}" if audit.as_of else ""
     return f"{audit.law}{since}" if audit.law else "no law is named"
 
@@ -101,7 +101,7 @@ def _lines(audit_findings: Sequence[AuditFinding], width: int) -> str:
 
 
 def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
-    """Two columns; what is too long for the second one goes on below it."""
+    """Two columns, the second one wrapped."""
     column = max(len(visible(name)) for name, _ in rows)
     lines: list[str] = []
     for name, text in rows:

@@ -1,4 +1,7 @@
-"""A rulebook as a document for lawyers, in Markdown; ``html_page`` makes the page for a browser."""
+"""A rulebook as a document for lawyers, in Markdown.
+
+``html_page`` makes the page for a browser.
+"""
 
 from __future__ import annotations
 

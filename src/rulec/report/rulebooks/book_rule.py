@@ -41,7 +41,7 @@ def rule_heading(rule: Rule) -> str:
 
 
 def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> Iterator[Block]:
-    """All about a rule of the rulebook at the end of a chain."""
+    """The section on a rule of the rulebook at a chain's end."""
     book = inherited.book
     (history,) = [
         rule_history for rule_history in inherited.rules if rule_history.name == rule.name
@@ -102,7 +102,7 @@ def _sentence(phrase: Phrase) -> str:
 
 
 def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
-    """As it is written, and as it is meant where that is something else."""
+    """The formula as written, and as meant if that differs."""
     clauses = [] if written is None else clauses_of(written)
     said = [(word, text) for word, text in clauses if word in _FORMULAS]
     meant = [] if rule.condition is None else [("when", formula_text(rule.condition))]

@@ -1,4 +1,4 @@
-"""What stands behind the rules in a document for lawyers: provisions, what is left out, words."""
+"""Last sections of the document for lawyers: provisions, omissions, vocabulary."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
 
 
 def definitions_section(inherited: BookLineage) -> Iterator[Block]:
-    """Definitions that rules speak of, as they are in the end, and what they were before."""
+    """Definitions that rules use, with final and earlier meanings."""
     constant_histories = [
         provision
         for provision in inherited.provisions
@@ -82,7 +82,7 @@ def _definition(head: str, text: str) -> list[str]:
 
 
 def left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
-    """What is not in the rulebook, and why."""
+    """Topics left out of the rulebook, with reasons."""
     rows = list(_left_out(inherited, at))
     if rows:
         yield Heading(2, "What this rulebook leaves out")
@@ -103,7 +103,7 @@ def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
 
 
 def words_section(loaded: Loaded) -> Iterator[Block]:
-    """The words of the vocabulary that the rules use, and what always holds."""
+    """Words of the vocabulary that the rules use, and axioms."""
     rulebook = loaded.rulebook
     used = used_declarations(rulebook)
     result = [

@@ -1,4 +1,4 @@
-"""How two rulebooks differ, as a table with a line for each rule."""
+"""Differences of two rulebooks as a table with a line per rule."""
 
 from __future__ import annotations
 

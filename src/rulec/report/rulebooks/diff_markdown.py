@@ -1,4 +1,7 @@
-"""How two rulebooks differ, in Markdown; ``html_page`` makes a page for a browser of it."""
+"""Differences of two rulebooks in Markdown.
+
+``html_page`` makes a page for a browser of it.
+"""
 
 from __future__ import annotations
 

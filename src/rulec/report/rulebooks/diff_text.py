@@ -1,4 +1,4 @@
-"""How two rulebooks differ, as text."""
+"""Differences of two rulebooks as text."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COLOURS: dict[RuleRelation, str] = {
 
 
 def as_text(rulebook_diff: RulebookDiff) -> str:
-    """What differs first, what is the same last."""
+    """Write differences first and agreements last."""
     one, other = rulebook_diff.first.name, rulebook_diff.second.name
     blocks = [_head(rulebook_diff)]
     blocks += [
@@ -44,7 +44,7 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
 
 
 def is_worth_a_block(pair: RulePair) -> bool:
-    """Is there anything to say of these rules, but that they are the same?"""
+    """Test for more to say of two rules than their equality."""
     return pair.relation != "equal" or bool(pair.notes)
 
 
@@ -58,7 +58,10 @@ def _head(rulebook_diff: RulebookDiff) -> str:
 
 
 def sides(rulebook_diff: RulebookDiff) -> list[str]:
-    """A line on traffic if it keeps to different sides, which many rules differ by."""
+    """A line on different sides of traffic, if they differ.
+
+    Many rules differ by it.
+    """
     first, second = rulebook_diff.first, rulebook_diff.second
     if {first.traffic, second.traffic} != {"left", "right"}:
         return []
@@ -83,7 +86,7 @@ def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
 
 
 def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
-    """Which objects the comparison is about, where one of the rules speaks of more."""
+    """Objects of the comparison, if one of the rules has more."""
     if not pair.comparison.common:
         return ""
     heads = [
@@ -143,7 +146,7 @@ def _settings(rulebook_diff: RulebookDiff) -> str:
 
 
 def only_why(one_sided: OneSided, lacks: str) -> str:
-    """What the other rulebook says of a rule that it does not have."""
+    """The other rulebook's remark on a rule that it lacks."""
     if one_sided.remark is None:
         return ""
     verb = "is silent on it" if one_sided.remark.kind == "silent" else "dropped it"

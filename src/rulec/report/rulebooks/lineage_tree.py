@@ -1,4 +1,4 @@
-"""Where everything in a rulebook comes from, and who extends whom, as trees and as JSON."""
+"""Lineage of a rulebook's items, and forest of extensions, as trees and JSON."""
 
 from __future__ import annotations
 
@@ -68,7 +68,10 @@ class ForestDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
-    """Only the rules whose name a pattern matches, and no provisions; all without a pattern."""
+    """The lineage of rules that match a pattern, without provisions.
+
+    Without a pattern it is all of the lineage.
+    """
     if pattern is None:
         return inherited
     rules = tuple(rule for rule in inherited.rules if fnmatchcase(rule.name, pattern))

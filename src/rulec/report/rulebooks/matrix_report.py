@@ -1,4 +1,4 @@
-"""Many rulebooks side by side, as text, Markdown, a page, JSON or comma-separated values."""
+"""Many rulebooks side by side, as text, Markdown, page, JSON or CSV."""
 
 from __future__ import annotations
 

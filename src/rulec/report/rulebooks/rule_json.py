@@ -1,4 +1,7 @@
-"""Rules as JSON, one of them with its automaton and shortest traces; see docs/commands.md."""
+"""Rules as JSON, one with automaton and shortest traces.
+
+See docs/commands.md.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +92,7 @@ class RulesDocument(JsonDocument, frozen=True, kw_only=True):
 def as_json(
     rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
 ) -> str:
-    """Write the rules, with all that is on the page of the only one."""
+    """Write the rules, with the whole page if there is only one."""
     return as_indented(
         RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
     )

@@ -1,4 +1,4 @@
-"""All about one rule: what it says, what it means, and what it does, as text."""
+"""Text page on one rule: its sentence, formula, automaton and traces."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ MOST_LISTED = 60
 
 @dataclass(frozen=True, slots=True)
 class ShownTrace:
-    """A trace as an example says it: further objects, states, and ``remarks`` on what it cannot."""
+    """A trace as an example: further objects, states and ``remarks``.
+
+    The remarks are on what an example cannot say.
+    """
 
     objects: tuple[Variable, ...]
     states: tuple[str, ...]
@@ -43,7 +46,9 @@ class ShownTrace:
 
 @dataclass(frozen=True, slots=True)
 class RulePage:
-    """A rule with its automaton, and a trace that it accepts and one it rejects, if there are any.
+    """A rule with its automaton, an accepted trace and a rejected one.
+
+    A trace is None if there is none.
 
     The automaton is that for traces with steps of ``step_s``; None if it is the same for all.
     """
@@ -76,7 +81,10 @@ def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShownTrace | No
 
 
 def _remarks(trace: WitnessTrace) -> Iterator[str]:
-    """How many objects of the moment a state needs, those that the rule names included."""
+    """Numbers of counted objects needed in a state.
+
+    Those that the rule names are included.
+    """
     for number, required in enumerate(trace.required):
         for count, size in required.items():
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
@@ -96,7 +104,10 @@ def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
 
 
 def restrictions_of(rule: Rule) -> list[Phrase]:
-    """When the rule applies, and its exceptions, as sentences; none of what an option rules out."""
+    """The rule's condition and exceptions as sentences.
+
+    There is none for what an option rules out.
+    """
     phrases = [
         exemption(formula, exemption_.scope)
         for exemption_ in rule.exemptions
@@ -120,7 +131,7 @@ def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
 
 
 def _formula(rule: Rule, width: int) -> list[str]:
-    """The formula; one with exceptions as it is written, and then with them put in."""
+    """The formula as written, and with its exceptions put in."""
     whole = formula_lines(visible(formula_text(rule.formula)), width)
     if rule.required is None:
         return whole
@@ -135,7 +146,7 @@ def _formula(rule: Rule, width: int) -> list[str]:
 
 
 def head(rule: Rule, rulebook: str, width: int) -> str:
-    """Who the rule is and where it comes from, its own sentence included."""
+    """Title, origin and own sentence of the rule."""
     lines = [click.style(_title(rule), bold=True)]
     facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
     column = max((len(name) for name, _ in facts), default=0)

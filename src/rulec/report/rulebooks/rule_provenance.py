@@ -1,4 +1,4 @@
-"""What a rule is to the rulebook at the end of a chain, in a few words."""
+"""Provenance of a rule in a chain of rulebooks, in few words."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from rulec.analysis.lineage.rule_lineage import LineageStep, RuleHistory
 
 
 def provenance(rule_history: RuleHistory, book: str) -> str:
-    """Own, inherited, overriding, or gone, and why; ``book`` is the rulebook in question."""
+    """Provenance of a rule in ``book``: own, inherited, overriding, or gone.
+
+    With it comes the reason, if there is one.
+    """
     last = rule_history.last
     because = f", because {last.because}" if last.because else ""
     here = last.book == book

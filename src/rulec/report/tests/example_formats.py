@@ -16,7 +16,10 @@ def render(
     *,
     color: bool,
 ) -> str:
-    """Write the runs as ``full``, ``json`` or ``junit``, with their coverage unless it is None."""
+    """Write the runs as ``full``, ``json`` or ``junit``.
+
+    Their coverage is included unless it is None.
+    """
     match output_format:
         case "json":
             # msgspec and its types take 9 ms.

@@ -75,7 +75,7 @@ class ExamplesRun(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_json(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
-    """Write the runs of rulebooks, with the coverage of each unless it is None."""
+    """Write the runs of rulebooks, each with coverage unless it is None."""
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     passed = sum(outcome.passed for outcome in outcomes)
     return as_indented(

@@ -1,4 +1,4 @@
-"""How examples came out, and what they cover, as text."""
+"""Results of examples and their coverage, as text."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_MISSING = 5
 def as_text(
     runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
 ) -> str:
-    """A line for each example, what there is to say about those that failed, and the numbers."""
+    """A line for each example, details of failures, and the numbers."""
     lines = [_line(outcome, run.rulebook.name) for run in runs for outcome in run.outcomes]
     problems = [
         failure(outcome, run.rulebook.name)
@@ -48,7 +48,10 @@ def as_text(
 
 
 def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
-    """The error about an example that fails in a rulebook, which may have inherited it."""
+    """The diagnostic of a failing example.
+
+    The rulebook may have inherited it.
+    """
     problem = replace(example_warning(example_outcome), severity="error")
     rule = example_outcome.rule
     if (
@@ -79,7 +82,7 @@ def shortcomings(
     *,
     fail_on_empty: bool,
 ) -> list[str]:
-    """What is less than somebody asked for, in sentences."""
+    """Sentences on results below the required thresholds."""
     names = []
     if fail_on_empty and not any(run.outcomes for run in runs):
         names.append("there is no example to run")
@@ -108,7 +111,7 @@ def _summary(runs: Sequence[ExampleRun]) -> str:
 
 
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
-    """A line for each rule with its numbers, and with it, indented, what is missing."""
+    """A line for each rule's coverage, with missing parts indented below."""
     for rule in rules:
         edges = f"{rule.n_edges - len(rule.missing_edges):,} of {rule.n_edges:,} edges"
         values = (
@@ -133,7 +136,7 @@ def as_percent(number: float) -> str:
 
 
 def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
-    """The example that would take an edge, as it would be written in the rule.
+    """An example that would take an edge, as a rule's text.
 
     What has its default is not said, unless it is a number. What cannot be written as facts stands
     in a comment behind it.

@@ -1,4 +1,4 @@
-"""How examples came out, as JUnit XML, which continuous integration reads."""
+"""Results of examples as JUnit XML, for continuous integration."""
 
 from __future__ import annotations
 

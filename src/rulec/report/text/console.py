@@ -1,4 +1,7 @@
-"""Where text goes: results to standard output, the rest to standard error, colour to terminals."""
+"""Output of text: results, messages, and colour for terminals.
+
+Results go to standard output, the rest to standard error.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +32,15 @@ PAGE_WIDTH = 100
 
 
 def wants_color(stream: TextIO) -> bool:
-    """Is the stream a terminal, and has the user not asked for plain text (no-color.org)?"""
+    """Test for a terminal without a request for plain text.
+
+    See no-color.org.
+    """
     return stream.isatty() and not os.environ.get("NO_COLOR")
 
 
 def page_width() -> int:
-    """How wide a text on standard output is to be."""
+    """Width of a text on standard output, in characters."""
     if not sys.stdout.isatty():
         return PAGE_WIDTH
     return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
@@ -49,7 +55,9 @@ def print_result(text: str) -> None:
 
 
 def put_result(text: str, output: str | None) -> None:
-    """The whole answer: into a file, without colour, if there is one, and to standard output else.
+    """Write the whole answer to a file or to standard output.
+
+    A file gets no colour.
 
     Raises RulecError R0702.
     """
@@ -62,7 +70,10 @@ def put_result(text: str, output: str | None) -> None:
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
-    """Errors and warnings, on standard error, with their number; nothing if there are none."""
+    """Print errors and warnings on standard error, with their number.
+
+    Nothing if there are none.
+    """
     if not diagnostics:
         return
     text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
@@ -70,14 +81,17 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
 
 
 class Complaints:
-    """Errors about one input after the other: of each kind the first are shown, then counted."""
+    """Errors about many inputs, the first of each kind shown.
+
+    Further ones are counted.
+    """
 
     def __init__(self, most: int = 10) -> None:
         self._most = most
         self._seen: Counter[str] = Counter()
 
     def add(self, error: RulecError) -> None:
-        """Show an error, or count it if there have been many of its kind."""
+        """Show an error, or count it after many of its kind."""
         for diagnostic in error.diagnostics:
             self._seen[diagnostic.code] += 1
             if self._seen[diagnostic.code] <= self._most:

@@ -6,7 +6,10 @@ MOST_DIGITS = 30
 
 
 def shown_count(count: int) -> str:
-    """A count for people: exact as long as it can be read, then its size; JSON has every digit."""
+    """A count for people: exact if short, else its magnitude.
+
+    JSON has every digit.
+    """
     digits = str(count)
     if len(digits) <= MOST_DIGITS:
         return f"{count:,}"

@@ -1,4 +1,4 @@
-"""A formula in the words of a rulebook, broken at its operators where it is too wide for a line."""
+"""A formula as source text, broken at operators into lines of limited width."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditions on an automaton's edges in short words, and states as an example writes them."""
+"""Conditions of an automaton's edges in short words, and states as examples."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
 class GuardWording:
-    """The words of one rule: its reads, and how it says its comparisons."""
+    """The words of one rule: its reads and its comparisons."""
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
         self._reads = rule.machine.reads
@@ -52,7 +52,10 @@ class GuardWording:
                     self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
-        """What holds of exactly the letters of these cubes; ``true`` of all."""
+        """A condition for exactly the letters of these cubes.
+
+        It is ``true`` for all letters.
+        """
         texts = []
         for cube in cubes:
             literals = [
@@ -67,7 +70,7 @@ class GuardWording:
         return " or ".join(texts) or "false"
 
     def _literal(self, read: Read | NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
-        """The words for some digits of a read; do they need parentheses among others?"""
+        """Words for some digits of a read, and need of parentheses."""
         if isinstance(read, NumberRead):
             return self._number(read, allowed)
         if not read.values:
@@ -127,7 +130,10 @@ class GuardWording:
         return ""
 
     def state(self, state: ExampleState) -> str:
-        """A state of an example; what it does not mention has its default."""
+        """A state as an example writes it.
+
+        What it does not mention has its default.
+        """
         axioms = []
         for (name, variables), value in state.items():
             declaration = self._vocabulary.declarations[name]
@@ -144,7 +150,10 @@ class GuardWording:
 
 
 def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
-    """The comparison, and the one that a machine may have made of it: counts are whole numbers."""
+    """The comparison, and its equivalent for whole numbers.
+
+    A machine may have made that of it: counts are whole numbers.
+    """
     yield comparison.relation, comparison.limit
     match comparison.terms:
         case ((_, Count()),) if (

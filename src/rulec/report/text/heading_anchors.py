@@ -1,4 +1,4 @@
-"""The names under which headings of a Markdown page can be linked to, as most viewers make them."""
+"""Link anchors of headings in Markdown, as most viewers make them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from collections.abc import Sequence
 
 
 def anchors(headings: Sequence[str]) -> list[str]:
-    """A name for each heading (plain text, in the order of the page), no two the same."""
+    """A distinct anchor for each heading.
+
+    Headings are plain text, in the order of the page.
+    """
     taken: set[str] = set()
     names = []
     for heading in headings:

@@ -1,4 +1,7 @@
-"""Our own Markdown as one HTML page: for the screen, light or dark, and for paper; no scripts."""
+"""Markdown as one HTML page for screen and paper, without scripts.
+
+On a screen it is light or dark.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +74,10 @@ def _name_headings(tokens: Sequence[Token]) -> None:
 
 
 def _scope_cells(tokens: Sequence[Token]) -> None:
-    """The first cell of a row is the row's header, for who has the table read aloud."""
+    """Mark each row's first cell as its header.
+
+    That is for who has the table read aloud.
+    """
     first = False
     for token in tokens:
         if token.type == "tr_open":
@@ -87,7 +93,7 @@ def _scope_cells(tokens: Sequence[Token]) -> None:
 
 
 def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:
-    """Wide tables and formulas scroll by themselves; the contents are for finding the way."""
+    """Wrap wide tables and formulas for scrolling, and add the contents."""
     below_contents = False
     for token in tokens:
         if token.type == "inline" and token.content == contents:

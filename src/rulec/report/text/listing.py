@@ -1,4 +1,4 @@
-"""What there is, as a list for people or as JSON."""
+"""Lists of names, for people or as JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST_TITLE = 90
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """A name to ask for something by, what it is, and the file that it comes from, if any."""
+    """A name, its title, and the file behind it, if any."""
 
     name: str
     title: str
@@ -34,7 +34,7 @@ class ListingDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_text(kinds: Mapping[str, Sequence[Listed]]) -> str:
-    """A line for each thing, below its kind's name if there are several kinds."""
+    """Write a line for each name, below its kind if several."""
     width = max((len(one.name) for listed in kinds.values() for one in listed), default=0)
     blocks = []
     for kind, listed in kinds.items():

@@ -14,7 +14,7 @@ _ADDRESS = re.compile(r"https?://[^\s<>|\\`]+")
 
 
 def escaped(text: str) -> str:
-    """A text on one line, with whatever Markdown would take for a sign of its own escaped."""
+    """A text on one line, with Markdown's special characters escaped."""
     plain = _SIGNS.sub(r"\\\g<0>", visible(text))
     start = _START.match(plain)
     if start is None:
@@ -25,7 +25,7 @@ def escaped(text: str) -> str:
 
 
 def linked(text: str) -> str:
-    """As ``escaped``, with addresses of pages as links."""
+    """An escaped text with addresses of pages as links."""
     parts = []
     end = 0
     for match_ in _ADDRESS.finditer(text):
@@ -37,7 +37,10 @@ def linked(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """A name or a formula, in which a text may hold any sign; for tables as well."""
+    """A name or formula as code, valid in tables as well.
+
+    It may hold any sign.
+    """
     shown = visible(text).replace("|", r"\|")
     longest = max((len(run) for run in re.findall("`+", shown)), default=0)
     if not longest:

@@ -20,7 +20,10 @@ _NUMBER_WITH_UNIT: Any = bygroups(  # type: ignore[no-untyped-call]
 
 
 class RulecLexer(RegexLexer):
-    """The rulec language, under the names ``rulec`` and ``rules`` and in files ``*.rules``."""
+    """Lexer of the rulec language.
+
+    Its names are ``rulec`` and ``rules``, its files ``*.rules``.
+    """
 
     name = "rulec"
     aliases: ClassVar[list[str]] = ["rulec", "rules"]

@@ -1,4 +1,4 @@
-"""What changes in a text, as a unified diff that `patch` takes."""
+"""Changes in a text, as a unified diff that `patch` takes."""
 
 from __future__ import annotations
 
@@ -21,12 +21,15 @@ def as_diff(name: str, before: str, after: str) -> str:
 
 
 def for_terminal(diff: str, *, color: bool) -> str:
-    """The same to be looked at: no character in it can drive the terminal."""
+    """The diff for display: no character can drive the terminal."""
     return "".join(f"{_shown(line, color)}\n" for line in diff.removesuffix("\n").split("\n"))
 
 
 def _lines(text: str) -> list[str]:
-    """Only a line feed ends a line; other line ends are what has to change."""
+    """Split a text at line feeds only.
+
+    Other line ends are what has to change.
+    """
     return re.findall(r"[^\n]*\n|[^\n]+", text)
 
 

@@ -1,4 +1,4 @@
-"""An example as a table: a column for each state, a row for each thing that it speaks of."""
+"""An example as a table: states in columns, subjects in rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NOTHING = "–"
 
 @dataclass(frozen=True, slots=True)
 class ExampleTable:
-    """``rows`` are what it is about and its value in each of the states.
+    """Rows of an example: a subject, and its value in each state.
 
     A value in parentheses is a default: the state does not mention it.
     """
@@ -24,7 +24,7 @@ class ExampleTable:
 
 
 def example_table(example: Example, vocabulary: Vocabulary) -> ExampleTable:
-    """The table, its rows in the order in which the example first mentions them."""
+    """The example's table, with rows in order of first mention."""
     mentioned = dict.fromkeys(key for state in example.states for key in state)
     rows = []
     for name, objects in mentioned:

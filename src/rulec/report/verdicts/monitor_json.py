@@ -1,4 +1,7 @@
-"""Verdicts behind the states of a running trace as JSON; docs/online.md describes it."""
+"""Verdicts after each state of a running trace, as JSON.
+
+docs/online.md describes it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verdicts behind the states of a running trace, a line of text each."""
+"""Verdicts after each state of a running trace, as text lines."""
 
 from __future__ import annotations
 

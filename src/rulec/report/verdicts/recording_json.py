@@ -56,7 +56,10 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
 def as_json(
     result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
 ) -> str:
-    """Write what became of a vehicle; ``explained`` are explanations of its first violations."""
+    """Write a vehicle's verdict.
+
+    ``explained`` are explanations of its first violations.
+    """
     return as_line(_document(result, verdicts, explained))
 
 

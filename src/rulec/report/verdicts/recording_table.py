@@ -1,4 +1,4 @@
-"""What the vehicles of a recording did, as a table of rules and vehicles."""
+"""Verdicts on recorded vehicles, as a table of rules and vehicles."""
 
 from __future__ import annotations
 
@@ -61,7 +61,10 @@ def _vehicles(egos: Sequence[str]) -> str:
 
 
 def defaulted_names(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
-    """What rules read and these words leave out, in the order of the vocabulary."""
+    """Inputs of rules that a recording's words lack.
+
+    They are in the order of the vocabulary.
+    """
     missing = {name for names in judged.by_default(words).values() for name in names}
     return [name for name in judged.rules.vocabulary.declarations if name in missing]
 
@@ -103,7 +106,10 @@ def drive_details(
     *,
     every_part: bool,
 ) -> str:
-    """The verdict on one drive, with explanations of its first violations; nothing without one."""
+    """The verdict on one drive, with explanations of its first violations.
+
+    Empty without a drive.
+    """
     if not isinstance(drive_verdict.answer, Verdict):
         return ""
     text = verdict_report.as_text(

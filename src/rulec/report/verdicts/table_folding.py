@@ -1,4 +1,4 @@
-"""What is shown of a long or wide explanation: what decides, and the states that there is room for.
+"""Folding of large explanations to deciding parts and as many states as fit.
 
 An explanation is folded where its table has too many parts, or is too wide; both on their own.
 """
@@ -54,7 +54,7 @@ def cut(text: str, widest: int) -> str:
 
 
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
-    """The deciding operands of a part, those of a chain instead of its links."""
+    """The deciding operands of a part, with chains flattened."""
     for operand in range(at + 1, len(parts)):
         if parts[operand].depth <= parts[at].depth:
             return
@@ -67,7 +67,7 @@ def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
 
 
 def _is_link(part: Part, operand: Part) -> bool:
-    """Says the operand nothing to who sees its own operands below the part?"""
+    """Test for an operand made superfluous by its own operands below."""
     match part.formula, operand.formula:
         case Binary(operator), Binary(inner):
             return operator is inner and operator in _CHAINED
@@ -80,7 +80,7 @@ def _is_link(part: Part, operand: Part) -> bool:
 def fitting(
     columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int, room: int
 ) -> list[range]:
-    """The columns that there is room for, each as the places of the states that it stands for.
+    """Columns that fit into the room, each as a range of states.
 
     If there is no room for all, neighbours that are alike become one. If that is not enough, the
     decisive one and the one before it stay, and as many as possible of: the one before these, the
@@ -103,7 +103,7 @@ def fitting(
 
 
 def width(columns: Sequence[Sequence[str]], states: Sequence[int], places: range) -> int:
-    """So many characters a column takes, with the space before it."""
+    """Width of a column in characters, with the space before it."""
     cells = (head(states, places), *columns[places[0]])
     return 2 + max(len(cell) for cell in cells)
 
@@ -115,7 +115,7 @@ def head(states: Sequence[int], places: range) -> str:
 
 
 def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
-    """Columns that are alike and whose states follow each other as one, the decisive one alone."""
+    """Merge adjacent equal columns of consecutive states, except the decisive one."""
     ranges: list[range] = []
     for place, column in enumerate(columns):
         if (

@@ -20,7 +20,7 @@ def titles(table: TraceTable) -> list[str]:
 
 
 def rows(table: TraceTable) -> list[tuple[str, list[str]]]:
-    """What each row is about, and its cells."""
+    """Title and cells of each row."""
     return [
         (
             visible(f"{row.title} in {row.unit}" if row.unit else row.title),
@@ -32,7 +32,7 @@ def rows(table: TraceTable) -> list[tuple[str, list[str]]]:
 
 
 def left_out(table: TraceTable) -> list[str]:
-    """What has no row, because all of it is by default."""
+    """Names without a row, since all their values are defaults."""
     usual = [visible(row.title) for row in table.rows if row.is_default]
     return usual if len(table.rows) > MOST_ROWS else []
 

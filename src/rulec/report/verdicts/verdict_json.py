@@ -1,4 +1,7 @@
-"""Verdicts on traces as JSON, a line for each trace; docs/traces.md describes it."""
+"""Verdicts on traces as JSON, a line for each trace.
+
+docs/traces.md describes it.
+"""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def as_text(
     *,
     every_part: bool = False,
 ) -> str:
-    """The violations of a trace, a line each, below a line that names the trace.
+    """Write a trace's violations, a line each, below its name.
 
     ``explained`` are explanations of the first violations; each follows its line, folded unless
     ``every_part`` of it is wanted.
@@ -50,7 +50,10 @@ def as_text(
 
 
 def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
-    """Which rule is violated for whom and when; ``rulebook`` is the name of the one that judged."""
+    """The violated rule, its binding and its time.
+
+    ``rulebook`` is the name of the one that judged.
+    """
     where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
     when = (
         "not fulfilled when the trace ends"
@@ -62,7 +65,7 @@ def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
 
 
 def _title(rule: CompiledRule, rulebook: str) -> str:
-    """The rule as its head says it, as far as it says more than every other rule, and where."""
+    """The rule's name with level and weight unless default, and its place."""
     title, place = rule.name, rule.cite
     if rule.level:
         title += f" in {rule.level}"

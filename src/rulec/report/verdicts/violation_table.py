@@ -44,7 +44,9 @@ INDENT = "    "
 
 
 def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
-    """The rule's sentence and the table; ``*`` marks what changed with the decisive state.
+    """Write the rule's sentence and the table.
+
+    ``*`` marks what changed with the decisive state.
 
     A large table is folded, unless ``every_part`` of it is wanted.
     """
@@ -84,7 +86,7 @@ def _repair(explanation: Explanation) -> Iterator[str]:
 
 
 def _states(run: Sequence[tuple[int, str]]) -> str:
-    """Which states have to say the same."""
+    """Numbers of the states that a repair changes, with their verb."""
     numbers = [number for number, _ in run]
     if len(numbers) == 1:
         return f"state {numbers[0]} says"
@@ -134,7 +136,10 @@ def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
 
 
 def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int) -> _Table:
-    """All states of the facts and parts to be shown, with titles that are no wider."""
+    """Rows of the facts and parts shown, with titles of limited width.
+
+    Each has all of its states.
+    """
     whole = every_part or len(explanation.parts) <= MOST_PARTS
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
@@ -149,7 +154,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
 
 
 def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
-    """How much the table does not show, if anything."""
+    """A line on rows and states omitted from the table, if any."""
     n_rows, n_states = len(table.titles), sum(len(places) for places in table.columns)
     of_rows, of_states = len(explanation.facts) + len(explanation.parts), len(explanation.states)
     words = [
