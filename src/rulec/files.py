@@ -1,4 +1,4 @@
-"""Files: read as bytes or UTF-8 text; written whole or not at all."""
+"""Files: read as bytes or UTF-8 text, written whole or never."""
 
 from __future__ import annotations
 

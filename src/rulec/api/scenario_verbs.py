@@ -41,7 +41,7 @@ class ScenarioVerbs(SessionSettings):
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
-        """Build the navigation graph of a scenario: cells over time, and their successors.
+        """Build the navigation graph of a scenario: cells and successors over time.
 
         Raises RulecError.
         """

@@ -24,7 +24,10 @@ _STYLES: dict[Fate, str] = {
 
 
 def as_dot(automaton: Automaton, name: str) -> str:
-    """A digraph. A trace that ends with a dashed edge is rejected, with a solid one accepted."""
+    """Write the automaton as a digraph in DOT.
+
+    A trace that ends with a dashed edge is rejected, with a solid one accepted.
+    """
     lines = [
         f"// {visible(name)}: a trace that ends with a dashed edge is rejected.",
         f"digraph {_quoted(name)} {{",

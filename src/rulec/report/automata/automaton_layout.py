@@ -1,4 +1,4 @@
-"""Where the states, the conditions and the lines of a rule's automaton are in a picture."""
+"""Layout of a rule's automaton: positions of states, conditions and lines."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MOST_TRANSITIONS = 80
 
 @dataclass(frozen=True, slots=True)
 class AutomatonState:
-    """The middle of a state's box, its size, its number and what is written in it."""
+    """A state's box by its middle and size, with number and text."""
 
     middle: Point
     width: float
@@ -42,7 +42,7 @@ class AutomatonState:
 
 @dataclass(frozen=True, slots=True)
 class TransitionLine:
-    """A transition as points from its source to its target, and where its condition begins.
+    """A transition as points from source to target, with its condition's position.
 
     A loop has the three points of its triangle; its condition is centred on ``label_at`` in height,
     and stands to its left if ``leftward``.
@@ -126,7 +126,7 @@ class _AutomatonLayout:
         self._layers[2 * level].append(state)
 
     def _add_way(self, transition: Transition, level: Sequence[int]) -> None:
-        """Add the places that a line passes, with its condition near its source."""
+        """Add a line's places, with its condition next to its source."""
         start, end = 2 * level[transition.source], 2 * level[transition.target]
         step = 1 if start < end else -1
         way = [transition.source]

@@ -15,7 +15,7 @@ SWEEPS = 24
 
 @dataclass(frozen=True, slots=True)
 class LayoutBox:
-    """Extent of a box, left and right of its links' point of arrival."""
+    """Extent of a box left and right of its links' arrival point."""
 
     left: float
     right: float

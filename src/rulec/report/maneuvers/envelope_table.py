@@ -35,7 +35,7 @@ COLUMNS = MappingProxyType(
 
 
 class EnvelopeLine(JsonDocument, frozen=True, kw_only=True):
-    """A stretch of a layer of a maneuver on which the bounds are constant, in m and s."""
+    """A stretch of a maneuver's layer with constant bounds (m, s)."""
 
     maneuver: int
     cost: float

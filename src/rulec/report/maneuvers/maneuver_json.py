@@ -34,7 +34,7 @@ class DerivedSignal(JsonPart, frozen=True, kw_only=True):
 
 
 class SceneData(JsonPart, frozen=True, kw_only=True):
-    """What became of a recorded scene: counts of obstacles, and what was derived."""
+    """Account of a recorded scene: counts of obstacles, and derived signals."""
 
     reference: str
     obstacles: int
@@ -45,7 +45,10 @@ class SceneData(JsonPart, frozen=True, kw_only=True):
 
 
 class LevelPenalty(JsonPart, frozen=True, kw_only=True):
-    """The summed weight of the violated rules of some levels; null is no level."""
+    """The summed weight of the violated rules of some levels.
+
+    null is no level.
+    """
 
     strength: Strength
     levels: Sequence[str | None]
@@ -53,7 +56,10 @@ class LevelPenalty(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
-    """A rule that a maneuver violates; ``lost_s`` is when that is final, null if at the end."""
+    """A rule that a maneuver violates.
+
+    ``lost_s`` is when that is final, null if at the end.
+    """
 
     rule: str
     cite: str
@@ -74,7 +80,10 @@ class CellData(JsonPart, frozen=True, kw_only=True):
 
 
 class EnvelopeData(JsonPart, frozen=True, kw_only=True):
-    """The bounds in a layer, in metres; the profiles are pairs of s and d."""
+    """The bounds in a layer, in metres.
+
+    The profiles are pairs of s and d.
+    """
 
     s_min: float
     s_max: float
@@ -90,7 +99,7 @@ class BindingProbability(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
-    """The probability that a rule is kept, null if it is not known."""
+    """The probability that a rule is kept, null if unknown."""
 
     rule: str
     strength: Strength
@@ -107,7 +116,7 @@ class ChancesData(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuverData(JsonPart, frozen=True, kw_only=True):
-    """A maneuver: its cost (1/s), its margin, its cells and bounds in time.
+    """A maneuver: cost (1/s), margin, cells and bounds in time.
 
     One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
     a class's has ``members``, an example of a pruning ``violations``.
@@ -125,7 +134,7 @@ class ManeuverData(JsonPart, frozen=True, kw_only=True):
 
 
 class PastViolation(JsonPart, frozen=True, kw_only=True):
-    """What the past has violated, which no maneuver can mend."""
+    """A violation by the past, which no maneuver can mend."""
 
     rule: str
     binding: Mapping[str, str]
@@ -133,7 +142,10 @@ class PastViolation(JsonPart, frozen=True, kw_only=True):
 
 
 class WorldData(JsonPart, frozen=True, kw_only=True):
-    """The counts if an obstacle does what is not likeliest; predictions count from 1."""
+    """Counts of maneuvers for a less likely prediction of an obstacle.
+
+    Predictions count from 1.
+    """
 
     obstacle: str
     prediction: int
@@ -143,7 +155,10 @@ class WorldData(JsonPart, frozen=True, kw_only=True):
 
 
 class PruningData(JsonPart, frozen=True, kw_only=True):
-    """How many maneuvers violate a rule, and how many of them keep every other hard one."""
+    """Counts of maneuvers that violate a rule, and it alone.
+
+    ``alone`` counts those that keep every other hard rule.
+    """
 
     rule: str
     strength: Strength
@@ -163,7 +178,7 @@ class ClassesData(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
-    """The counts of maneuvers in a scenario, and what was asked for beside them."""
+    """The counts of maneuvers in a scenario, and further answers asked for."""
 
     scenario: str
     rulebook: str

@@ -29,7 +29,10 @@ class BookData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleSide(JsonPart, frozen=True, kw_only=True):
-    """A rule as one rulebook says it; its weight is an exact number."""
+    """A rule as one rulebook says it.
+
+    Its weight is an exact number.
+    """
 
     strength: Strength
     variables: Sequence[Variable]
@@ -52,7 +55,9 @@ class TraceData(JsonPart, frozen=True, kw_only=True):
 
 
 class RulePairData(JsonPart, frozen=True, kw_only=True):
-    """A rule that both rulebooks have; the relation is that of the first to the second one.
+    """A rule that both rulebooks have.
+
+    The relation is that of the first to the second one.
 
     Where they speak of different types of objects, it is compared on those in common.
     """
@@ -69,7 +74,7 @@ class RulePairData(JsonPart, frozen=True, kw_only=True):
 
 
 class OneSidedRule(JsonPart, frozen=True, kw_only=True):
-    """A rule that one rulebook has, and what the other one remarks on that."""
+    """A rule of one rulebook, with the other one's remark on it."""
 
     rule: str
     strength: Strength

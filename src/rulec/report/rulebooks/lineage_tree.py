@@ -1,4 +1,4 @@
-"""Lineage of a rulebook's items, and forest of extensions, as trees and JSON."""
+"""Lineages of rulebook items and forests of extensions, as trees and JSON."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _DEEDS = {
 
 
 class LineageStepData(JsonPart, frozen=True, kw_only=True):
-    """What a rulebook of the chain does to a rule."""
+    """A rulebook's change to a rule in the chain."""
 
     book: str
     deed: LineageAction
@@ -45,7 +45,10 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleLineageData(JsonPart, frozen=True, kw_only=True):
-    """A rule from the rulebook that declares it on; it may be gone at the end."""
+    """A rule's history from the rulebook that declares it.
+
+    It may be gone at the end.
+    """
 
     name: str
     gone: bool

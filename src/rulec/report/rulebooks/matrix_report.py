@@ -37,7 +37,10 @@ TITLE = "Rulebooks compared"
 
 
 class RuleInBook(JsonPart, frozen=True, kw_only=True):
-    """A rule in one rulebook: a letter for its law, all of it null where there is no such rule."""
+    """A rule in one rulebook, with a letter for its law.
+
+    All of it is null where there is no such rule.
+    """
 
     name: str
     law: str | None
@@ -46,14 +49,17 @@ class RuleInBook(JsonPart, frozen=True, kw_only=True):
 
 
 class SharedRuleData(JsonPart, frozen=True, kw_only=True):
-    """A rule in each of the rulebooks; those with the same letter forbid the same traces."""
+    """A rule in each of the rulebooks.
+
+    Those with the same letter forbid the same traces.
+    """
 
     rule: str
     books: Sequence[RuleInBook]
 
 
 class BookPairData(JsonPart, frozen=True, kw_only=True):
-    """How many rules of the first rulebook are what to those of the second."""
+    """Counts of a rulebook's rules by their relation to another's."""
 
     first: str
     second: str

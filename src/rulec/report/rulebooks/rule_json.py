@@ -20,14 +20,16 @@ from rulec.vocabulary import Vocabulary
 
 
 class StateData(JsonPart, frozen=True, kw_only=True):
-    """A state of the automaton, and whether the verdict is final in it."""
+    """A state of the automaton, with the verdict if final there."""
 
     state: int
     fate: Fate
 
 
 class TransitionData(JsonPart, frozen=True, kw_only=True):
-    """Some steps between two states; ``accepted`` is the verdict on a trace that ends there.
+    """Steps between two states of the automaton.
+
+    ``accepted`` is the verdict on a trace that ends there.
 
     ``otherwise``: the condition is easier said as what the other transitions from there are not.
     """
@@ -47,7 +49,10 @@ class AutomatonData(JsonPart, frozen=True, kw_only=True):
 
 
 class ShortestTrace(JsonPart, frozen=True, kw_only=True):
-    """A trace as an example says it: further objects, states, and what it cannot say."""
+    """A trace as an example: further objects, states and remarks.
+
+    The remarks are on what an example cannot say.
+    """
 
     objects: Sequence[Variable]
     states: Sequence[str]

@@ -18,7 +18,7 @@ ExampleVerdict = Literal["accept", "reject"]
 
 
 class OutcomeData(JsonPart, frozen=True, kw_only=True):
-    """An example: the verdict that it states, and the one that its rule comes to."""
+    """An example: its stated verdict, and its rule's verdict."""
 
     rulebook: str
     rule: str
@@ -32,7 +32,7 @@ class OutcomeData(JsonPart, frozen=True, kw_only=True):
 
 
 class MissingEdgeData(JsonPart, frozen=True, kw_only=True):
-    """An edge of the automaton that no example takes, and an example that would."""
+    """An edge that no example takes, and an example that would."""
 
     source: int
     target: int
@@ -47,7 +47,7 @@ class MissingValueData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleCoverageData(JsonPart, frozen=True, kw_only=True):
-    """How much of a rule's automaton, and of its atoms' values, the examples meet."""
+    """Coverage of a rule's automaton and its atoms' values by examples."""
 
     rulebook: str
     rule: str

@@ -1,4 +1,4 @@
-"""A formula as source text, broken at operators into lines of limited width."""
+"""A formula as source text, broken at operators into narrow lines."""
 
 from __future__ import annotations
 

@@ -25,7 +25,10 @@ class Listed:
 
 
 class ListingDocument(JsonDocument, frozen=True, kw_only=True):
-    """A list for each kind that was asked for; what comes from no file has no path."""
+    """A list for each kind asked for.
+
+    A name that comes from no file has no path.
+    """
 
     rulebooks: Sequence[Listed] | UnsetType = UNSET
     vocabularies: Sequence[Listed] | UnsetType = UNSET

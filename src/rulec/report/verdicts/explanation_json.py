@@ -28,7 +28,10 @@ class FactData(JsonPart, frozen=True, kw_only=True):
 
 
 class FormulaPart(JsonPart, frozen=True, kw_only=True):
-    """A part of the rule's formula, ``depth`` operators inside it, and where it holds."""
+    """A part of the rule's formula, and the states where it holds.
+
+    It is ``depth`` operators inside the formula.
+    """
 
     formula: str
     depth: int
@@ -38,14 +41,17 @@ class FormulaPart(JsonPart, frozen=True, kw_only=True):
 
 
 class RepairData(JsonPart, frozen=True, kw_only=True):
-    """A state that would have had to say something else for the rule to be kept."""
+    """A state to be changed for the rule to be kept."""
 
     state: int
     says: str
 
 
 class ExplanationData(JsonPart, frozen=True, kw_only=True):
-    """Why a rule is violated; ``repair`` is null if no trace of as many states keeps it."""
+    """Explanation of a rule's violation.
+
+    ``repair`` is null if no trace of as many states keeps the rule.
+    """
 
     book: str
     cite: str

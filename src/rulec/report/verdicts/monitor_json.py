@@ -15,7 +15,7 @@ from rulec.report.verdicts.verdict_json import ErrorData, error_data
 
 
 class ChangeData(JsonPart, frozen=True, kw_only=True):
-    """A rule's verdict on a binding that is not what it was before the state.
+    """A change of a rule's verdict on a binding by a state.
 
     ``ended``: one of the objects is no longer there.
     """
@@ -28,7 +28,10 @@ class ChangeData(JsonPart, frozen=True, kw_only=True):
 
 
 class StateVerdict(JsonDocument, frozen=True, kw_only=True):
-    """The verdicts behind a state, which is counted from 0; ``verdict`` is that of hard rules."""
+    """The verdicts after a state, which is counted from 0.
+
+    ``verdict`` is that of hard rules.
+    """
 
     state: int
     verdict: FourValued

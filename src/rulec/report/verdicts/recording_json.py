@@ -22,7 +22,10 @@ from rulec.report.verdicts.verdict_json import (
 
 
 class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on what a vehicle did, whose id is the ``trace``; times are the recording's."""
+    """The verdict on a vehicle's drive, with times of the recording.
+
+    ``trace`` is the vehicle's id.
+    """
 
     recording: str
     mirrored: bool

@@ -1,4 +1,4 @@
-"""Folding of large explanations to deciding parts and as many states as fit.
+"""Folding of large explanations to deciding parts and fitting states.
 
 An explanation is folded where its table has too many parts, or is too wide; both on their own.
 """

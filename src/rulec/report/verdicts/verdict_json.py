@@ -19,7 +19,7 @@ from rulec.report.verdicts.explanation_json import ExplanationData, explanation_
 
 
 class ErrorData(JsonPart, frozen=True, kw_only=True):
-    """What is wrong with a trace or a state, and where."""
+    """An error in a trace or a state, with its place."""
 
     code: str
     message: str
@@ -28,7 +28,9 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
 
 
 class ViolationData(JsonPart, frozen=True, kw_only=True):
-    """A rule violated for a binding; ``step`` is null if only the trace's end decides.
+    """A rule violated for a binding.
+
+    ``step`` is null if only the trace's end decides.
 
     Of recorded traffic, ``time_s`` is the step's time, and ``by_default`` names what the rule reads
     and nothing supplies.
@@ -54,7 +56,10 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
-    """A trace that could not be judged; ``trace`` is null if it has no id."""
+    """A trace that could not be judged.
+
+    ``trace`` is null if it has no id.
+    """
 
     trace: str | None
     error: ErrorData
