@@ -61,7 +61,7 @@ class Code:
         notes: tuple[str, ...] = (),
         severity: Severity = "error",
     ) -> Diagnostic:
-        """A mistake of this kind at a place, if it has one; see ``Diagnostic``."""
+        """Make a diagnostic of this code, with a place if known."""
         where = place.place if isinstance(place, Span) else place
         return Diagnostic(
             code=self.code,
@@ -84,7 +84,7 @@ class Code:
         labels: tuple[Label, ...] = (),
         notes: tuple[str, ...] = (),
     ) -> RulecError:
-        """One mistake of this kind that ends a piece of work, to be raised."""
+        """Make an exception with one diagnostic of this code."""
         return RulecError(
             self.at(place, message, expected=expected, help=help, labels=labels, notes=notes)
         )

@@ -63,7 +63,7 @@ def diagnostic_rows(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
 
 
 class RulecError(Rows, Exception):
-    """One or more diagnostics that end a piece of work; the only exception users need to catch."""
+    """Exception with one or more diagnostics that end a piece of work."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:
         if isinstance(diagnostics, Diagnostic):

@@ -10,7 +10,7 @@ _MOST = 500
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name closest to ``name``, whatever the letters' case; None if none is close."""
+    """The known name closest to ``name``, ignoring case, or None."""
     by_folded: dict[str, str] = {}
     for candidate in known:
         by_folded.setdefault(candidate.casefold(), candidate)

@@ -10,7 +10,7 @@ _MOST_NAMED = 8
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The question that names the nearest known name; empty if none is close."""
+    """Question that names the nearest known name; empty if none is close."""
     near = nearest_name(name, known)
     return "" if near is None else f"did you mean `{near}`?"
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class SourceLocation:
-    """A place in a file, as a reader counts: lines and columns start at 1.
+    """Source location for readers: lines and columns count from 1.
 
     ``end_column`` is the column behind the last character. ``excerpt`` is the text of line ``line``
     (without its line end); empty when there is nothing worth showing.
@@ -23,7 +23,7 @@ class SourceLocation:
 
     @property
     def start(self) -> tuple[int, int]:
-        """Line and column, for putting the places of a file in order; what is not known is 0."""
+        """Line and column as a sort key; an unknown one is 0."""
         return self.line or 0, self.column or 0
 
 
@@ -76,7 +76,7 @@ class Span:
 
     @property
     def place(self) -> SourceLocation:
-        """The span as a reader counts, with the text of its first line."""
+        """The source location of the span, with its first line's text."""
         line, column = self.source.position(self.start)
         end_line, end_column = self.source.position(max(self.start, self.end))
         excerpt = self.source.line(line)

@@ -1,4 +1,4 @@
-"""Concrete syntax: a file's text to a tree with every place, and the tree's formulas back to text.
+"""Concrete syntax: parsing text to a syntax tree, and printing formulas.
 
 The way through stands in the README beside this file.
 """

@@ -1,4 +1,4 @@
-"""Putting the parsed parts together: what may come once, what must come, what comes first."""
+"""Assembly of parsed parts, with checks of their number and order."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def assemble_rule(
     *,
     complete: bool,
 ) -> tuple[tree.RuleItem, list[Diagnostic]]:
-    """The rule of a head and its clauses in any order; None stands for an unreadable example."""
+    """Assemble a rule; None stands for an unreadable example."""
     mistakes: list[Diagnostic] = []
     said: dict[str, Said] = {}
     for part in parts:
@@ -141,7 +141,7 @@ def _first(parts: Sequence[Part], kind: type[_Kind]) -> _Kind | None:
 
 
 def _may_use(item: tree.BrokenItem) -> bool:
-    """Was it meant as ``use`` or ``extends``? Then any name may be missing because of it."""
+    """Tell whether unreadable text may have been ``use`` or ``extends``."""
     if item.word in ITEM_WORDS:
         return item.word in ("use", "extends")
     near = nearest_name(item.word, ITEM_WORDS | CLAUSE_WORDS)
@@ -222,6 +222,6 @@ def _no_file_line(first: Part) -> Diagnostic:
 
 
 def _start(span: Span) -> Span:
-    """The first line of a span, without what follows: enough to show where something stands."""
+    """The first line of a span, enough to show its place."""
     end = span.source.text.find("\n", span.start, span.end)
     return span if end < 0 else Span(span.source, span.start, end)

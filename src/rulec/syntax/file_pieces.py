@@ -1,4 +1,4 @@
-"""The pieces of a file that are parsed by themselves, as ranges of tokens."""
+"""Pieces of a file that are parsed separately, as token ranges."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ExamplePieces:
 
 @dataclass(frozen=True, slots=True)
 class RulePieces:
-    """A rule: its head, its clauses and examples in order; ``last`` is the token behind it."""
+    """Pieces of a rule; ``last`` is the token behind it."""
 
     head: Piece
     body: tuple[Piece | ExamplePieces, ...]
@@ -46,7 +46,10 @@ class RulePieces:
 
 
 def span_of(source: Source, tokens: list[Token], part: Piece | ExamplePieces | RulePieces) -> Span:
-    """From the part's first token to its last; an empty part is empty behind the token before."""
+    """The span from a part's first token to its last.
+
+    The span of an empty part is empty and lies behind the token before.
+    """
     first = part.head.first if isinstance(part, ExamplePieces) else part.first
     if first >= part.last:
         end = tokens[first - 1].end if first else 0

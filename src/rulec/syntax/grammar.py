@@ -42,7 +42,7 @@ class ParseLeaf:
 
 @dataclass(frozen=True, slots=True)
 class ParseNode:
-    """A match of a rule of the grammar, from character ``start`` to ``end``."""
+    """Match of a grammar rule, from character ``start`` to ``end``."""
 
     kind: str
     children: tuple[ParseNode | ParseLeaf, ...]
@@ -52,7 +52,7 @@ class ParseNode:
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """The text cannot go on at ``position``; ``accepted`` are the grammar's names of what could."""
+    """Syntax error at ``position``; ``accepted`` names the possible tokens."""
 
     position: int
     accepted: frozenset[str]
@@ -60,13 +60,19 @@ class Mismatch:
 
 @dataclass(frozen=True, slots=True)
 class TooDeep:
-    """The part of the formula at ``position`` stands inside more than ``MAX_DEPTH`` others."""
+    """Formula nested too deeply at ``position``.
+
+    The part there stands inside more than ``MAX_DEPTH`` others.
+    """
 
     position: int
 
 
 def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mismatch | TooDeep:
-    """Parse characters ``begin`` to ``end`` of a text; positions count from the text's start."""
+    """Parse characters ``begin`` to ``end`` of a text.
+
+    Positions count from the text's start.
+    """
     try:
         # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
         # quadratic time in all.
@@ -79,7 +85,7 @@ def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mi
 
 @cache
 def _lark() -> Lark:
-    """The parser, from its tables; made anew if they are of another grammar or another Lark."""
+    """The parser from its tables, made anew if these are stale."""
     grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
     try:
         text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
@@ -125,7 +131,10 @@ def _accepted(start: Start, good: str) -> frozenset[str]:
 
 
 def _neutral(tree: Tree[Token], begin: int) -> ParseNode | TooDeep:
-    """Lark's tree as ours, built from the leaves up because a hostile one may be very deep."""
+    """Convert Lark's tree to parse nodes, from the leaves up.
+
+    There is no recursion because a hostile tree may be very deep.
+    """
     done: list[ParseNode | ParseLeaf] = []
     todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
     while todo:

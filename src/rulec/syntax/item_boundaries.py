@@ -1,4 +1,4 @@
-"""Boundaries of items and clauses, told from a few tokens, in files that may be wrong."""
+"""Boundaries of items and clauses, found by a few nearby tokens."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Landmarks:
     tokens: list[Token]
 
     def is_symbol(self, index: int, text: str) -> bool:
-        """Whether it is this symbol, and not behind the end or a text in quotes."""
+        """Tell whether a token is this symbol, outside of quotes."""
         return (
             index < len(self.tokens)
             and self.tokens[index].text == text
@@ -48,7 +48,7 @@ class Landmarks:
         )
 
     def is_word(self, index: int, *texts: str) -> bool:
-        """Whether it is one of these words."""
+        """Tell whether a token is one of these words."""
         return (
             0 <= index < len(self.tokens)
             and self.tokens[index].kind == "word"
@@ -56,7 +56,7 @@ class Landmarks:
         )
 
     def is_name(self, index: int) -> bool:
-        """Whether it is a word that may be a name."""
+        """Tell whether a token is a word that may be a name."""
         return (
             0 <= index < len(self.tokens)
             and self.tokens[index].kind == "word"
@@ -67,7 +67,7 @@ class Landmarks:
         return 0 <= index < len(self.tokens) and self.tokens[index].kind == "number"
 
     def wants_more(self, index: int) -> bool:
-        """Whether the text must go on behind it, as behind ``signal``, ``until``, ``(``, ``;``."""
+        """Tell whether the text must go on behind a token."""
         if index < 0:
             return False
         token = self.tokens[index]
@@ -82,7 +82,7 @@ class Landmarks:
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
     def begins_item(self, index: int) -> bool:
-        """Whether an item begins here, seen from outside of any braces."""
+        """Tell whether an item begins at a token outside of braces."""
         token = self.tokens[index]
         if token.kind != "word":
             return False
@@ -115,7 +115,7 @@ class Landmarks:
         return False
 
     def goes_on(self, index: int) -> bool:
-        """Whether a word that may be a name goes on with the line before."""
+        """Tell whether a possible name continues the line before."""
         if self.is_word(index, "weight"):
             return self._is_number(index + 1)
         if self.is_word(index, "at"):
@@ -126,7 +126,7 @@ class Landmarks:
         ) or (self.is_word(index - 1, "on") and self.is_word(index - 2, "silent"))
 
     def _is_glued(self, index: int) -> bool:
-        """``sgnal p`` behind something that has to go on: two names where one could stand."""
+        """Tell whether two names follow where only one can stand."""
         glued = self.is_name(index + 1) and not self.tokens[index + 1].first
         glued = glued and not self.is_word(index + 1, "weight")
         if not glued or not self._in_formula(index - 1):
@@ -134,12 +134,12 @@ class Landmarks:
         return nearest_name(self.tokens[index].text, ITEM_WORDS) is not None
 
     def _in_formula(self, index: int) -> bool:
-        """Whether a formula may go on behind it. There two names may be another mistake."""
+        """Tell whether a formula may go on behind a token."""
         token = self.tokens[index]
         return token.text in _FORMULA_SIGNS or self.is_word(index, *OPERATOR_WORDS)
 
     def begins_item_inside(self, index: int) -> bool:
-        """Whether an item begins here although braces are still open.
+        """Tell whether an item begins here although braces are still open.
 
         That takes more evidence: a line of its own behind something complete or before a name, or
         ``hard rule``.
@@ -159,14 +159,14 @@ class Landmarks:
         return self.is_word(index, *RULE_WORDS, "override", "drop", "soften")
 
     def begins_misspelt(self, index: int) -> bool:
-        """A name on a line of its own before a brace or a text: a misspelt word of the language."""
+        """Tell whether a misspelt keyword begins a line here."""
         if index + 1 >= len(self.tokens) or not self.tokens[index].first:
             return False
         text = self.tokens[index + 1].kind in _TEXTS
         return self.is_name(index) and (text or self.is_symbol(index + 1, "{"))
 
     def begins_clause(self, index: int) -> bool:
-        """A clause's word on a line of its own, or where the text before is complete."""
+        """Tell whether a clause begins at a token."""
         token = self.tokens[index]
         if token.kind != "word" or token.text not in CLAUSE_WORDS:
             return self._begins_in_force(index)
@@ -183,7 +183,7 @@ class Landmarks:
         return self.tokens[index].first or not self.wants_more(index - 1)
 
     def _stands_alone(self, index: int) -> bool:
-        """``{ accept; …`` or ``{ accept }``: a clause's word where an atom should be."""
+        """Tell whether a clause's word stands where an atom should be."""
         return any(self.is_symbol(index + 1, text) for text in (";", "}", "&")) or self.is_word(
             index + 1, "and"
         )

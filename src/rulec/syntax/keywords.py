@@ -113,5 +113,5 @@ RIGHT_ASSOCIATIVE: Final = frozenset(
 
 
 def token_kind(words: str) -> str:
-    """The grammar's name of an operator or another word: ``weak until`` is ``WEAK_UNTIL``."""
+    """The grammar's name of a keyword: ``weak until`` is ``WEAK_UNTIL``."""
     return words.upper().replace(" ", "_")

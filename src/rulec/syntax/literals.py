@@ -26,7 +26,10 @@ def why_not_a_day(text: str) -> str:
 
 
 def misleads(character: str) -> bool:
-    """Whether it is a control character, or breaks or reorders the line it stands in."""
+    """Tell whether a character could mislead the reader of its line.
+
+    It is a control character, or breaks or reorders the line.
+    """
     category = unicodedata.category(character)
     return character in _DIRECTION_CONTROLS or (
         character != "\t" and category in ("Cc", "Cs", "Zl", "Zp")

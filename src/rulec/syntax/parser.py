@@ -37,7 +37,7 @@ _Built = TypeVar("_Built")
 
 
 def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
-    """The syntax tree of a rulebook or a vocabulary, and every mistake in it, in order.
+    """Parse a file; return its syntax tree and all mistakes in order.
 
     What cannot be read is left out of the tree and leaves a mark there (``BrokenItem``,
     ``complete``), so that later stages need not complain about it a second time.
@@ -80,7 +80,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
 
 
 def _is_something_else(parts: Sequence[Part]) -> bool:
-    """Whether the file is no rulebook at all: neither by its beginning nor by most of it."""
+    """Tell whether a file is no rulebook at all."""
     first = parts[0]
     if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
         return False
@@ -101,7 +101,7 @@ def _messages() -> ModuleType:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Parses piece by piece; None stands for a piece whose mistake is in ``mistakes``."""
+    """Parser of pieces; None stands for one with a reported mistake."""
 
     source: Source
     tokens: list[Token]

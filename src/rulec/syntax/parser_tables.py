@@ -1,4 +1,4 @@
-"""The parser's tables as a plain data file, so that no run has to make them out of the grammar.
+"""Parser tables as a data file, so that no run generates them.
 
 What Lark serialises depends on the order in which Python happens to walk through sets; here states,
 tokens and rules are numbered anew, so that one grammar gives one file.
@@ -25,7 +25,7 @@ def stamp(grammar: str, version: str) -> str:
 
 
 def to_text(made_of: str, serialized: Serialized) -> str:
-    """A file of tables, JSON with a line for each rule and each state."""
+    """JSON text of parser tables, one line per rule and state."""
     data, memo = serialized["data"], serialized["memo"]
     numbers, kept = _renumbered_memo(memo)
     table = data["parser"]["parser"]
@@ -48,7 +48,7 @@ def to_text(made_of: str, serialized: Serialized) -> str:
 
 
 def from_text(text: str, made_of: str) -> Serialized | None:
-    """The data that Lark can load; None if the tables were made of something else."""
+    """Parser tables for Lark from text; None if they are stale."""
     whole = json.loads(text)
     if not isinstance(whole, dict) or whole.get("made_of") != made_of:
         return None
@@ -66,7 +66,7 @@ def _lines(values: list[Any]) -> str:
 
 
 def _renumbered_memo(memo: Mapping[int, Any]) -> tuple[dict[int, int], list[Any]]:
-    """Old numbers of rules and terminals to new ones, and these in their new order."""
+    """New numbers of rules and terminals, and these in new order."""
     same = {old: _the_same_everywhere(value) for old, value in memo.items()}
     ranked = sorted(same.items(), key=lambda entry: json.dumps(entry[1], sort_keys=True))
     return {old: new for new, (old, _) in enumerate(ranked)}, [value for _, value in ranked]
@@ -84,7 +84,7 @@ def _refer(value: Any, numbers: Mapping[int, int]) -> Any:
 
 
 def _the_same_everywhere(value: Any) -> Any:
-    """A terminal or a rule without what differs between versions of Python: an endless width."""
+    """A terminal or rule with an endless width equal across Pythons."""
     pattern = value.get("pattern", {})
     if "_width" not in pattern:
         return value
@@ -93,7 +93,7 @@ def _the_same_everywhere(value: Any) -> Any:
 
 
 def _state_order(table: Mapping[str, Any]) -> dict[int, int]:
-    """Old numbers of states to new ones, in the order of a walk from the starts."""
+    """New numbers of states by old ones, in order of a walk."""
     names = table["tokens"]
     order: dict[int, int] = {}
     todo = [state for _, state in sorted(table["start_states"].items(), reverse=True)]
@@ -114,7 +114,10 @@ def _row(
     order: Mapping[int, int],
     numbers: Mapping[int, int],
 ) -> list[Any]:
-    """A state: token and next state in turn; then a rule and the tokens that it is reduced at."""
+    """Table row of a state: its shifts, then its reductions.
+
+    Token and next state in turn; then a rule and the tokens that it is reduced at.
+    """
     shifts: list[tuple[int, int]] = []
     reductions: dict[int, list[int]] = {}
     for token, (kind, target) in table["states"][state].items():

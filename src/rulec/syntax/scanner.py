@@ -1,4 +1,4 @@
-"""A coarse tokenisation that never fails, for finding where the pieces of a file begin and end.
+"""Coarse scanner that never fails, for finding pieces of a file.
 
 It knows strings, comments and line starts; the grammar decides what the tokens mean.
 """
@@ -74,7 +74,11 @@ def scan(source: Source) -> list[Token]:
 
 
 def _end_of_unterminated(text: str, start: int, end: int) -> int:
-    """Leave out the brace that the rest of the file needs, so that one quote costs one error."""
+    """The end of an unterminated text, before a brace that closes others.
+
+    The brace is left to the rest of the file, which needs it, so that one missing quote costs one
+    error.
+    """
     line = text[start:end]
     surplus = line.count("{") - line.count("}")
     if surplus > 0:

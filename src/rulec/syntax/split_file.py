@@ -33,7 +33,7 @@ class FileSplitter:
         self.say = StructureMessages(self.source, self.tokens)
 
     def split(self) -> Iterator[Piece | RulePieces]:
-        """The pieces in order; ``mistakes`` is complete when the last one has been taken."""
+        """Split a file into pieces; ``mistakes`` is complete after the last."""
         rules = RuleSplitter(self.tokens, self.marks, self.say, self.mistakes)
         index, count = 0, len(self.tokens)
         opened: int | None = None
@@ -109,7 +109,7 @@ class FileSplitter:
         return index
 
     def _skip_to_item(self, index: int) -> int:
-        """To the next item: what stands outside of a rule was reported where it began."""
+        """Skip to the next item."""
         while index < len(self.tokens) and not self.marks.begins_item_inside(index):
             index += 1
         return index

@@ -1,4 +1,4 @@
-"""Cutting a rule into its head, its clauses, and the states of its examples."""
+"""Splitting a rule into its head, clauses, and states of examples."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class RuleSplitter:
         return index
 
     def _begins_anew(self, clause: int, index: int, *, inside: bool) -> bool:
-        """Whether this is a clause with a misspelt word, behind the ``clause`` being read.
+        """Tell whether a clause with a misspelt word begins here.
 
         It is a name on a line of its own where a formula cannot have one: behind something
         complete, behind ``cite`` and ``says``, before a brace or a text.
@@ -128,7 +128,10 @@ class RuleSplitter:
         return ExamplePieces(head, tuple(states), index), index == len(self.tokens)
 
     def _example_without_open(self, first: int, index: int) -> ExamplePieces:
-        """``accept b; l }``: the next ``}`` is the example's own unless the rule would lack one."""
+        """Split an example whose opening brace is missing.
+
+        In ``accept b; l }`` the next ``}`` is the example's own unless the rule would lack one.
+        """
         label = self.tokens[first + 1] if first + 1 < len(self.tokens) else None
         if label is not None and label.kind == "unterminated" and "{" in label.text:
             # The missing quote has swallowed the braces: that is the one mistake.

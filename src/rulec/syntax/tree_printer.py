@@ -1,4 +1,6 @@
-"""The syntax tree's formulas and clauses as text, with the fewest parentheses or those written.
+"""Printing of formulas and clauses of the syntax tree.
+
+They have the fewest parentheses or those written.
 
 Reading what is printed gives the same tree back.
 """
@@ -60,13 +62,13 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
 
 
 def print_whole(node: tree.Formula, style: Style = "words") -> str:
-    """A formula where a conditional cannot stand without parentheses, such as behind `require`."""
+    """Text of a formula, with parentheses around a bare conditional."""
     text = print_formula(node, style)
     return f"({text})" if isinstance(node, tree.Conditional) else text
 
 
 def _precedence(node: tree.Formula) -> int:
-    """The binding strength of the node's own operator; a larger number binds tighter."""
+    """The node's operator precedence; a larger number binds tighter."""
     match node:
         case tree.Conditional():
             return 0
@@ -85,7 +87,10 @@ def _precedence(node: tree.Formula) -> int:
 
 
 def _needs_parentheses(node: tree.Formula, least: int, style: Style) -> bool:
-    """Whether it binds less tightly than ``least``, or the file has parentheses there."""
+    """Tell whether a node needs parentheses.
+
+    It binds less tightly than ``least``, or the file has parentheses there.
+    """
     written = style == "written" and getattr(node, "grouped", False)
     return written or _precedence(node) < least
 
@@ -128,7 +133,7 @@ def comma(names: Iterable[tree.Name]) -> str:
 
 
 def print_parameters(parameters: tuple[tree.Parameter, ...]) -> str:
-    """``(…)`` of a declaration or a rule's head; empty if there are none."""
+    """Text of a parameter list with its parentheses; empty if none."""
     if not parameters:
         return ""
     return f"({', '.join(map(print_parameter, parameters))})"
@@ -158,7 +163,7 @@ def print_in_force(dates: tree.InForce) -> str:
 
 
 def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, str]]:
-    """A rule's clauses but for its examples, in one order, as their words and what they say."""
+    """Words and texts of a rule's clauses, without examples, in order."""
     unless = (
         (print_whole(clause.formula, style), f" {clause.scope}" if clause.scope else "")
         for clause in rule.unless

@@ -10,7 +10,9 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A product of powers of base dimensions: length × 1/time is speed, the empty one a number.
+    """Physical dimension: a product of powers of base dimensions.
+
+    Length × 1/time is speed, the empty product a number.
 
     ``exponents`` are pairs of a base dimension and its power, in any order; they are kept sorted,
     one for each base and none of zero, so that equal dimensions are equal values.
@@ -100,7 +102,7 @@ _NAMES: dict[Dimension, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit as written, and how many base units one of it is, exactly.
+    """Unit as written, with its exact size in base units.
 
     The base units are metre, second, kilogram, degree (radian for angles in radians), kelvin,
     ampere, mole, candela, bit and pixel.
@@ -124,7 +126,7 @@ class Unit:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why a unit that exists cannot be used, and what to write instead."""
+    """Reason why a known unit is refused, and its replacement."""
 
     text: str
     why: str

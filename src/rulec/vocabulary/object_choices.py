@@ -11,7 +11,9 @@ from rulec.vocabulary.vocabulary_model import Vocabulary
 def choices(
     types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary
 ) -> Iterator[tuple[str, ...]]:
-    """Every way to choose distinct objects of the types; ``objects`` maps each to its type.
+    """All choices of distinct objects for the types.
+
+    ``objects`` maps each object to its type.
 
     An object of a subtype fits, too. Of no types there is one choice, the empty one.
     """

@@ -37,7 +37,10 @@ _PLAIN_NUMBERS = ("count", "refractive_index_unit", "absorbance_unit")
 
 @lru_cache(maxsize=256)
 def pint_unit(name: str) -> Unit | Refusal | None:
-    """The unit that Pint knows as ``name`` (no powers, no divisions); None if there is none."""
+    """The unit that Pint knows as ``name``; None if unknown.
+
+    ``name`` has no powers and no divisions.
+    """
     registry = _registry()
     if registry is None:
         return None
@@ -62,7 +65,7 @@ def pint_unit(name: str) -> Unit | Refusal | None:
 
 @lru_cache(maxsize=1)
 def _registry() -> UnitRegistry[Any] | None:
-    """Pint's units; None where Pint is missing or broken, which must not keep `m` from working."""
+    """Pint's registry of units; None where Pint is missing or broken."""
     try:
         from importlib.resources import files  # 0.2 s, only for rare units
 
@@ -85,7 +88,7 @@ def _no_multiple(name: str) -> Refusal:
 
 
 def _exact(name: str, factor: Fraction, roots: dict[str, Any]) -> Unit | Refusal:
-    """The unit ``factor`` × the powers of Pint's ``roots``, in our base units."""
+    """The unit ``factor`` × powers of Pint's ``roots``, in base units."""
     powers = {root: Fraction(power) for root, power in roots.items()}
     for number in _PLAIN_NUMBERS:
         powers.pop(number, None)

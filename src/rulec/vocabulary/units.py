@@ -33,7 +33,9 @@ _FROM_RAISED = str.maketrans(_RAISED, "0123456789")
 
 
 def parse_unit(text: str) -> Unit | None:
-    """The unit that ``text`` writes: `%`, `°`, or names with integer powers chained by `/`.
+    """Parse a unit: `%`, `°`, or names with powers and divisions.
+
+    Powers are integers; names are chained by `/`.
 
     `a/b/c` is `a/(b*c)`; `m²` is `m^2`. None if it is unknown, and if it is known but no exact
     multiple of the base units, or not one unit only; `unit_refusal` then says why.
@@ -43,7 +45,7 @@ def parse_unit(text: str) -> Unit | None:
 
 
 def unit_refusal(text: str) -> Refusal | None:
-    """Why a known unit cannot be used (`degC`, `dB`, `ton`); None if it can, or is unknown."""
+    """Reason why a known unit cannot be used (`degC`); otherwise None."""
     read = _read(text)
     return read if isinstance(read, Refusal) else None
 

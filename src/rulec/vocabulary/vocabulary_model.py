@@ -12,7 +12,10 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class ObjectType:
-    """A type of traffic participant; every object of it is also one of ``parent``."""
+    """Type of traffic participant, perhaps a subtype of another one.
+
+    Every object of it is also one of ``parent``.
+    """
 
     name: str
     parent: str | None = None
@@ -20,7 +23,7 @@ class ObjectType:
 
 @dataclass(frozen=True, slots=True)
 class Enumeration:
-    """A state with exactly one of ``values`` at a time, global or per object.
+    """State, global or per object, with one of ``values`` at a time.
 
     ``parameters`` are the names of the object types it is about: none for a global one. Every value
     is an atom of the language, so values are unique within a vocabulary.
@@ -43,7 +46,7 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number with a unit (as written, such as ``km/h``), global or per object."""
+    """Number with a unit (as written, ``km/h``), global or per object."""
 
     name: str
     parameters: tuple[str, ...]
@@ -56,7 +59,7 @@ Declaration = Enumeration | Signal | Quantity
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """Types and declarations by name, in the order in which they were declared."""
+    """Types and declarations by name, in order of declaration."""
 
     __repr__ = short_repr
 
@@ -86,7 +89,7 @@ class Vocabulary:
             current = self.types[current].parent
 
     def is_subtype(self, type_name: str, of: str) -> bool:
-        """Whether every ``type_name`` is also an ``of``. Every type is one of itself."""
+        """Tell whether every ``type_name`` is also an ``of``."""
         return of in self._above[type_name]
 
     @cached_property

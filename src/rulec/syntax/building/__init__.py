@@ -1,4 +1,4 @@
-"""From what the grammar matched to the syntax tree: one function for each kind of piece."""
+"""Syntax tree nodes from parse nodes: one function per kind of piece."""
 
 from rulec.syntax.building.formulas import formula
 from rulec.syntax.building.items import item

@@ -30,7 +30,7 @@ _RELATIONS: dict[str, Literal["<", "<=", "=", "!=", ">=", ">"]] = {
 
 
 def formula(values: NodeValues, node: ParseNode) -> tree.Formula:
-    """A formula or an expression; as deep as the parser lets it be."""
+    """Build a formula or an expression from its parse node."""
     span = values.span(node)
     match node:
         case ParseNode(

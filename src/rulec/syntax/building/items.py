@@ -53,7 +53,7 @@ def item(
 
 
 def definition(values: NodeValues, node: ParseNode) -> tree.Definition:
-    """An option, a parameter, a definition, or what is done to an inherited one."""
+    """Build an option, parameter or definition, or a change of one."""
     span = values.span(node)
     name, *others = values.names(node)
     match node.kind:

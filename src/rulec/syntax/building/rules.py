@@ -22,7 +22,7 @@ _SCOPES: dict[str, tree.Scope] = {
 
 @dataclass(frozen=True, slots=True)
 class RuleHead:
-    """``hard rule NAME (variables) in level weight number``, or ``override rule NAME …``."""
+    """Head of a rule: strength, name, variables, level and weight."""
 
     strength: Literal["hard", "soft"] | None
     name: tree.Name

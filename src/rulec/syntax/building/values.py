@@ -19,7 +19,7 @@ from rulec.syntax.messages.literal_values import (
 
 @dataclass(frozen=True, slots=True)
 class NodeValues:
-    """Makes the values of one source; mistakes inside them are added to ``mistakes``."""
+    """Builder of one source's values; mistakes are added to ``mistakes``."""
 
     source: Source
     mistakes: list[Diagnostic] = field(default_factory=list)

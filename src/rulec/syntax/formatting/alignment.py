@@ -1,4 +1,4 @@
-"""Columns that an author made over several lines, kept where the lines have changed."""
+"""Alignment of columns that the author made over several lines."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _BEFORE_COMMENT = 2
 
 
 def align_marks(rows: Iterable[tuple[LaidOutLine | None, int]]) -> None:
-    """Bring marks that stood below one another in the file below one another again.
+    """Align the column marks that were aligned in the file.
 
     Args:
         rows: consecutive rows, each with the column of its mark in the file; None for what has no
@@ -28,7 +28,7 @@ def align_marks(rows: Iterable[tuple[LaidOutLine | None, int]]) -> None:
 
 
 def with_comments(rows: Sequence[LaidOutLine]) -> list[str]:
-    """The rows with their trailing comments: in one column where they were in one column."""
+    """Rows with trailing comments, aligned where they were aligned before."""
     commented = [row for row in rows if row.comment is not None]
     for _, group in groupby(commented, key=lambda row: row.comment and row.comment.column):
         same = list(group)

@@ -1,4 +1,4 @@
-"""The comments of a file, which the tree does not have, and where they stand."""
+"""Comments of a file and their places, which the tree lacks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _COMMENT = re.compile(r"#[^\n]*")
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """``text`` from its ``#`` on, without blanks at its end; it begins at character ``start``.
+    """Comment from its ``#`` at ``start``, without trailing blanks.
 
     ``trails``: something else stands before it on its line. ``column`` counts from 0.
     """
@@ -26,7 +26,7 @@ class Comment:
 
 
 def comments_of(source: Source, tokens: Sequence[Token]) -> list[Comment]:
-    """All comments in order: they are what is left between the tokens but for white space."""
+    """All comments of a file in order."""
     text = source.text
     starts = [*(token.start for token in tokens), len(text)]
     ends = [0, *(token.end for token in tokens)]
@@ -46,7 +46,7 @@ def _comment(source: Source, match_: re.Match[str]) -> Comment:
 
 
 def blank_line_before(text: str, position: int) -> bool:
-    """Whether there is an empty line before what stands at ``position``."""
+    """Tell whether an empty line precedes the token at ``position``."""
     before = position
     while before and text[before - 1].isspace():
         before -= 1

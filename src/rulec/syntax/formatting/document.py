@@ -1,4 +1,4 @@
-"""Text that does not know its lines yet, and how it gets them.
+"""Documents with possible line breaks, and their layout in lines.
 
 After Oppen, "Pretty Printing" (1980), and Wadler, "A Prettier Printer" (2003): a group stands on
 one line if it fits there, otherwise all of its own breaks become line ends. The lines depend on
@@ -27,14 +27,17 @@ class Break:
 
 @dataclass(frozen=True, slots=True)
 class Fill:
-    """A space; a line end, ``deeper``, if what follows up to the next break does not fit."""
+    """A space, or a line end if the next part is long.
+
+    The next part goes up to the next break; its new line begins ``deeper``.
+    """
 
     deeper: int = 4
 
 
 @dataclass(frozen=True, slots=True)
 class LineEnd:
-    """A line end in any case, with the comments that stand there, ``inner`` still deeper."""
+    """A certain line end, with the comments that stand there."""
 
     trailing: Comment | None = None
     own: tuple[Comment, ...] = ()
@@ -44,7 +47,7 @@ class LineEnd:
 
 @dataclass(frozen=True, slots=True)
 class ColumnMark:
-    """Remembers where in its row something stands, for a column to be made there."""
+    """Mark of a position in its row, for alignment in a column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,7 @@ Document = str | Break | Fill | LineEnd | ColumnMark | Nest | GroupDocument | Co
 
 @dataclass(slots=True)
 class LaidOutLine:
-    """A line of the result: what it holds, its trailing comment, where its mark is.
+    """Line of the layout: its code, trailing comment and column mark.
 
     ``opens``: it ends with the brace of a block.
     """
@@ -93,13 +96,13 @@ def run(*parts: Document) -> Concatenation:
 
 
 def group(*parts: Document, forced: bool = False) -> GroupDocument:
-    """On one line if it fits, and if it is not ``forced`` to break."""
+    """Document on one line if it fits and is not ``forced``."""
     inside = run(*parts)
     return GroupDocument(inside, forced or inside.forced)
 
 
 def has_line_end(document: Document) -> bool:
-    """Whether it breaks in any case."""
+    """Tell whether a document has a certain line end."""
     match document:
         case LineEnd():
             return True
@@ -162,7 +165,7 @@ class _Layout:
         return self.width - len(self.rows[-1].code)
 
     def _fits(self, indent: int, document: Document) -> bool:
-        """Whether it fits on this line, with what has to follow it there."""
+        """Tell whether a document and its inseparable successors fit this line."""
         room = self._room()
         inner: _Todo = [(indent, True, document)]
         behind = len(self.todo)
@@ -194,7 +197,7 @@ class _Layout:
         return False
 
     def _next_fits(self) -> bool:
-        """Whether what follows fits on this line, behind a space, up to the next line end."""
+        """Tell whether the text up to the next line end fits."""
         room = self._room() - 1
         inner: list[Document] = []
         behind = len(self.todo)
@@ -220,11 +223,14 @@ class _Layout:
 
 
 def lay_out(document: Document, indent: int = 0, width: int = WIDTH) -> list[LaidOutLine]:
-    """The rows of a document; none is longer than ``width`` unless it cannot be broken."""
+    """Lay out a document in rows of at most ``width`` columns.
+
+    A row is longer only where it cannot be broken.
+    """
     return _Layout([(indent, False, document)], width).go()
 
 
 def on_one_line(document: Document) -> str:
-    """A document that has no line end of its own, as one line."""
+    """The text of a document without line ends, on one line."""
     (row,) = _Layout([(0, True, document)], 0).go()
     return row.code

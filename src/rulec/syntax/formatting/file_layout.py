@@ -1,4 +1,4 @@
-"""A whole file as lines: its pieces below one another, with comments and blank lines between."""
+"""Layout of a file: its pieces, comments and blank lines in order."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def arranged(source: Source) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Block:
-    """Adds to ``rows`` what stands below one another, by ``indent`` from the left."""
+    """Writer of pieces below one another, indented by ``indent``, into ``rows``."""
 
     text: str
     speller: DocumentBuilder
@@ -73,7 +73,7 @@ class _Block:
         self._add_comments(comments, [after_rule or blanks[0], *blanks[1:]] if blanks else [])
 
     def in_braces(self, parts: Sequence[Part], begin: int, end: int) -> None:
-        """Behind the last row, and on lines of its own if there is anything in them."""
+        """Write braces behind the last row, with their content below."""
         if not parts and not self.speller.holds_comment(end):
             self.rows[-1].code += " {}"
             return
@@ -103,7 +103,10 @@ class _Block:
         return block.rows
 
     def _take(self, until: int) -> tuple[Comment, ...]:
-        """Comments on lines of their own, after the one that trails the last row has been put."""
+        """Take comments up to a position; return those on their own lines.
+
+        A trailing one is put on the last row.
+        """
         trailing, own = self.speller.take(until)
         if trailing is not None:
             self.rows[-1].comment = trailing

@@ -34,7 +34,7 @@ def level(node: ParseNode) -> int:
 
 
 def without_spare_parentheses(node: ParseNode) -> ParseNode:
-    """The node without parentheses around a name, a number, other parentheses, or everything."""
+    """The node without parentheses that it never needs."""
     whole = node.kind in _WHOLE and _has_no_words_behind(node)
     children = tuple(
         child if isinstance(child, ParseLeaf) else _child(node, child, whole=whole)

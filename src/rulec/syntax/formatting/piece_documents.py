@@ -41,12 +41,12 @@ _CHAINS = frozenset(("infix", "arithmetic", "compare"))
 
 @dataclass(slots=True)
 class DocumentBuilder:
-    """Walks through a file from its beginning to its end, and gives out each comment once."""
+    """Builder of documents in the file's order, with each comment once."""
 
     comments: deque[Comment]
 
     def take(self, until: int) -> tuple[Comment | None, tuple[Comment, ...]]:
-        """The comments before a position: the one that trails what is before it, and the others."""
+        """Take the comments before a position: the trailing one, and others."""
         comments: list[Comment] = []
         while self.holds_comment(until):
             comments.append(self.comments.popleft())
@@ -54,11 +54,11 @@ class DocumentBuilder:
         return trailing, tuple(comment for comment in comments if comment is not trailing)
 
     def holds_comment(self, until: int) -> bool:
-        """Whether a comment before a position has not been taken yet."""
+        """Tell whether a comment before a position has not been taken yet."""
         return bool(self.comments) and self.comments[0].start < until
 
     def gap(self, gap: Gap, following: int) -> Document:
-        """The gap before the token at ``following``, with its comments if it can hold them."""
+        """The gap before the token at ``following``, with its comments."""
         if isinstance(gap, str):
             return gap
         trailing, own = self.take(following)
@@ -67,7 +67,7 @@ class DocumentBuilder:
         return LineEnd(trailing, own, gap.deeper if isinstance(gap, Fill) else 0)
 
     def closing_gap(self, flat: str, following: int) -> Document:
-        """The gap before what closes a block; its comments belong to the block."""
+        """The gap before a block's closing sign, with the block's last comments."""
         gap = self.gap(Break(flat), following)
         return replace(gap, inner=2) if isinstance(gap, LineEnd) else gap
 
@@ -96,7 +96,7 @@ class DocumentBuilder:
                 return self.plain(node.children, node.kind)
 
     def plain(self, nodes: Sequence[Node], kind: str, deeper: int = 4) -> Concatenation:
-        """Node after node, with spaces and possible line ends as the tokens ask for them."""
+        """Nodes in sequence, with the spaces and breaks that tokens need."""
         parts: list[Document] = []
         for index, node in enumerate(nodes):
             if index:
@@ -109,7 +109,7 @@ class DocumentBuilder:
         return run(*parts)
 
     def worded(self, node: ParseNode, column: int, deeper: int = 4) -> Concatenation:
-        """A word and what it says, which begins at ``column`` and goes on there."""
+        """A word and its content, which begins and continues at ``column``."""
         word, *said = node.children
         start = self.spell(word)
         assert isinstance(start, str), "a word is a leaf"
@@ -132,7 +132,7 @@ class DocumentBuilder:
         )
 
     def _chain(self, links: Sequence[Sequence[Node]]) -> Document:
-        """Operands of operators that bind equally tightly: all on one line, or each on its own."""
+        """Operands of equally strong operators: on one line, or one per line."""
         parts: list[Document] = []
         for index, link in enumerate(links):
             if index:
@@ -141,7 +141,7 @@ class DocumentBuilder:
         return group(*parts)
 
     def _operator(self, nodes: Sequence[Node], behind: Gap) -> Concatenation:
-        """An operator with its bound, if any, and its operand; or an operand alone."""
+        """An operator with its bound and its operand, or an operand alone."""
         *before, operand = nodes
         parts = [self.spell(node) for node in before]
         if before:
@@ -195,7 +195,7 @@ def _behind_prefix(sign: ParseLeaf, children: Sequence[Node], operand: Node) -> 
 
 
 def _behind_operator(link: Sequence[Node]) -> Gap:
-    """The gap between an operator and its operand; behind a bound no name begins a line."""
+    """The gap between an operator and its operand."""
     bounded = len(link) > 2 and first_leaf(link[-1]).kind == "NAME"
     return " " if bounded else Fill()
 

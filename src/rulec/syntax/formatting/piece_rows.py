@@ -1,4 +1,4 @@
-"""Each piece of a file as rows, and the columns that pieces below one another share."""
+"""Rows of each piece of a file, and the columns they share."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _LONGEST_WORD: Final = 7
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """The pieces of one file, which has no mistakes, to be asked for in their order."""
+    """Pieces of one file without mistakes, laid out in their order."""
 
     source: Source
     tokens: list[Token]
@@ -62,7 +62,7 @@ class Pieces:
         return without_spare_parentheses(branch)
 
     def item(self, piece: Piece, column: int) -> Document:
-        """A header line or a provision, whose word ends at ``column``, or a declaration."""
+        """Rows of a header line, provision or declaration."""
         node = self.matched(piece)
         column = max(column, len(self.word(piece)) + 1)
         match node.kind:
@@ -86,7 +86,7 @@ class Pieces:
         return self.speller.worded(node, max(column, len(self.word(piece)) + 1))
 
     def example(self, example: ExamplePieces, column: int) -> Document:
-        """An example on one line, or with a line for each of its states."""
+        """Rows of an example: one line, or one line per state."""
         head = self.matched(example.head)
         column = max(column, len(self.word(example)) + 1)
         start = (
@@ -110,7 +110,7 @@ class Pieces:
         return self.speller.plain(head.children, head.kind)
 
     def one_line(self, rule: RulePieces, indent: int) -> str:
-        """A rule that was written on one line and fits there, otherwise nothing."""
+        """The row of a rule that fits on one line; otherwise empty."""
         end = self.end(rule)
         inside = self.source.text[self.opening(rule).start : end]
         if not rule.body or "\n" in inside or self.speller.holds_comment(end):
@@ -134,13 +134,13 @@ class Pieces:
         return self.tokens[part.last - 1]
 
     def word(self, part: Part) -> str:
-        """The word that a header line, a clause or an example begins with."""
+        """The first word of a header line, a clause or an example."""
         first = part.head.first if isinstance(part, ExamplePieces | RulePieces) else part.first
         word = self.tokens[first].text
         return "in force" if word == "in" else word
 
     def columns(self, parts: Sequence[Part]) -> list[int]:
-        """For each part where what its word says begins: together, but for blank lines between."""
+        """Columns at which contents begin, shared by parts without blank lines between."""
         columns: list[int] = []
         together: list[int] = []
         for index, part in enumerate(parts):

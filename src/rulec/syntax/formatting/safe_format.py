@@ -12,7 +12,7 @@ from rulec.syntax.scanner import scan
 
 
 class FormattingError(Exception):
-    """The formatter has a mistake: what it made of a file is something else."""
+    """Error of the formatter: its output means something else than the file."""
 
 
 def format_source(source: Source) -> str:
@@ -43,7 +43,7 @@ def format_source(source: Source) -> str:
 
 
 def _signs(source: Source) -> str:
-    """All that is written, but for white space and the parentheses that may go."""
+    """All written signs, without white space and the removable parentheses."""
     return "".join(token.text for token in scan(source) if token.text not in ("(", ")"))
 
 

@@ -1,4 +1,4 @@
-"""Messages about text that is not in the language, one for each mistake.
+"""Messages about syntax errors, one for each mistake.
 
 ``mismatch`` speaks where a piece cannot be parsed: ``expectations`` turns what the grammar would
 have taken into words, ``advice`` guesses what was meant. ``structure`` speaks about braces.

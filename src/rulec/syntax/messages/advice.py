@@ -49,7 +49,7 @@ def _comment(scene: ParseContext) -> str:
 
 
 def _misspelt(scene: ParseContext) -> str:
-    """A word that looks much like one that could stand there, or in place of the one before."""
+    """Correction of a misspelt word, or of the word before it."""
     token, before = scene.unexpected, scene.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""
@@ -99,7 +99,7 @@ def _parentheses(scene: ParseContext) -> str:
 
 
 def _form(scene: ParseContext) -> str:
-    """The form of the whole line, where there is nothing better to say."""
+    """The form of the whole line, if no better advice is known."""
     unfinished = scene.unexpected is None and scene.text_before == "="
     formula = not unfinished and (scene.operand or scene.operator or scene.quantity)
     return "" if formula or scene.kind != "item" else FORMS.get(scene.first, "")

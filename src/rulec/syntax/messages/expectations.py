@@ -57,12 +57,12 @@ _ORDER: Final = (
 
 
 def spelling(kind: str) -> str:
-    """The spelling of a word or a sign of the grammar: ``AT_END`` is ``at end``."""
+    """The spelling of a grammar token: ``AT_END`` is ``at end``."""
     return _SPELLINGS.get(kind) or kind.lower().replace("_", " ")
 
 
 def in_words(accepted: Iterable[str]) -> str:
-    """``expected a name, a number, or `(``` for the grammar's names of tokens."""
+    """Phrase for the accepted tokens, such as ``expected a name``."""
     rest = set(accepted)
     before: list[str] = []
     behind: list[str] = []
@@ -91,15 +91,15 @@ def _rank(kind: str) -> int:
 
 
 def wants_operand(accepted: frozenset[str]) -> bool:
-    """Whether a formula could begin here."""
+    """Tell whether a formula could begin here."""
     return accepted >= _OPERANDS
 
 
 def wants_quantity(accepted: frozenset[str]) -> bool:
-    """Whether a quantity or a number could stand here."""
+    """Tell whether a quantity or a number could stand here."""
     return accepted >= _QUANTITIES
 
 
 def wants_operator(accepted: frozenset[str]) -> bool:
-    """Whether a binary operator could stand here."""
+    """Tell whether a binary operator could stand here."""
     return accepted >= _OPERATORS

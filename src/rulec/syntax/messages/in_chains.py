@@ -12,7 +12,7 @@ RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 
 
 def advise_on_chain(scene: ParseContext) -> str:
-    """``a < b < c``: the middle one has to be said twice."""
+    """Advice on ``a < b < c``: compare two at a time."""
     last = next((at for at in range(scene.at - 1, -1, -1) if scene.text_at(at) in RELATIONS), None)
     if last is None:
         return ""

@@ -57,7 +57,7 @@ _AGGREGATES: Final = ("some", "every", "count")
 
 
 def advise_on_formula(scene: ParseContext) -> str:
-    """The way out of a mistake in a formula; empty where there is none to suggest."""
+    """Advice on a mistake in a formula; empty if there is none."""
     if not (scene.operand or scene.operator or scene.quantity or "AND" in scene.accepted):
         return _arguments(scene)
     for advice in (_conditionals, _numbers, _comparisons, _operators, _joined):

@@ -42,7 +42,7 @@ _OTHER_WORDS: Final = {
 
 
 def other_word(word: str) -> str:
-    """The word for an item whose word is one of other languages; empty if it is unknown."""
+    """Advice on another language's item word; empty if it is unknown."""
     form = _OTHER_WORDS.get(word)
     return f"write `{form}`" if form else ""
 

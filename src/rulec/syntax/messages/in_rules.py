@@ -1,4 +1,4 @@
-"""Help for a rule's head, its clauses, and the states of its examples."""
+"""Advice on a rule's head, clauses, and states of its examples."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "
 
 
 def other_clause(word: str, others: Container[str] = ()) -> str:
-    """The way out of a clause's word of other languages; empty if it is unknown.
+    """Advice on another language's clause word; empty if it is unknown.
 
     ``others`` are the words and signs behind it.
     """

@@ -104,7 +104,7 @@ _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "th
 
 
 def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
-    """Why the piece cannot be read."""
+    """The diagnostic of a piece that cannot be parsed."""
     # A rulebook's name is a name, as far as messages are concerned.
     accepted = frozenset("NAME" if kind == "BOOK" else kind for kind in mismatch.accepted)
     inside = tokens[piece.first : piece.last]
@@ -138,7 +138,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 
 
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
-    """A piece that begins with nothing that the language has, inside a rule."""
+    """The diagnostic of a piece in a rule with an unknown beginning."""
     token = tokens[piece.first]
     others = tokens[piece.first + 1 : piece.last]
     symbols = any(token.kind == "symbol" for token in (token, *others))
@@ -197,7 +197,7 @@ def _short(text: str) -> str:
 
 
 def _is_word_for_name(scene: ParseContext) -> bool:
-    """A reserved word where only a name could stand: it was meant as one."""
+    """Tell whether a reserved word stands in place of a name."""
     token = scene.unexpected
     if token is None or token.kind != "word" or token.text not in RESERVED:
         return False

@@ -12,7 +12,7 @@ from rulec.syntax.scanner import Token
 
 @dataclass(frozen=True, slots=True)
 class ParseContext:
-    """A piece of some kind whose tokens can be read up to the one at ``at``, or all of them."""
+    """Context of a syntax error: a piece, readable up to ``at``."""
 
     source: Source
     kind: str
@@ -31,7 +31,7 @@ class ParseContext:
 
     @property
     def unexpected(self) -> Token | None:
-        """The token that cannot stand where it stands; None if the piece ends too early."""
+        """The unexpected token; None if the piece ends too early."""
         return self.token(self.at)
 
     @property
@@ -60,31 +60,31 @@ class ParseContext:
         return self.text_at(self.at + 1)
 
     def is_number(self, index: int) -> bool:
-        """Whether a number stands at an index."""
+        """Tell whether a number stands at an index."""
         token = self.token(index)
         return token is not None and token.kind == "number"
 
     def is_word(self) -> bool:
-        """Whether ``unexpected`` is a word."""
+        """Tell whether ``unexpected`` is a word."""
         return self.unexpected is not None and self.unexpected.kind == "word"
 
     def touches(self) -> bool:
-        """Whether ``unexpected`` stands right behind the token before, without a space."""
+        """Tell whether no space precedes ``unexpected``."""
         return bool(self.unexpected and self.before and self.before.end == self.unexpected.start)
 
     @property
     def operand(self) -> bool:
-        """Whether a formula could begin here."""
+        """Tell whether a formula could begin here."""
         return wants_operand(self.accepted)
 
     @property
     def quantity(self) -> bool:
-        """Whether a quantity or a number could stand here."""
+        """Tell whether a quantity or a number could stand here."""
         return wants_quantity(self.accepted)
 
     @property
     def operator(self) -> bool:
-        """Whether a binary operator could stand here."""
+        """Tell whether a binary operator could stand here."""
         return wants_operator(self.accepted)
 
     def opened(self, opening: str, closing: str) -> int | None:

@@ -67,7 +67,7 @@ class StructureMessages:
         )
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:
-        """A clause or a ``}`` that belongs to no rule; ``closed`` is the last rule's end."""
+        """The diagnostic of a clause or ``}`` behind a rule's end ``closed``."""
         labels: tuple[Label, ...] = ()
         if closed is not None:
             labels = (Label(self.place(closed), "what came before ended here"),)

@@ -1,4 +1,4 @@
-"""Messages about a file as a whole and the order of its parts."""
+"""Messages about a whole file and the order of its parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes of options, parameters, definitions, and of what is done to inherited ones."""
+"""Nodes of options, parameters and definitions, and changes of inherited ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from rulec.syntax.tree.names import NOWHERE, Name, Parameter, Text
 
 @dataclass(frozen=True, slots=True)
 class InForce:
-    """``in force from DATE until DATE``; ISO texts, empty where open. The last day counts."""
+    """Dates in force: ``in force from DATE until DATE``.
+
+    ISO texts, empty where open. The last day counts.
+    """
 
     since: str = ""
     until: str = ""
@@ -20,7 +23,7 @@ class InForce:
 
 @dataclass(frozen=True, slots=True)
 class OptionItem:
-    """``option name = on``; with ``set`` in place of ``option`` it is a SetItem."""
+    """Declaration of an option: ``option name = on``."""
 
     name: Name
     value: bool
@@ -29,7 +32,10 @@ class OptionItem:
 
 @dataclass(frozen=True, slots=True)
 class ParamItem:
-    """``param name : dimension = value in force …``; the dimension may be left out."""
+    """Declaration of a parameter: ``param name : dimension = value``.
+
+    The dimension may be left out; ``in force …`` may follow.
+    """
 
     name: Name
     dimension: Name | None
@@ -50,7 +56,9 @@ class SetItem:
 
 @dataclass(frozen=True, slots=True)
 class DefineItem:
-    """``define name(parameters) = body``; a parameter without a type may be a relation.
+    """Definition of a macro: ``define name(parameters) = body``.
+
+    A parameter without a type may be a relation.
 
     ``again``: it is a ``redefine`` of an inherited definition.
     """

@@ -24,7 +24,7 @@ from rulec.syntax.tree.rules import RuleItem
 
 @dataclass(frozen=True, slots=True)
 class BrokenItem:
-    """An item that could not be read; it may have declared any of ``names``.
+    """Unreadable item; it may have declared any of ``names``.
 
     ``word`` is its first word, ``"rule"`` for a rule whose head could not be read. A ``nameless``
     one lacks the name that it declares.
@@ -41,7 +41,7 @@ Item = Declaration | Definition | RuleItem | BrokenItem
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A rulebook or a vocabulary. ``name`` is None when its line could not be read."""
+    """Syntax tree of a file; ``name`` is None if unreadable."""
 
     kind: Literal["rulebook", "vocabulary"]
     name: Name | None

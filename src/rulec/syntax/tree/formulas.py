@@ -16,7 +16,7 @@ from rulec.syntax.tree.names import NOWHERE, Name, Parameter
 
 @dataclass(frozen=True, slots=True)
 class AtomUse:
-    """``name`` or ``name(arguments)``: a signal, a value, a quantity, a parameter, a definition."""
+    """Use of a declared name, perhaps with arguments: ``name(arguments)``."""
 
     name: Name
     arguments: tuple[Name, ...] = ()
@@ -33,7 +33,7 @@ class TruthLiteral:
 
 @dataclass(frozen=True, slots=True)
 class NumberLiteral:
-    """``1.5 km/h``: an unsigned number as written, and its unit, empty if there is none."""
+    """Unsigned number as written, with its unit or none: ``1.5 km/h``."""
 
     text: str
     unit: str = ""
@@ -81,7 +81,10 @@ class Infix:
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """``left < right``; ``relation`` is one of ``< <= = != >= >``."""
+    """Comparison of two numbers: ``left < right``.
+
+    ``relation`` is one of ``< <= = != >= >``.
+    """
 
     relation: Literal["<", "<=", "=", "!=", ">=", ">"]
     left: Formula
@@ -112,7 +115,7 @@ class Minus:
 
 @dataclass(frozen=True, slots=True)
 class Conditional:
-    """``value if condition else otherwise``; inside a formula it always stands in parentheses."""
+    """Conditional expression: ``value if condition else otherwise``."""
 
     value: Formula
     condition: Formula

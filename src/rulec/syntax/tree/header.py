@@ -29,7 +29,10 @@ class TitleLine:
 
 @dataclass(frozen=True, slots=True)
 class LawLine:
-    """``law "…" as of DATE``; the date is ISO text, empty when not given."""
+    """Header line of the law: ``law "…" as of DATE``.
+
+    The date is ISO text, empty when not given.
+    """
 
     text: Text
     as_of: str = ""
@@ -78,7 +81,10 @@ class StepLine:
 
 @dataclass(frozen=True, slots=True)
 class PriorityLine:
-    """``priority a > b = c``; ``relations[i]`` stands between levels i and i + 1."""
+    """Order of priority levels: ``priority a > b = c``.
+
+    ``relations[i]`` stands between levels i and i + 1.
+    """
 
     levels: tuple[Name, ...]
     relations: tuple[Literal[">", "="], ...]

@@ -20,7 +20,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text in double quotes; ``value`` is what it means, without quotes and escapes."""
+    """Text in double quotes; ``value`` has no quotes and no escapes."""
 
     value: str
     span: Span = field(default=NOWHERE, compare=False, repr=False)
@@ -28,7 +28,10 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """``name: type``; in a declaration, not in a rule's head, the type may be left out."""
+    """Parameter with its type: ``name: type``.
+
+    In a declaration, not in a rule's head, the type may be left out.
+    """
 
     name: Name
     type: Name | None = None

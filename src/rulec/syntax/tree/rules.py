@@ -13,7 +13,7 @@ from rulec.syntax.tree.names import NOWHERE, Name, Parameter, Text
 
 @dataclass(frozen=True, slots=True)
 class StateLiteral:
-    """``atom``, ``not atom``, or ``atom = value`` for a quantity, in an example's state.
+    """Literal of an example's state: ``atom``, ``not atom``, or ``atom = value``.
 
     A ``value`` is a number, with ``Minus`` around it if it is negative.
     """
@@ -26,7 +26,7 @@ class StateLiteral:
 
 @dataclass(frozen=True, slots=True)
 class ExampleState:
-    """The literals of one state of an example; none, written ``true``, if all is by default."""
+    """Literals of an example's state; none if all is by default."""
 
     literals: tuple[StateLiteral, ...]
     span: Span = field(default=NOWHERE, compare=False, repr=False)
@@ -57,7 +57,7 @@ class Unless:
 
 @dataclass(frozen=True, slots=True)
 class RuleItem:
-    """A rule; one that is an ``override`` says only what it changes, perhaps not its strength.
+    """Rule, or an ``override`` with only the changed clauses.
 
     ``complete`` is false when a clause of it could not be read and is missing here.
     """
