@@ -91,8 +91,8 @@ if TYPE_CHECKING:
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives as RequestedDrives
-    from rulec.extraction.selection.traffic_thresholds import Thresholds as Thresholds
     from rulec.extraction.to_trace import Drive as Drive
+    from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
@@ -158,8 +158,8 @@ _HOME = {
     "rulec.extraction.drives": "NoDrive",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
     "rulec.extraction.selection.requested": "RequestedDrives",
-    "rulec.extraction.selection.traffic_thresholds": "Thresholds",
     "rulec.extraction.to_trace": "Drive",
+    "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",

@@ -6,7 +6,7 @@ import pytest
 
 from rulec.api.workflow import machines
 from rulec.extraction.drives import Drives
-from rulec.extraction.selection.traffic_thresholds import Thresholds
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle

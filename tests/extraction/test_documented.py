@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from rulec.extraction.drives import Drives
-from rulec.extraction.selection.traffic_thresholds import USUAL
+from rulec.extraction.traffic_thresholds import USUAL
 from rulec.rulebook.loader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS
 from rulec.vocabulary import Quantity

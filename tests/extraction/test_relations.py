@@ -5,7 +5,7 @@ import shapely
 from hypothesis import given
 
 from rulec.extraction.drives import Drive, Drives
-from rulec.extraction.selection.traffic_thresholds import USUAL
+from rulec.extraction.traffic_thresholds import USUAL
 from support.generators.random_recordings import STEP_S, scenes
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.extraction.drives import Drives
-from rulec.extraction.selection.traffic_thresholds import Thresholds
+from rulec.extraction.traffic_thresholds import Thresholds
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
 

@@ -8,11 +8,10 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.traffic_thresholds import Thresholds
-from rulec.extraction.signals.relations import lanes_touched
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Recording, Side
 
 KMH = 3.6

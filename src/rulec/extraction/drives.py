@@ -9,16 +9,16 @@ from itertools import groupby
 import numpy as np
 
 from rulec.extraction.drive_context import drive_context
-from rulec.extraction.selection.relevance import relevant_participants
-from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
 from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road
 from rulec.extraction.tracks.driven_route import RouteStretch, driven_stretches
 from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.map_matching import MatchedLanelets, match_to_map
+from rulec.extraction.tracks.relevance import relevant_participants
 from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Recording, Side
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.drive_projection import project_columns
+from rulec.extraction.presence import Presence, presences
 from rulec.extraction.signals.crossing_signals import crossing_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
@@ -19,7 +20,6 @@ from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map_signals import map_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.tracks.presence import Presence, presences
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import known_types

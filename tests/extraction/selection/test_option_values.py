@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.extraction.selection.option_values import assumption_options, threshold_options
-from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 WORDS = Vocabulary(

@@ -6,7 +6,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection.requested import RequestedDrives, selected_drives
-from rulec.extraction.selection.traffic_thresholds import USUAL
+from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.drive_contexts import steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import lanes

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.selection.traffic_thresholds import USUAL
 from rulec.extraction.tracks.driven_road import driven_road
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.tracks import tracks_of
+from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.selection.traffic_thresholds import USUAL
 from rulec.extraction.tracks.tracks import tracks_of
+from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import recording, straight, vehicle
 
 ROAD = [straight(1, -100, 300)]

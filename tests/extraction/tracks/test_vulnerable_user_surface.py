@@ -1,8 +1,8 @@
 """The surface under vulnerable road users."""
 
-from rulec.extraction.selection.traffic_thresholds import USUAL
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
+from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 ZEBRA = lanelet(9, [(50, -6), (50, 6)], width=4, types=frozenset({"crosswalk"}))

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from rulec.extraction.drive_context import drive_context
-from rulec.extraction.selection.relevance import relevant_participants
-from rulec.extraction.selection.traffic_thresholds import USUAL
 from rulec.extraction.tracks.driven_road import driven_road
 from rulec.extraction.tracks.junction_lanelets import junction_lanelets
+from rulec.extraction.tracks.relevance import relevant_participants
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
+from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import vehicle
 
 EGO = "7"

@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import isfinite
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.extraction.selection.traffic_thresholds import Thresholds
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.trace import Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.units import parse_unit

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
-from rulec.extraction.selection.traffic_thresholds import USUAL, Thresholds
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.scenario_messages import NOT_IN_RECORDING

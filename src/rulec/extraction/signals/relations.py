@@ -11,7 +11,6 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.traffic_thresholds import Thresholds
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -26,17 +25,6 @@ assert LATERALS == ("right_of", "same_lane", "left_of")
 
 _STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
-
-
-def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
-    """Whether bodies reach into lanes; the last axis is that of the lanes."""
-    right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
-    low, high = extents.w_min[..., None], extents.w_max[..., None]
-    inside = np.minimum(high, left) - np.maximum(low, right)
-    # A narrow body, such as a pedestrian's, is in a lane with most of it
-    enough = np.minimum(thresholds.touching_m, (high - low) / 2)
-    touched: Flags = (inside > enough) & road.lanes_at(extents.s)
-    return touched
 
 
 def station(ego: RoadExtents, others: RoadExtents) -> Codes:

@@ -15,7 +15,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 
 
@@ -94,3 +95,14 @@ def _directions(road: DrivenRoad, s: Floats) -> Floats:
     ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]
     directions: Floats = np.arctan2(ahead[..., 1], ahead[..., 0])
     return directions
+
+
+def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
+    """Whether bodies reach into lanes; the last axis is that of the lanes."""
+    right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
+    low, high = extents.w_min[..., None], extents.w_max[..., None]
+    inside = np.minimum(high, left) - np.maximum(low, right)
+    # A narrow body, such as a pedestrian's, is in a lane with most of it
+    enough = np.minimum(thresholds.touching_m, (high - low) / 2)
+    touched: Flags = (inside > enough) & road.lanes_at(extents.s)
+    return touched

@@ -13,7 +13,7 @@ import numpy as np
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
-from rulec.extraction.selection.traffic_thresholds import Thresholds
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.selection.traffic_thresholds import Thresholds
-from rulec.extraction.signals.relations import lanes_touched
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.extraction.traffic_thresholds import Thresholds
 
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
