@@ -30,7 +30,7 @@ from rulec.witnesses.undecided import UndecidedError
 def counterexample(
     forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom] = ()
 ) -> Trace | None:
-    """A shortest trace that a rule forbids and all others allow; None if there is none.
+    """A shortest trace that only this rule forbids, or None.
 
     ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
     """
@@ -64,7 +64,7 @@ def counterexample(
 def _universe(
     forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom]
 ) -> ObjectUniverse:
-    """The objects that a rule speaks of, in the vocabulary of all the rulebooks."""
+    """The objects of a rule, in the vocabulary of all the rulebooks."""
     analyzed_rules = (forbidding, *allowing)
     read = {name for analyzed in analyzed_rules for name in declarations_read(analyzed.rule)}
     axioms = tuple(

@@ -16,7 +16,7 @@ from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 
 @dataclass(frozen=True, slots=True)
 class AnalyzedRule:
-    """A compiled rule, the rulebook that it is part of and the axioms known there.
+    """A compiled rule with its rulebook and the axioms known there.
 
     Those with the same ``law`` have rules that mean the same by their very words.
     """
@@ -42,7 +42,7 @@ class SharedCompiler:
     def compile(
         self, rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
     ) -> list[dict[str, AnalyzedRule]]:
-        """For each rulebook the chosen ones of its rules by name, each for the step it names.
+        """For each rulebook its chosen rules by name, at the named steps.
 
         Raises RulecError if one cannot be compiled.
         """
@@ -96,7 +96,10 @@ def _named(compiled: CompiledRule, rule: Rule) -> CompiledRule:
 
 
 def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
-    """The rules for traces of one step: the given one, else one that divides those of all."""
+    """The rules compiled for one step of the trace.
+
+    The step is the given one, else one that divides those of all.
+    """
     listed = list(rules)
     steps = [rule.step_s for rule in listed if has_seconds(rule.formula)]
     if step_s is None and steps:

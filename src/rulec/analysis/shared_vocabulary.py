@@ -10,7 +10,10 @@ from rulec.witnesses.undecided import UndecidedError
 
 @dataclass(frozen=True, slots=True)
 class SharedVocabulary:
-    """The words of both; the declarations that one lacks; names for what is not alike in both."""
+    """The joint vocabulary of two rulebooks.
+
+    Also the declarations that one of them lacks, and names for what is not alike in both.
+    """
 
     vocabulary: Vocabulary
     not_shared: frozenset[str]

@@ -16,7 +16,10 @@ from rulec.witnesses.state_synthesis import subjects_of
 
 
 def trace_literal(trace: Trace, rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> str:
-    """``{ behind(v); beside(v) and fog }``: what is not said has its default."""
+    """A trace as a literal: ``{ behind(v); beside(v) and fog }``.
+
+    What is not said has its default.
+    """
     names = frozenset(name for rule in rules for name in declarations_read(rule))
     states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
     return f"{{ {states} }}"

@@ -1,4 +1,4 @@
-"""A trace as a table: a row for everything that rules read, a column for every state."""
+"""A trace as a table: rows of rule inputs, columns of states."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from rulec.witnesses.state_synthesis import subjects_of
 
 @dataclass(frozen=True, slots=True)
 class SignalRow:
-    """The values of one subject by column: ``title`` names it, ``unit`` is empty if it has none.
+    """The values of one subject by column, with its title and unit.
+
+    ``unit`` is empty if it has none.
 
     ``is_default``: the value is the default in all of them.
     """
@@ -27,14 +29,17 @@ class SignalRow:
 
 @dataclass(frozen=True, slots=True)
 class TraceTable:
-    """States that are the same one after the other share a column, from the first to the last."""
+    """A table of a trace; equal neighbouring states share a column.
+
+    Such a column has the numbers of its first and last state.
+    """
 
     columns: tuple[tuple[int, int], ...]
     rows: tuple[SignalRow, ...]
 
 
 def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
-    """The table of what a trace says of these declarations, for all of its objects."""
+    """The table of a trace's values for declarations and all its objects."""
     starts = [
         number
         for number, state in enumerate(trace.states)

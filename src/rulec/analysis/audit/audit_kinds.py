@@ -1,4 +1,4 @@
-"""The kinds of findings of an audit, in a small file so that a shell completes them at once."""
+"""The kinds of findings of an audit, for quick completion in shells."""
 
 from __future__ import annotations
 

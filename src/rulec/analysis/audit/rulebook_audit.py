@@ -1,4 +1,4 @@
-"""Audit a rulebook: rules without a source or examples, what was left out, what is covered.
+"""Audit a rulebook: sources and examples of its rules, gaps, and coverage.
 
 Nothing of this is a mistake. It is what a lawyer or a safety engineer wants to know before they
 rely on a rulebook.
@@ -24,7 +24,7 @@ from rulec.value_display import Rows, short_repr
 
 @dataclass(frozen=True, slots=True)
 class AuditFinding:
-    """A finding about a rule, an article, a topic, a parameter or a word, by its name."""
+    """A finding about a rule, article, topic, parameter or word, by name."""
 
     kind: str
     name: str
@@ -61,7 +61,7 @@ class AuditCounts:
 
 @dataclass(frozen=True, slots=True)
 class Audit(Rows):
-    """All that was found about a rulebook by the law of the day ``at``."""
+    """All findings about a rulebook by the law of the day ``at``."""
 
     __repr__ = short_repr
 
@@ -84,7 +84,7 @@ class Audit(Rows):
 
 @dataclass(frozen=True, slots=True)
 class AuditChanges:
-    """The findings of an audit that an older one did not have, and the other way around."""
+    """The findings that came or went since an older audit."""
 
     appeared: tuple[AuditFinding, ...] = ()
     vanished: tuple[AuditFinding, ...] = ()
@@ -125,7 +125,7 @@ def audit(
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
-    """The findings that have come and gone between two audits; notes do not count."""
+    """The findings that came or went between two audits, without notes."""
     known = {(finding.kind, finding.name) for finding in before.findings}
     still = {(finding.kind, finding.name) for finding in now.findings}
     return AuditChanges(
@@ -135,7 +135,7 @@ def audit_changes(now: Audit, before: Audit) -> AuditChanges:
 
 
 def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, AuditChanges]:
-    """Rulebook -> what has changed, against its own older audit or the only one that there is.
+    """Rulebook -> changes since its own, or the only, older audit.
 
     To a rulebook that has no older audit everything is new.
     """
@@ -149,7 +149,9 @@ def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str,
 
 
 def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArticle, ...]:
-    """The provisions that rules cite: the rulebook's own law first, then that of each base.
+    """The provisions that rules cite, in order of their rulebooks.
+
+    The rulebook's own law comes first, then that of each base.
 
     Numbers in them are in the order of numbers.
     """
@@ -237,7 +239,7 @@ def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
 
 
 def _of_provision(item: ConstantHistory) -> Iterator[AuditFinding]:
-    """Of a parameter the value that counts, if it counts for a time only."""
+    """The finding about a parameter value in force for a time only."""
     for value in item.settings:
         if value.current and (value.since or value.until):
             dates = print_in_force(tree.InForce(value.since, value.until))

@@ -1,4 +1,4 @@
-"""Audits that were written as JSON some time ago, to compare new ones with."""
+"""Audits saved as JSON, to compare new ones with."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class _File(msgspec.Struct):
 
 
 def read_audits(path: Path) -> tuple[Audit, ...]:
-    """What ``rulec audit --output-format json`` has written.
+    """Read the output of ``rulec audit --output-format json``.
 
     Raises:
         RulecError: R0701, or R0705 if it is something else.

@@ -1,4 +1,4 @@
-"""Compare many rulebooks: for every rule the rulebooks of the same law, and the stricter ones."""
+"""Compare many rulebooks rule by rule: equal laws, and stricter ones."""
 
 from __future__ import annotations
 
@@ -40,7 +40,10 @@ class SharedRule:
     remarks: Mapping[str, Remark]
 
     def letter(self, book: str) -> str:
-        """``A`` for the law of the first rulebook that has the rule, and so on; else empty."""
+        """The letter of a rulebook's law; empty without the rule.
+
+        ``A`` is the law of the first rulebook that has the rule, and so on.
+        """
         law = self.laws.get(book)
         if law is None:
             return ""
@@ -48,7 +51,10 @@ class SharedRule:
         return ascii_uppercase[rest] + (str(turns) if turns else "")
 
     def relation(self, first: str, second: str) -> RuleRelation | None:
-        """What the first rulebook's rule is to the second one's; None if one of them has none."""
+        """The relation of the first rulebook's rule to the second's, or None.
+
+        It is None if one of them has no such rule.
+        """
         if first not in self.laws or second not in self.laws:
             return None
         return self.relations[self.laws[first], self.laws[second]]
@@ -56,7 +62,7 @@ class SharedRule:
 
 @dataclass(frozen=True, slots=True)
 class ComparisonMatrix:
-    """Rulebooks, and all of their rules in the order in which they first come up."""
+    """Rulebooks, and all their rules in order of first appearance."""
 
     books: tuple[Rulebook, ...]
     rules: tuple[SharedRule, ...]
@@ -67,7 +73,7 @@ class ComparisonMatrix:
         return tuple(rule for rule in self.rules if len(rule.laws) > 1)
 
     def counts(self, first: str, second: str) -> Counter[str]:
-        """How many of the first one's rules are what to the second one's.
+        """The number of the first rulebook's rules by relation to the second's.
 
         ``only`` are those that the second one does not have, ``silent`` those of them of which it
         says why.
@@ -84,12 +90,12 @@ class ComparisonMatrix:
 
     @property
     def is_complete(self) -> bool:
-        """Whether every question has been answered."""
+        """True if every question has been answered."""
         return all("undecided" not in rule.relations.values() for rule in self.rules)
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all rulebooks that have a rule have the same one."""
+        """True if all rulebooks that have a rule have an equal one."""
         return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
 
 
@@ -99,7 +105,9 @@ def comparison_matrix(
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
 ) -> ComparisonMatrix:
-    """Compare every two of the rulebooks, rule by rule; the arguments are as for ``difference``.
+    """Compare every two of the rulebooks, rule by rule.
+
+    The arguments are as for ``difference``.
 
     ``tell`` is told how much is done of ``steps``. Raises RulecError.
     """
@@ -156,7 +164,7 @@ def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
 def _classified(
     sides: Mapping[str, AnalyzedRule],
 ) -> tuple[dict[str, int], dict[tuple[int, int], RuleRelation]]:
-    """Which law each rulebook's rule is, and how the laws stand to each other."""
+    """The law of each rulebook's rule, and the relations between the laws."""
     known: dict[int, int] = {}
     representatives: list[AnalyzedRule] = []
     relations: dict[tuple[int, int], RuleRelation] = {}
@@ -173,7 +181,7 @@ def _law(
     representatives: list[AnalyzedRule],
     relations: dict[tuple[int, int], RuleRelation],
 ) -> int:
-    """The law among those known that is the same, or a new one, compared to all of them."""
+    """The equal known law, or a new one, compared to all."""
     found_relations = {}
     for number, representative in enumerate(representatives):
         found_relations[number] = compare(side, representative).relation

@@ -1,4 +1,4 @@
-"""Find several traces that one rule forbids and another allows, one for every reason.
+"""Find traces that one rule forbids and another allows, one per reason.
 
 A trace says of most things that they are as usual; what it says otherwise is its reason. A further
 trace shows another reason if it does without something that each of those before it needs, so it is
@@ -30,7 +30,7 @@ MOST_SEARCHES = 12
 def diverse_witnesses(
     forbidding: AnalyzedRule, allowing: AnalyzedRule, first: Trace, most: int
 ) -> tuple[Trace, ...]:
-    """Traces that the first rule forbids and the second one allows, each for another reason.
+    """Traces that only the first rule forbids, each for another reason.
 
     Args:
         forbidding: the rule that forbids them.
@@ -61,7 +61,7 @@ def diverse_witnesses(
 
 
 def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
-    """The declarations with a default that the trace says something else of in some state."""
+    """The declarations whose value in some state differs from their default."""
     return frozenset(
         name
         for (name, items), declaration in subjects_of(vocabulary, trace.objects)

@@ -1,4 +1,4 @@
-"""Compare two rules by the traces that one of them forbids and the other allows."""
+"""Compare two rules by the traces that only one of them forbids."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RuleRelation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"
 
 @dataclass(frozen=True, slots=True)
 class RuleComparison:
-    """How two rules stand to each other.
+    """The relation of two rules to each other.
 
     ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
     one first, then shortest ones for other reasons; ``second_forbids`` those the other way around.
@@ -42,7 +42,7 @@ class RuleComparison:
 
 
 def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleComparison:
-    """Compare two rules, both compiled for the same step if they have bounds in seconds.
+    """Compare two rules, compiled for one step if bounds are in seconds.
 
     Either way ``most`` traces are looked for, each for a reason of its own.
     """
@@ -69,7 +69,10 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 
 
 def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
-    """What the first rule is to the second, given what just one of them forbids, or None."""
+    """The relation of two rules, from the traces that only one forbids.
+
+    An argument is None if there is no such trace.
+    """
     if first_forbids is None:
         return "equal" if second_forbids is None else "laxer"
     return "stricter" if second_forbids is None else "incomparable"
@@ -78,7 +81,7 @@ def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
 def common_types(
     first: Sequence[Variable], second: Sequence[Variable], vocabulary: Vocabulary
 ) -> tuple[str, ...] | None:
-    """The types of objects that both rules speak of, in the order of the first one's variables.
+    """The object types of both rules, in order of the first's variables.
 
     None if the two speak of the same types, or share no objects at all.
     """

@@ -22,7 +22,7 @@ from rulec.value_display import Rows, short_repr
 
 @dataclass(frozen=True, slots=True)
 class RulePair:
-    """A rule that both rulebooks have, as each of them says it, and how the two compare.
+    """A rule of both rulebooks: its two versions and their comparison.
 
     ``machines`` are the rules compiled.
     """
@@ -46,7 +46,7 @@ class RulePair:
 
     @property
     def notes(self) -> tuple[tuple[str, str, str], ...]:
-        """What else is not the same: what it is, and how each rulebook has it."""
+        """Further differences: their subject, and the version of each rulebook."""
         pairs = (
             ("strength", self.first.strength, self.second.strength),
             ("level", self.first.level or "none", self.second.level or "none"),
@@ -59,7 +59,7 @@ class RulePair:
 
 @dataclass(frozen=True, slots=True)
 class OneSided:
-    """A rule that only one of two rulebooks has; ``remark`` is what the other says of that."""
+    """A rule of only one rulebook, with the other's ``remark`` about it."""
 
     rule: Rule
     remark: Remark | None
@@ -67,7 +67,10 @@ class OneSided:
 
 @dataclass(frozen=True, slots=True)
 class SettingPair:
-    """An option or a parameter of both, with two values, as written and in force on the day."""
+    """An option or parameter with a different value in each rulebook.
+
+    The values are given as written and as in force on the day.
+    """
 
     kind: ConstantKind
     name: str
@@ -77,7 +80,7 @@ class SettingPair:
 
 @dataclass(frozen=True, slots=True)
 class RulebookDiff(Rows):
-    """How a rulebook differs from another one."""
+    """The differences between two rulebooks."""
 
     __repr__ = short_repr
 
@@ -90,7 +93,7 @@ class RulebookDiff(Rows):
 
     @property
     def is_none(self) -> bool:
-        """Whether the two forbid the same, as strictly."""
+        """True if both rulebooks forbid the same, equally strictly."""
         alike = all(
             pair.relation == "equal" and pair.first.strength == pair.second.strength
             for pair in self.pairs
@@ -99,7 +102,7 @@ class RulebookDiff(Rows):
 
     @property
     def is_complete(self) -> bool:
-        """Whether every question has been answered."""
+        """True if every question has been answered."""
         return not any(pair.comparison.undecided for pair in self.pairs)
 
     @property
@@ -110,7 +113,10 @@ class RulebookDiff(Rows):
             yield from pair.comparison.second_forbids
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
-        """What one rulebook's rule forbids and the other's allows: both names, and the states."""
+        """Tables of traces that one rulebook's rule forbids and the other's allows.
+
+        Each comes with both names and the states.
+        """
         words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
         names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
         books = self.first.name, self.second.name
@@ -210,7 +216,7 @@ def diff_rulebooks(
 
 
 def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
-    """The rules of a rulebook by name; with patterns, those that one of them matches."""
+    """A rulebook's rules by name, only those matching given patterns."""
     return {
         rule.name: rule
         for rule in book.rules

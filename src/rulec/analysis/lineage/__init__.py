@@ -1,1 +1,1 @@
-"""Trace each rule and constant through the books that it was inherited from."""
+"""Trace rules and constants through the books they were inherited from."""

@@ -1,4 +1,4 @@
-"""Trace all items of a rulebook to the books of its chain that said, changed or dropped them.
+"""Trace a rulebook's items to the books that introduced or changed them.
 
 ``rulebook.overlay`` says what a chain comes to; here is the way there. Both read the same trees,
 and this one expects that the overlay has found no mistake in them.
@@ -28,7 +28,7 @@ from rulec.syntax.tree_printer import print_formula
 
 
 def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
-    """What a chain of rulebooks without mistakes did with each rule and provision.
+    """The lineage of rules and provisions in a chain of sound rulebooks.
 
     Args:
         chain: their trees, the most general first.
@@ -59,7 +59,7 @@ def read_with_lineage(
 
 
 def _used(history: _ChainHistory) -> set[str]:
-    """The provisions that the rules speak of, those included that provisions speak of in turn."""
+    """The provisions that rules use, directly or through other provisions."""
     used: set[str] = set()
     open_: list[tree.Item] = [rule for steps in history.rules.values() if (rule := steps[-1].rule)]
     while open_:
@@ -86,7 +86,10 @@ _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 @dataclass(slots=True)
 class _ChainHistory:
-    """What has happened so far; of a provision with the book and its number in the chain."""
+    """The history of a chain so far.
+
+    Of a provision it has the book and the book's number in the chain.
+    """
 
     rules: dict[str, list[LineageStep]] = field(default_factory=dict)
     provisions: dict[str, list[tuple[_Given, str, int]]] = field(default_factory=dict)
@@ -187,7 +190,7 @@ def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> 
 
 
 def _current(given: Sequence[tuple[_Given, str, int]], at: str) -> int | None:
-    """The one of the nearest book that is in force; None if there is none."""
+    """The index of the nearest book's item in force, or None."""
     good = [index for index, (item, _, _) in enumerate(given) if in_force(_when(item), at)]
     return max(good, key=lambda index: (given[index][2], index), default=None)
 

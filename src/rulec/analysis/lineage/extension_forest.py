@@ -1,4 +1,4 @@
-"""Rulebooks that build upon one another, as a forest: below each one those that extend it."""
+"""Rulebooks as a forest: below each one those that extend it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ class ExtensionTree:
 
 
 def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]:
-    """Every rulebook once, by its name; the roots extend none, or one that is not among them.
+    """Every rulebook once, by name, below the one that it extends.
+
+    The roots extend none, or one that is not among them.
 
     Rulebooks that go round in a circle hang below the first of them by name.
     """

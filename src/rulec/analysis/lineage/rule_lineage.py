@@ -1,4 +1,4 @@
-"""The history of rules and constants in a chain of rulebooks, as data."""
+"""The history of rules and constants in a chain of rulebooks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ ConstantKind = Literal["option", "parameter", "definition"]
 
 @dataclass(frozen=True, slots=True)
 class BookHeader:
-    """A rulebook of a family: what it is, the base name of its file, and what it builds upon."""
+    """A rulebook of a family: its title, law, file and base.
+
+    ``file`` is the base name.
+    """
 
     name: str
     title: str = ""
@@ -42,7 +45,7 @@ class LineageStep:
 
 @dataclass(frozen=True, slots=True)
 class RuleHistory:
-    """A rule, or a topic that a book is silent on, and what was done with it in order."""
+    """A rule, or a silent topic, and its changes in order."""
 
     __repr__ = short_repr
 
@@ -56,24 +59,26 @@ class RuleHistory:
 
     @property
     def rule(self) -> tree.RuleItem | None:
-        """The rule as it is in the end; None if it is gone."""
+        """The final version of the rule; None if it is gone."""
         return self.last.rule
 
     @property
     def cited_by(self) -> str:
-        """The book whose law its ``cite`` speaks of: the last that has changed it."""
+        """The book that last declared the rule or changed its ``cite``."""
         saying = [step for step in self.steps if step.deed == "declared" or "cite" in step.clauses]
         return saying[-1].book if saying else ""
 
     def before(self, book: str) -> tree.RuleItem | None:
-        """The rule that a book has inherited; None if it has inherited none."""
+        """The rule that a book has inherited, or None."""
         earlier = [step for step in self.steps if step.book != book]
         return earlier[-1].rule if earlier else None
 
 
 @dataclass(frozen=True, slots=True)
 class ConstantValue:
-    """A value or meaning that a book gave, as written; ``current`` if it is the one that counts.
+    """A value or meaning that a book gave a constant, as written.
+
+    It is ``current`` if it is the one that counts.
 
     ``note`` is the comment beside it.
     """
@@ -88,7 +93,7 @@ class ConstantValue:
 
 @dataclass(frozen=True, slots=True)
 class ConstantHistory:
-    """An option, a parameter or a definition with all that it was given, in order.
+    """An option, parameter or definition with all its values in order.
 
     ``head`` is how it is used: its name, with a definition's parameters. ``used``: some rule speaks
     of it, or something does that a rule speaks of.
@@ -103,7 +108,7 @@ class ConstantHistory:
 
 @dataclass(frozen=True, slots=True)
 class BookLineage(Rows):
-    """A chain of rulebooks, the most general first, and what became of everything in it."""
+    """A chain of rulebooks, the most general first, with all histories."""
 
     __repr__ = short_repr
 

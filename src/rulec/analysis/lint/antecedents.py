@@ -18,14 +18,14 @@ AntecedentKind = Literal["implies", "phase", "when", "unless"]
 
 @dataclass(frozen=True, slots=True)
 class Antecedent:
-    """A part of a rule that matters only if it holds at some time."""
+    """A condition without which a part of a rule is vacuous."""
 
     kind: AntecedentKind
     formula: Formula
 
 
 def antecedents(rule: Rule) -> Iterator[Antecedent]:
-    """The rule's condition and exceptions, the left side of what it implies, the first phase.
+    """The antecedents of a rule: condition, exceptions, left sides, first phase.
 
     What an option has switched off is not among them.
     """
@@ -35,7 +35,7 @@ def antecedents(rule: Rule) -> Iterator[Antecedent]:
 
 
 def has_constant(formula: Formula) -> bool:
-    """Whether a part is true or false for good, as options are."""
+    """True if some part has one value for good, like an option."""
     match formula:
         case Constant():
             return True

@@ -19,7 +19,7 @@ from rulec.witnesses.undecided import UndecidedError
 def conflicts(
     names: Sequence[str], sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
 ) -> Iterator[Diagnostic]:
-    """Pairs of hard rules that cannot both be kept, then groups without such a pair."""
+    """Pairs of hard rules in conflict, then groups without such a pair."""
     conflicting: list[frozenset[str]] = []
     for pair in combinations(names, 2):
         if not are_related(sides[pair[0]], sides[pair[1]]):
@@ -57,7 +57,7 @@ def _holds_one(conflicting: Sequence[frozenset[str]], group: Sequence[AnalyzedRu
 
 
 def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
-    """A conflict in a group, as far as it is small enough to look at."""
+    """A conflict within a group of three or more; None if undecided."""
     if len(group) < 3:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Rules that cannot hold together from some state on, though each of them alone could."""
+"""Rules that from some state on cannot hold together, only alone."""
 
 from __future__ import annotations
 
@@ -24,14 +24,20 @@ from rulec.witnesses.undecided import UndecidedError
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """After ``trace`` every rule could be kept, but not all; None: they never hold together."""
+    """A trace after which each rule could be kept, but not all.
+
+    If it is None, the rules never hold together.
+    """
 
     trace: Trace | None
 
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """The steps of a node that lead to one target and satisfy the same rules if the trace ends."""
+    """The steps from a node to one target that satisfy equal rules.
+
+    The rules are those that are satisfied if the trace ends there.
+    """
 
     target: ProductState
     satisfied: frozenset[int]
@@ -39,7 +45,7 @@ class _Step:
 
 
 def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
-    """A shortest trace after which the rules cannot all be kept any more, if there is one.
+    """A shortest trace after which not all rules can be kept.
 
     Its objects are as few as the rules can speak of, each of one for its variables. The rules are
     of one rulebook. Raises UndecidedError where there is too much to search.
@@ -93,7 +99,7 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
 
 
 def are_related(first: AnalyzedRule, second: AnalyzedRule) -> bool:
-    """Whether two rules read something in common, or something that axioms connect."""
+    """True if two rules share an input or are connected by axioms."""
     reached = set(declarations_read(first.rule))
     groups = [set(names_in(axiom.formula)) for axiom in first.axioms]
     while joined := [group for group in groups if group & reached and not group <= reached]:
@@ -104,7 +110,7 @@ def are_related(first: AnalyzedRule, second: AnalyzedRule) -> bool:
 def common_objects(
     heads: Sequence[Sequence[Variable]], vocabulary: Vocabulary
 ) -> Mapping[str, str]:
-    """As few objects as every one of these rules has some to speak of."""
+    """The fewest objects that give every rule one to speak of."""
     objects: dict[str, str] = {}
     for variables in heads:
         free = list(objects)
@@ -134,7 +140,7 @@ Graph = Mapping[ProductState, Sequence[_Step]]
 def _explored(
     monitors: Sequence[MealyMonitor], owners: Sequence[int], letters: Sequence[JointLetter]
 ) -> Graph:
-    """The joint states that can be reached, in breadth-first order; a rejecting sink ends it."""
+    """The reachable joint states in breadth-first order; a rejecting sink ends it."""
     start: ProductState = (0,) * len(monitors)
     graph: dict[ProductState, list[_Step]] = {}
     waiting = [start]
@@ -170,14 +176,14 @@ def _explored(
 def _alone(
     monitors: Sequence[MealyMonitor], places: Sequence[int], letters: Sequence[JointLetter]
 ) -> frozenset[ProductState]:
-    """The states of one rule's machines from which it can still be kept."""
+    """The states of one rule's machines from which it can be kept."""
     own = list(dict.fromkeys(tuple(letter[place] for place in places) for letter in letters))
     graph = _explored(monitors, [0] * len(monitors), own)
     return _hopeful(graph, frozenset([0]))
 
 
 def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
-    """The states from which some way on, of one step or more, satisfies everyone."""
+    """The states from which a word, not empty, satisfies every rule."""
     before: dict[ProductState, list[ProductState]] = {}
     for node, steps in graph.items():
         for step in steps:
@@ -201,7 +207,10 @@ def _shortest(
     places: Sequence[Sequence[int]],
     everyone: frozenset[int],
 ) -> tuple[JointLetter, ...] | None:
-    """A shortest word, empty perhaps, after which each rule could be kept but not all."""
+    """A shortest word after which only some rules can be kept.
+
+    It may be empty.
+    """
 
     def each_could(node: ProductState, satisfied: frozenset[int]) -> bool:
         return all(

@@ -1,4 +1,4 @@
-"""Decide whether a rule can be violated, can be kept, and is implied by others."""
+"""Decide violability, satisfiability and implication of rules."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ MOST_JOINT_STATES = 5_000
 
 
 def can_be_violated(analyzed: AnalyzedRule) -> bool:
-    """Whether some trace violates the rule. Raises UndecidedError."""
+    """True if some trace violates the rule.
+
+    Raises UndecidedError.
+    """
     return counterexample(analyzed, []) is not None
 
 
 def can_be_kept(analyzed: AnalyzedRule) -> bool:
-    """Whether some trace, with objects for the rule to speak of, keeps it.
+    """True if some trace, with objects for the rule, keeps it.
 
     Raises UndecidedError.
     """
@@ -38,7 +41,9 @@ def can_be_kept(analyzed: AnalyzedRule) -> bool:
 
 
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
-    """One of the others, or few of them together, that forbid all that a rule forbids; else none.
+    """One or few other rules that forbid all that a rule forbids.
+
+    Empty if there are none.
 
     The others are taken together as far as their automata stay small; so more of them together may
     imply it without being found. Raises UndecidedError.
@@ -58,7 +63,7 @@ def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[
 
 
 def small_premises(analyzed: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:
-    """Those of the others whose automata stay small together with that of the rule."""
+    """The other rules whose automata stay small in product with the rule's."""
     types = sorted(variable.type for variable in analyzed.rule.variables)
     chosen: list[AnalyzedRule] = []
     for premise in sorted(related, key=lambda rule: len(rule.rule.machine.successors)):

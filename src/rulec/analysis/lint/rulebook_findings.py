@@ -1,4 +1,4 @@
-"""Diagnostics, with traces, of rules that are vacuous, redundant, in conflict, or weaker."""
+"""Diagnostics, with traces, of vacuous, redundant, conflicting or weaker rules."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def rulebook_findings(
     tell: Callable[[float], object] = lambda _: None,
     extends: Span | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """All findings about a rulebook, those of each rule together, then those of several.
+    """All findings about a rulebook: by rule, then about several rules.
 
     Args:
         book: the rulebook.
@@ -127,7 +127,7 @@ def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
 def _needless(
     names: Sequence[str], rules: dict[str, Rule], sides: dict[str, AnalyzedRule]
 ) -> Iterator[Diagnostic]:
-    """Rules that add nothing to the others that are left when they are all left out."""
+    """Rules that can all be left out together without loss."""
     left = list(names)
     diagnostics: list[Diagnostic] = []
     for name in reversed(names):
@@ -171,7 +171,7 @@ def _implied(
 
 
 def _ours(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
-    """The finding about an inherited rule, at the line by which a rulebook inherits it."""
+    """The finding about an inherited rule, at the line that inherits it."""
     if extends is None or diagnostic.place is None:
         return diagnostic
     rule = Label(diagnostic.place, "the rule is inherited from here")
