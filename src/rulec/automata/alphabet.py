@@ -1,4 +1,4 @@
-"""Letters of a rule: the values of what it reads, in mixed radix.
+"""Letters of a rule: values of its reads, in mixed radix.
 
 An enumeration has exactly one value, a number is on one side of each threshold.
 """
@@ -30,12 +30,12 @@ NOT, AND, OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
 
 
 def propositions_of(formula: Formula) -> tuple[Proposition, ...]:
-    """The formula's atoms and comparisons, each once, in the order of their first mention."""
+    """Distinct atoms and comparisons of a formula, in order of first mention."""
     return tuple(dict.fromkeys(atoms_of(formula)))
 
 
 def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
-    """The reads of a formula, in the order in which it first mentions them.
+    """Reads of a formula, in order of first mention.
 
     Comparisons of the same terms read one number.
     """
@@ -75,7 +75,7 @@ def _position(threshold: Threshold) -> tuple[object, bool]:
 
 
 def _sides(comparison: Comparison) -> tuple[Threshold | None, ...]:
-    """The thresholds that decide it: for ``=`` and ``!=`` the one below its limit, then above.
+    """Thresholds that decide a comparison: below, then above its limit.
 
     A count is a whole number, 0 or more: its thresholds are whole numbers above 0 that are passed
     by themselves; None is a threshold that every count passes.
@@ -122,7 +122,7 @@ def count_letters(reads: Iterable[Read | NumberRead]) -> int:
 def letters_with(
     reads: Sequence[Read | NumberRead], propositions: Iterable[Proposition]
 ) -> dict[Proposition, int]:
-    """For every proposition the set of letters in which it is true, as the bits of an integer.
+    """For every proposition the bit set of letters that satisfy it.
 
     ``reads`` are what a formula of these propositions reads.
     """
@@ -158,12 +158,12 @@ def _digits_with(proposition: Proposition, read: Read | NumberRead) -> tuple[int
 
 
 def _repeat(pattern: int, period: int, total: int) -> int:
-    """``pattern`` once every ``period`` bits, up to ``total`` bits, a multiple of the period."""
+    """Repeat a bit pattern every ``period`` bits, up to ``total`` bits."""
     return pattern * (((1 << total) - 1) // ((1 << period) - 1))
 
 
 def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposition]) -> Formula:
-    """The formula that holds of these propositions at any instant, whatever the trace.
+    """Formula that holds of these propositions in every state of every trace.
 
     Of an enumeration's values exactly one is true; of comparisons of one number those that it
     passes.
@@ -221,7 +221,7 @@ def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator
 
 
 def joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
-    """The formulas, one at least, under one operator, as a tree no deeper than it has to be."""
+    """Join one or more formulas by one operator in a balanced tree."""
     if len(formulas) == 1:
         return formulas[0]
     half = len(formulas) // 2
@@ -240,7 +240,7 @@ def names_of(propositions: Iterable[Proposition]) -> dict[Proposition, str]:
 
 
 def fresh_name(text: str, taken: Container[str]) -> str:
-    """The text itself, or with the first number, from 2 on, that makes a new name of it."""
+    """Make a name unique by adding a number if needed."""
     name = text
     numbers = count(2)
     while name in taken:

@@ -1,4 +1,4 @@
-"""Axioms of a rulebook, instantiated for the objects that a rule speaks of.
+"""Axioms of a rulebook, instantiated for the variables of a rule.
 
 A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
 that they fit. Facts that count are no part of this: how many objects there are, and which, is
@@ -41,7 +41,7 @@ from rulec.vocabulary.object_choices import choices
 
 @dataclass(frozen=True, slots=True)
 class AxiomInstance:
-    """A fact, said of a rule's variables: ``variables`` are those in the places of its own."""
+    """Axiom instantiated for a rule's ``variables``, in order of its own."""
 
     fact: Axiom
     variables: tuple[str, ...]
@@ -51,7 +51,7 @@ class AxiomInstance:
 def axiom_instances(
     variables: Sequence[Variable], axioms: Iterable[Axiom], vocabulary: Vocabulary
 ) -> tuple[AxiomInstance, ...]:
-    """Every fact in every way to say it of distinct variables of its types, or of subtypes.
+    """Instances of every axiom for distinct variables of its types or subtypes.
 
     Facts without variables are said once, facts that count are left out.
     """
@@ -68,7 +68,7 @@ def axiom_instances(
 
 
 def counts(formula: Formula) -> bool:
-    """Whether it speaks of how many objects there are, or whether there are some."""
+    """Tell whether a formula contains a count of objects."""
     return any(
         isinstance(term, Count)
         for atom in atoms_of(formula)
@@ -97,7 +97,7 @@ class AxiomGroup:
 def axiom_groups(
     propositions: Iterable[Proposition], instances: Iterable[AxiomInstance], vocabulary: Vocabulary
 ) -> tuple[AxiomGroup, ...]:
-    """The facts in groups that do not bear on each other, for a rule of these propositions."""
+    """Independent groups of axioms, for a rule of these propositions."""
     every = tuple(propositions)
     groups = []
     for group in linked(instances):
@@ -111,7 +111,7 @@ def axiom_groups(
 
 
 def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
-    """The formula that holds of all propositions of some formulas without any axioms."""
+    """Knowledge about all propositions of some formulas, without any axioms."""
     if not formulas:
         return Constant(True)
     spoken = joined(AND, formulas)
@@ -133,7 +133,7 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
 
 
 def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[Formula]) -> int:
-    """The letters of these reads in which all that is known holds, as the bits of an integer.
+    """Bit set of the letters in which all known formulas hold.
 
     ``known`` speaks of what is read and of one state, without temporal operators.
     """

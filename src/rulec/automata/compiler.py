@@ -1,4 +1,4 @@
-"""A rulebook into a compiled rulebook, with Spot kept in a process of its own.
+"""Compiler from a rulebook to monitors, with Spot in another process.
 
 A formula's automaton can be doubly exponential in it. Spot then uses up memory or ends its process;
 so it runs beside this one, with bounds on processor time and memory.
@@ -41,7 +41,7 @@ main()
 
 @dataclass(frozen=True, slots=True)
 class RuleFormula:
-    """A rule's formula over steps; ``step_s`` is the step, None if it is the same for any."""
+    """Formula with bounds in steps of ``step_s`` s (None for any)."""
 
     rule: Rule
     formula: Formula
@@ -50,7 +50,7 @@ class RuleFormula:
 
 @dataclass(frozen=True, slots=True)
 class RulebookFormulas:
-    """The formulas of a rulebook's rules for traces of one step, and why others have none.
+    """Formulas of a rulebook's rules for one step, and problems of others.
 
     ``step_s`` is None if each rule's step is that of its own examples.
     """
@@ -193,7 +193,7 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
 
 
 def _step(rule: Rule, step_s: Fraction | None) -> Fraction | None:
-    """The step that the rule is compiled for; None if it is the same for any."""
+    """Step (s) that a rule is compiled for; None if any fits."""
     if not has_seconds(rule.formula):
         return None
     return rule.step_s if step_s is None else step_s

@@ -61,7 +61,7 @@ CONTRADICTORY_AXIOMS = Code(
 
 
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    """R0401, R0402 or R0409; ``failed`` is None if it was the end of Spot's process.
+    """Error R0401, R0402 or R0409; ``failed`` is None if Spot's process ended.
 
     Raises RuntimeError for a bug.
     """

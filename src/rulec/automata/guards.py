@@ -1,4 +1,4 @@
-"""Guards: the letters that lead from state to state of a machine, in few conditions.
+"""Guards of a monitor's edges: sets of letters as few cubes.
 
 A machine's letters are many; those that lead one way are covered by few cubes. A cube allows some
 digits of every read and is all letters whose digits it allows: the two-level minimisation of
@@ -19,7 +19,7 @@ Cube = tuple[frozenset[int], ...]
 
 @dataclass(frozen=True, slots=True)
 class GuardedEdge:
-    """The steps from ``source`` to ``target`` after which an ending trace gets one verdict.
+    """Guarded edge of a monitor, with one verdict for ending traces.
 
     They are the letters of ``cubes`` together, but for those that no state can have. Of the edges
     that leave a state one may be ``otherwise``: the one that is described best as what the others
@@ -34,7 +34,7 @@ class GuardedEdge:
 
 
 def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
-    """All edges but those of the states in which the verdict is final, state by state."""
+    """Guarded edges of a monitor by source state, except from sinks."""
     cover = _Covers(machine)
     guarded_edges: list[GuardedEdge] = []
     for source, row in enumerate(machine.successors):
@@ -68,7 +68,7 @@ def _with_otherwise(leaving: Sequence[GuardedEdge], sizes: Sequence[int]) -> Ite
 
 
 class _Covers:
-    """Sets of a machine's letters as the bits of integers, and their smallest covers."""
+    """Bit sets of a monitor's letters, and small covers of them."""
 
     def __init__(self, machine: MealyMonitor) -> None:
         self.sizes = [read.size for read in machine.reads]
@@ -94,7 +94,7 @@ class _Covers:
         self._orders = [*turns, *(turn[::-1] for turn in turns)]
 
     def cubes(self, onset: int) -> tuple[Cube, ...]:
-        """Cubes whose union is ``onset`` and impossible letters at most, none of them needless."""
+        """Irredundant cubes that cover ``onset``, and impossible letters at most."""
         if onset not in self._known:
             chosen: dict[Cube, int] = {}
             remaining = onset
@@ -126,7 +126,7 @@ class _Covers:
         return letters
 
     def _prime(self, letter: int, onset: int, order: Sequence[int]) -> Cube:
-        """A largest cube within ``onset`` around a letter, widened read by read in this order."""
+        """Largest cube in ``onset`` around a letter, widened in ``order``."""
         cube: list[frozenset[int]] = []
         for size in self.sizes:
             letter, digit = divmod(letter, size)
@@ -152,7 +152,7 @@ def _bits(letters: Sequence[int], total: int) -> int:
 
 
 def _needed(chosen: dict[Cube, int], onset: int) -> Iterator[Cube]:
-    """The cubes without those that the others cover, the last chosen tried first."""
+    """Drop cubes that the other cubes cover, last chosen first."""
     kept = dict(chosen)
     for cube in reversed(chosen):
         others = 0

@@ -1,4 +1,4 @@
-"""A rule as a table: what it reads of a state, and what each letter does to it."""
+"""Mealy monitor of a rule: its reads, letters, successors and outputs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ IMPOSSIBLE = -1
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """One thing that a rule reads of every state: an enumeration or a signal.
+    """Enumeration or signal that a rule reads in every state.
 
     ``name`` is the declaration, ``variables`` the rule's variables that it is asked about.
     ``values`` are the enumeration's values that the rule tells apart, none for a signal.
@@ -33,7 +33,7 @@ class Read:
         return len(self.values) + self.others if self.values else 2
 
     def digit(self, value: bool | float | str) -> int:
-        """The digit of a value: its index in ``values``, behind them for all others; 0 or 1."""
+        """Digit of a value: 0 or 1, or its index, others last."""
         if not self.values:
             return int(bool(value))
         return self.values.index(str(value)) if value in self.values else len(self.values)
@@ -41,7 +41,7 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """A place on the number line that a rule distinguishes the sides of.
+    """Limit that splits the values of a number into two sides.
 
     Passed by numbers above ``limit``; if ``inclusive``, by the limit itself, too.
     """
@@ -52,7 +52,7 @@ class Threshold:
 
 @dataclass(frozen=True, slots=True)
 class NumberRead:
-    """A number that a rule reads of every state: a sum of coefficients times terms.
+    """Linear combination of numbers that a rule reads in every state.
 
     ``terms`` are those of ``Comparison``. The digit of a number is how many of the ``thresholds``
     it passes; they are in ascending order (where limits are equal, the inclusive one first).
@@ -103,7 +103,7 @@ class MealyMonitor:
 def sink_of(
     successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[bool]], *, verdict: bool
 ) -> int | None:
-    """The state that gives ``verdict`` whatever comes; a minimal machine has at most one."""
+    """Sink of a minimal machine with constant ``verdict``; None if absent."""
     for state, row in enumerate(successors):
         if set(row) == {state} and all(value is verdict for value in outputs[state]):
             return state

@@ -17,7 +17,7 @@ _EFFORT = 200_000
 
 
 def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> bool:
-    """Whether the machine judges pseudo-random words of possible letters as the definitions do.
+    """Compare a monitor with the semantics on pseudo-random possible words.
 
     Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
     """
@@ -40,7 +40,7 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
 
 
 def _bounds(formula: Formula) -> list[int]:
-    """The numbers of steps that it makes a difference by, and those around them."""
+    """Bounds of a formula in steps, and the numbers next to them."""
     ranges = {range_of(operation) for operation in operations_of(formula)}
     numbers = {number for limits in ranges for number in limits if number is not None}
     return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})

@@ -1,4 +1,4 @@
-"""A process of its own that asks Spot: jobs come in on standard input, tables go out on the other.
+"""Worker process for Spot: jobs on standard input, tables on standard output.
 
 It may use bounded time and memory only, and may die of either; the caller sees that it did.
 """
@@ -44,7 +44,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class WorkerGreeting:
-    """The worker's first word: Spot's version, or None and why Spot can't be loaded."""
+    """First message of a worker: Spot's version, or None and a ``problem``."""
 
     spot: str | None
     problem: str = ""
@@ -60,7 +60,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """No machine: too many ``letters``, too much ``memory``, the automaton failed its ``check``.
+    """Reason for no monitor: ``letters``, ``memory``, ``check``, ``facts`` or ``bug``.
 
     ``facts``: those of ``contradiction`` cannot hold together. ``bug`` is anything that nobody
     thought of, with the traceback.
@@ -127,7 +127,7 @@ def _answer(job: Job) -> Done | Failed:
 
 
 def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
-    """Facts of the group that cannot hold together, each of them needed for that."""
+    """Minimal set of a group's axioms that contradict each other."""
     from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
     needed = group

@@ -1,4 +1,4 @@
-"""A rulebook's automata for traces of any step, each made when its step is first met."""
+"""Compilation of a rulebook for any step, on first use."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_STEPS = 100
 
 
 class StepCompiler:
-    """Call it with a step (s) for the rulebook compiled for traces of that step.
+    """Compiler of a rulebook: call it with a step (s).
 
     A bound in seconds is so many steps, so a rule that has one needs a machine for each step; one
     that has none is compiled once. Pickled, it is the rulebook alone.
@@ -51,7 +51,7 @@ class StepCompiler:
         return answer
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
-        """Rules, or all of them, each for the step of its examples. Raises RulecError."""
+        """Compile rules for their examples' steps, all by default. Raises RulecError."""
         return self._compiled(self.rulebook.rules if rules is None else rules, None)
 
     def built(self, formulas: RulebookFormulas) -> CompiledRulebook:

@@ -6,7 +6,7 @@ from rulec.automata.mealy_monitor import MealyMonitor
 
 
 def stutter_invariant(machine: MealyMonitor) -> bool:
-    """Whether a word's verdict stays when its letters are repeated (Lamport's stuttering).
+    """Tell whether repeated letters never change a verdict (Lamport's stuttering).
 
     A letter read once more must change neither the verdict, if the word ends with it, nor what
     becomes of any word that goes on. In a minimal machine no two states have the same future, so

@@ -18,7 +18,7 @@ Output = TypeVar("Output")
 
 @dataclass(frozen=True, slots=True)
 class TableEdge:
-    """An edge: the letters on it (the bits of an integer), where it leads, its colours (bits)."""
+    """Edge of an automaton; ``letters`` and ``colours`` are bit sets."""
 
     letters: int
     target: int
@@ -76,7 +76,7 @@ def build_machine(
 
 
 def _letter_classes(automaton: DeterministicAutomaton, met: int) -> list[int]:
-    """The coarsest partition of these letters that every edge respects, as sets of bits."""
+    """Coarsest partition of letters that every edge respects, as bit sets."""
     classes = [met]
     for letters in {edge.letters for edges in automaton.edges for edge in edges}:
         refined = []
@@ -134,7 +134,7 @@ def _loop_verdicts(
 def minimise(
     successors: list[list[int]], outputs: list[list[Output]], initial: int
 ) -> tuple[list[list[int]], list[list[Output]]]:
-    """Merge states that no word tells apart; number them from ``initial`` in breadth-first order.
+    """Merge equivalent states; number the rest in breadth-first order from ``initial``.
 
     Moore's partition refinement, with the outputs (verdicts) as what tells apart.
     """

@@ -1,4 +1,4 @@
-"""Numbers as they are written, and which of a rule's thresholds they pass."""
+"""Numbers as decimals, and the thresholds that they pass."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXACT_IN_FLOATS = 1 << 53
 
 
 def exact(value: Fraction | float) -> Fraction:
-    """The number that is written: 0.1 is a tenth, not the binary fraction next to it."""
+    """Exact value of a decimal: 0.1 is a tenth, not a float."""
     return _decimal(value) if isinstance(value, float) else Fraction(value)
 
 
@@ -29,7 +29,7 @@ def _decimal(value: float) -> Fraction:
 
 
 def floor_of(threshold: Threshold) -> float:
-    """The smallest float whose decimal passes a threshold; infinity if no finite one does.
+    """Smallest float whose decimal passes a threshold; infinity if none does.
 
     Decimals of floats are in the order of the floats, so these and no others are at least it.
     """

@@ -1,4 +1,4 @@
-"""Coverage of a rule by its examples: edges of its monitor, and values of its atoms."""
+"""Coverage of a rule by examples: monitor edges and truth values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rulec.witnesses.coverage_witness import (
 
 @dataclass(frozen=True, slots=True)
 class UncoveredEdge:
-    """An edge of a rule's machine that no example takes, with a shortest example that would.
+    """Monitor edge that no example takes, with a shortest example for it.
 
     The edge leads from state ``source`` to ``target``; ``accepted`` is what the rule does with the
     example.
@@ -39,7 +39,7 @@ class UncoveredEdge:
 
 @dataclass(frozen=True, slots=True)
 class RuleCoverage:
-    """The edges that a rule's examples take, and the values that they see.
+    """Edges and truth values of a rule that its examples cover.
 
     An edge is a state of its machine and a class of letters; the edges of the two states in which
     the verdict is settled for good do not count, nor does what no state of the world can be. The
@@ -66,7 +66,7 @@ class RuleCoverage:
 
 
 def percent(rules: Iterable[RuleCoverage]) -> float:
-    """The part of all edges and values that is covered, from 0 to 100; 100 if there are none."""
+    """Percentage of edges and values covered; 100 if there are none."""
     rules = list(rules)
     total = sum(rule.total for rule in rules)
     return 100.0 * sum(rule.covered for rule in rules) / total if total else 100.0
@@ -154,7 +154,7 @@ def _taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, in
 
 
 def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
-    """For every state that can be reached a shortest word of letter classes that leads to it."""
+    """Shortest word of letter classes to each reachable state."""
     paths: dict[int, tuple[int, ...]] = {0: ()}
     waiting = [0]
     for state in waiting:

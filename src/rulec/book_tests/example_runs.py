@@ -42,7 +42,7 @@ class ExampleOutcome:
 
     @property
     def passed(self) -> bool:
-        """Whether the rule does what the example says."""
+        """Tell whether the rule's verdict is the one that the example claims."""
         return self.accepted == self.example.accepts
 
     @property
@@ -53,7 +53,7 @@ class ExampleOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ExampleRun(Rows):
-    """A rulebook with its machines, the warnings about it, and how its examples came out.
+    """Compiled rulebook with its warnings and the outcomes of its examples.
 
     ``pattern`` is what chose among them; None if all were run.
     """
@@ -86,7 +86,7 @@ def run_rulebook_examples(
     warnings: tuple[Diagnostic, ...] = (),
     pattern: str | None = None,
 ) -> ExampleRun:
-    """Run the examples of all rules, or those whose ``RULE`` or ``RULE/LABEL`` is like a pattern.
+    """Run examples, all or those whose ``RULE`` or ``RULE/LABEL`` match.
 
     An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
     warnings are passed on.
@@ -148,7 +148,7 @@ def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> Rule
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
-    """The example as a trace whose objects are the rule's variables and those that it adds."""
+    """Trace of an example, with the rule's variables and further objects."""
     states = []
     for mentioned in example.states:
         state: dict[str, Any] = {}
@@ -165,14 +165,14 @@ def example_trace(rule: Rule, example: Example) -> Trace:
 
 
 def own_names(rule: Rule) -> dict[str, str]:
-    """The binding of its examples: every variable stands for the object of its own name."""
+    """Binding of examples: every variable to the object of its name."""
     return {variable.name: variable.name for variable in rule.variables}
 
 
 def example_warnings(
     rulebook: Rulebook, compiled: Callable[[Sequence[Rule]], CompiledRulebook]
 ) -> list[Diagnostic]:
-    """The warnings about all such examples; ``compiled`` compiles rules for their examples' steps.
+    """Warnings about failing examples; ``compiled`` compiles rules for their steps.
 
     Raises RulecError.
     """
@@ -185,7 +185,7 @@ def example_warnings(
 
 
 def example_warning(outcome: ExampleOutcome) -> Diagnostic:
-    """The warning (R0406) about an example that comes out otherwise than it says."""
+    """Warning (R0406) about an example that fails."""
     rule, example = outcome.rule, outcome.example
     name = f"`{example.label}`" if example.label else f"number {outcome.number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")

@@ -12,7 +12,7 @@ from rulec.witnesses.coverage_witness import possible_letters
 
 
 def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
-    """A warning (R0408) for each rule whose examples show one verdict only, though it has both.
+    """Warnings (R0408) about rules whose examples show one of two verdicts.
 
     Rules with an example that fails are left out, for that has to be mended first. So is every rule
     where a pattern chose among the examples.
@@ -32,7 +32,7 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
 
 
 def verdicts(machine: MealyMonitor) -> set[bool]:
-    """The verdicts that a rule has for some trace: accepted (True), rejected (False), or both."""
+    """Verdicts that a rule can have: accepted (True), rejected (False), or both."""
     symbols = sorted(possible_letters(machine))
     reached_verdicts: set[bool] = set()
     waiting = [0]

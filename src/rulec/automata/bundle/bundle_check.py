@@ -31,7 +31,7 @@ from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabula
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
-    """The compiled rulebook of a sound file. ValueError with what is wrong otherwise."""
+    """Compiled rulebook of a sound file; ValueError for any other."""
     vocabulary = Vocabulary(
         read.vocabulary.name,
         {name: ObjectType(name, parent) for name, parent in read.vocabulary.types.items()},
@@ -145,7 +145,7 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
 
 
 def _step(rule: schema.BundleRule, formula: Formula) -> Fraction | None:
-    """The step of traces that it is for, without which bounds in seconds are no numbers."""
+    """Checked step of a compiled rule; None if it has no seconds."""
     needed = has_seconds(formula)
     _require(needed is (rule.step_s is not None), f"rule `{rule.name}` is for a wrong step")
     if rule.step_s is None:

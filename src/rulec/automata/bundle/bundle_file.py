@@ -27,7 +27,7 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
-    """The file's text: indented, with every row of numbers on a line of its own."""
+    """Text of a compiled rulebook's file, one row of numbers per line."""
     vocabulary = rulebook.vocabulary
     file = schema.BundleFile(
         **{name: getattr(rulebook, name) for name in schema.RULEBOOK_FIELDS},
@@ -155,7 +155,7 @@ def read_compiled(path: Path) -> CompiledRulebook:
 
 
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
-    """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` into a folder, made if need be.
+    """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
     All of them are written before the first appears, so that they fit together.
 

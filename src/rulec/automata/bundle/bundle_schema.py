@@ -1,4 +1,4 @@
-"""The fields of a compiled rulebook's file, version 3, in their order (see docs/compiled.md)."""
+"""Fields of a compiled rulebook's file, version 3 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class AxiomEntry(_Strict):
 
 
 class BundleHeader(msgspec.Struct):
-    """The fields that say whether it is such a file, and of which version."""
+    """Fields that tell a compiled rulebook's format and version."""
 
     format: Literal["rulec compiled rulebook"]
     version: int

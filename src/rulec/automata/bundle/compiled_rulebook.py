@@ -63,7 +63,7 @@ class CompiledAxiom:
 
 @dataclass(frozen=True, slots=True)
 class CompiledRulebook(Rows):
-    """The rules of a rulebook as machines, with the vocabulary that their traces are written in.
+    """Compiled rules of a rulebook, with the vocabulary of their traces.
 
     ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
     compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
@@ -117,7 +117,7 @@ class CompiledRulebook(Rows):
         return replace(compiled, rules=tuple(r for r in compiled.rules if r.name in kept))
 
     def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
-        """These rules at that step if they can be compiled again, else as they are."""
+        """Rulebook recompiled for a step (s) if possible, else this one unchanged."""
         return self if self.recompile is None else self.at_step(step_s)
 
     def rows(self) -> list[dict[str, Any]]:
@@ -138,7 +138,7 @@ class CompiledRulebook(Rows):
 def check_step(
     rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
 ) -> None:
-    """Refuse a step that a rule with bounds in seconds was not compiled for.
+    """Refuse a step other than the one a rule was compiled for.
 
     Raises RulecError R0507; ``what`` names in it whose step this is.
     """

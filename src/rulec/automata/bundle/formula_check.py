@@ -1,4 +1,4 @@
-"""Checks that a compiled formula speaks of its vocabulary and its variables alone."""
+"""Checks of a compiled formula against its vocabulary and its variables."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from rulec.vocabulary import Quantity as DeclaredQuantity
 
 
 def problem_in(formula: Formula, vocabulary: Vocabulary, variables: Set[str]) -> str | None:
-    """The first problem, as a clause that goes on from the rule's name; None if there is none."""
+    """First problem of a formula as a clause; None if sound."""
     return next(_problems(formula, vocabulary, variables, counted=False), None)
 
 
 def _problems(
     formula: Formula, vocabulary: Vocabulary, variables: Set[str], *, counted: bool
 ) -> Iterator[str]:
-    """The problems of a formula, in the body of a count if ``counted``."""
+    """Problems of a formula; ``counted`` says that it is a count's body."""
     waiting = [formula]
     while waiting:
         match waiting.pop():

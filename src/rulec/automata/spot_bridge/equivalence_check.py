@@ -26,7 +26,7 @@ def check(
     memories: Sequence[Memory] = (),
     cpu_s: float | None = None,
 ) -> None:
-    """The automaton meets no word outside the language, and its complement none inside.
+    """Check that an automaton accepts the formula's language and nothing else.
 
     ``formula`` may speak of ``memories``, the automaton must not. Every word has one way to choose
     them as they are defined: it is inside if so completed ``formula`` holds for it, else outside.
@@ -62,7 +62,7 @@ def check(
 
 
 def tried(question: Callable[[], object], cpu_s: float) -> bool | None:
-    """The question's answer, None if it takes more processor time or memory than there is.
+    """Answer of a question; None beyond the limits on time or memory.
 
     It is asked in a copy of this process, for Spot cannot be stopped.
     """

@@ -16,7 +16,7 @@ from rulec.automata.tables import DeterministicAutomaton, TableEdge
 
 
 def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> DeterministicAutomaton:
-    """The automaton's edges over the letters of ``reads``; colours and letters as bits."""
+    """Automaton with the letters of ``reads``; colours and letters as bits."""
     automaton = translation.automaton
     sets = {
         translation.names[one]: letters
@@ -61,7 +61,7 @@ def _bits(colours: Any) -> int:
 
 
 def _after_the_end(automaton: Any) -> tuple[tuple[int, int], ...]:
-    """The successor and colours of each state when the word is over: any such letter will do."""
+    """Successor and colours of each state at the end of a word."""
     nothing = buddy.bddtrue
     for ap in automaton.ap():
         nothing &= -buddy.bdd_ithvar(automaton.register_ap(ap))

@@ -24,7 +24,7 @@ def in_hoa(automaton: Any, name: str, remarks: Sequence[str]) -> str:
 
 
 def _ordered(automaton: Any) -> Any:
-    """The automaton with its propositions by name and its states in breadth-first order.
+    """Automaton with propositions sorted by name and states in breadth-first order.
 
     Spot's own order depends on what it has translated before; a rule's file should not.
     """
@@ -58,5 +58,5 @@ def _ordered(automaton: Any) -> Any:
 
 
 def _without_comment_signs(text: str) -> str:
-    """On one line, and with nothing that would open or close a comment: they nest."""
+    """Put a text on one line, signs of nesting comments split."""
     return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

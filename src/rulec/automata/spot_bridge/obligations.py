@@ -1,4 +1,4 @@
-"""Obligations of a formula on a word, and what a letter leaves of them.
+"""Obligations of a formula on a word, and their progress by letters.
 
 A formula is a Boolean function of its letter's propositions and of obligations for the rest of the
 word, each an until or a release with what is left of its range.
@@ -37,7 +37,7 @@ _FALSE, _TRUE = Constant(False), Constant(True)
 
 
 class _Obligation(NamedTuple):
-    """``left until right`` if ``strong``, else ``left release right``, within what is left."""
+    """Pending until (``strong``) or release, with the rest of its range."""
 
     strong: bool
     left: Formula
@@ -51,7 +51,7 @@ so that no BDD has a negated one."""
 
 
 def _joined(both: bool, left: _Signed, right: _Signed) -> _Signed:
-    """The conjunction, whose negation is a disjunction, or the other way round (De Morgan)."""
+    """Conjunction (``both``) or disjunction, negated by De Morgan's laws."""
 
     def signed(wanted: bool) -> Any:
         first, second = left(wanted), right(wanted)
@@ -65,7 +65,7 @@ def _equivalence(left: _Signed, right: _Signed) -> _Signed:
 
 
 class Obligations:
-    """The obligations of a formula without operators of the past, as variables of BDDs.
+    """Obligations of a formula without past operators, as variables of BDDs.
 
     ``propositions``, a graph without states, has a variable for each: those of letters, by their
     ``names``, come before those of obligations. ``first`` is what the formula asks of a letter and
@@ -108,7 +108,7 @@ class Obligations:
         return self._variables[_obligation]
 
     def _now(self, formula: Formula, wanted: bool) -> Any:
-        """That the formula, or its negation, holds: by this letter and what it leaves to do."""
+        """Demand of a formula, or its negation, on letter and rest."""
         # Not kept: that would be a reference circle, and BDDs would outlive their use.
         algebra: Algebra[_Signed] = Algebra(
             proposition=self._proposition,
@@ -158,7 +158,7 @@ class Obligations:
         return self._unfolded(one)
 
     def _unfolded(self, _obligation: _Obligation) -> Any:
-        """The demand of an obligation on this letter, and on the rest of the word."""
+        """Demand of an obligation on this letter and on the rest."""
         strong, left, right, (low, high) = _obligation
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue
@@ -194,7 +194,7 @@ class Obligations:
         return known
 
     def ends_well(self, state: Any) -> bool:
-        """Whether a word may end here: no until is fulfilled any more, no release broken."""
+        """Tell whether a word may end with its pending untils unfulfilled."""
         for one, variable in self._variables.items():
             state = buddy.bdd_restrict(state, -variable if one.strong else variable)
         return bool(state == buddy.bddtrue)

@@ -1,4 +1,4 @@
-"""Deterministic automata of formulas with bounds, by what is left to do after each letter.
+"""Deterministic automata of bounded formulas, by formula progression.
 
 A state says what the rest of the word must do (formula progression, Bacchus and Kabanza, "Using
 temporal logic to control search in a forward chaining planner", 1996). States that say the same are
@@ -104,7 +104,7 @@ class Progression:
         return automaton
 
     def finite(self, alive: str) -> Any:
-        """The automaton on finite words, of any formula: infinite ones on which ``alive`` ends.
+        """Automaton of a formula on finite words, infinite ones where ``alive`` ends.
 
         What comes after a word's end does not matter, but ``alive`` does not come back.
         """

@@ -1,4 +1,4 @@
-"""The past brought into an automaton: beside it, registers that hold what was."""
+"""Product of an automaton with registers that remember the past."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class _Operands:
         self._known: dict[_Values, list[tuple[Any, Any, _Values]]] = {}
 
     def on(self, values: _Values) -> list[tuple[Any, Any, _Values]]:
-        """For registers in these states: (letters, what they then say, their next states)."""
+        """Steps of registers: triples of letters, present values and next states."""
         if values not in self._known:
             result: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
             for value, (register, left, right, atom) in zip(values, self._registers, strict=True):

@@ -17,7 +17,7 @@ _STRONG_NEXT = F("X[!]p").kind()
 
 
 class SpotFormulas:
-    """Translates formulas without operators of the past to Spot's formulas, each part once.
+    """Translator of past-free formulas to Spot's, each part once.
 
     Automata are made of them over one dictionary of propositions.
 
@@ -36,7 +36,7 @@ class SpotFormulas:
         self._known: dict[Formula, Any] = {}
 
     def translate(self, language: Any, *shape: str) -> Any:
-        """The automaton of an LTL formula of Spot's. All that share a dictionary go together."""
+        """Translate Spot's LTL formula to an automaton over the shared dictionary."""
         return spot.translate(language, *shape, dict=self.dictionary)
 
     def formula_of(self, formula: Formula) -> Any:
@@ -44,7 +44,7 @@ class SpotFormulas:
         return fold(formula, self._algebra(), self._known)
 
     def language(self, formulas: Iterable[Any]) -> Any:
-        """The words that all these formulas of Spot's hold for, as an LTL formula."""
+        """Conjunction of Spot's formulas, as one LTL formula."""
         together = F.And(list(formulas))
         return together if self.alive is None else spot.from_ltlf(together, self.alive)
 

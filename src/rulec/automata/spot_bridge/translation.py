@@ -58,10 +58,10 @@ def translate(
     semantics: Semantics = "stutter",
     axioms: Sequence[Formula] = (),
 ) -> Translation:
-    """The automaton of ``formula``, whose bounds are in steps, over the letters that there are.
+    """Automaton of ``formula``, with bounds in steps, over its possible letters.
 
-    Its language is that of the formula, with ``knowledge(reads)`` and ``facts`` holding at every
-    instant, its propositions are the formula's; the facts speak of no others. Raises CheckError
+    Its language is that of the formula, with ``knowledge(reads)`` and ``axioms`` holding at every
+    instant, its propositions are the formula's; the axioms speak of no others. Raises CheckError
     where Spot, or rulec, got it wrong.
     """
     propositions = propositions_of(formula)
@@ -104,7 +104,7 @@ def _shaped(automaton: Any) -> Any:
 
 
 def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFormulas) -> Any:
-    """The automaton of the formula without these memories, which the future has a say in.
+    """Automaton of a formula, its future-dependent memories projected away.
 
     What they are is guessed and projected away, which takes a determinisation.
     """
@@ -119,7 +119,7 @@ def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFo
 
 
 def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
-    """The automaton of the formula or its negation; if it has bounds, from those of its parts."""
+    """Automaton of a formula or its negation; bounded ones by parts."""
     if total_bound(formula) == 0:
         return _by_spot(formula, wanted, spot_formulas)
     match formula:
@@ -152,7 +152,7 @@ def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> An
 
 
 def _by_progression(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
-    """None for a formula that no finite part of an infinite word decides."""
+    """Automaton by formula progression; None if prefixes decide nothing."""
     progression = Progression(formula if wanted else Unary(_NOT, formula), spot_formulas)
     if spot_formulas.alive is not None:
         return _shaped(progression.finite(spot_formulas.alive))
@@ -171,7 +171,7 @@ def _language(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> An
 
 
 def _by_trial(language: Any, spot_formulas: SpotFormulas) -> Any:
-    """The language's automaton by the first way that does not take too long.
+    """Automaton of a language by the first way that is quick enough.
 
     Its bounds are nested nexts to Spot; of an automaton and its complement's one is often far
     smaller, as long as it need not be deterministic.
