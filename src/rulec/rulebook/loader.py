@@ -1,4 +1,4 @@
-"""Rulebooks from files and from text: read, resolved, with all that is wrong in one error."""
+"""Loading of rulebooks from files and text, with all mistakes collected."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class RulebookFile:
-    """A rulebook's text, where it is, and where it finds others; ``path`` is None for a text."""
+    """Text of a rulebook with its path, if any, and search path."""
 
     source: Source
     data: bytes
@@ -51,7 +51,7 @@ class RulebookFile:
 
 @dataclass(frozen=True, slots=True)
 class Trees:
-    """The trees of a rulebook and of all that it extends and uses, with the mistakes of spelling.
+    """Syntax trees of a rulebook and of its dependencies, with mistakes.
 
     Messages call the file ``name``. ``books`` are those that it extends, the most general first,
     and itself. Without ``dependencies`` a file could not be read, so that any name may be missing
@@ -69,7 +69,7 @@ class Trees:
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A rulebook without errors, the warnings about it, and the trees that it comes from.
+    """Rulebook without errors, with its warnings and syntax trees.
 
     ``books`` are those that it extends, the most general first, and itself; ``vocabularies`` those
     that they use.
@@ -126,7 +126,10 @@ def read_rulebook(
 
 
 def find(reference: str | Path, search_path: Sequence[str | Path] = ()) -> RulebookFile:
-    """Find a rulebook's file by name or path, and read it. Raises RulecError."""
+    """Find a rulebook by name or path, and read it.
+
+    Raises RulecError.
+    """
     folders = tuple(Path(folder) for folder in search_path)
     path = find_rulebook(reference, folders)
     data = read_bytes(path)
@@ -134,7 +137,7 @@ def find(reference: str | Path, search_path: Sequence[str | Path] = ()) -> Ruleb
 
 
 def parse_all(file: RulebookFile) -> Trees:
-    """Parse a rulebook, those that it extends, and the vocabularies that they use.
+    """Parse a rulebook, its bases, and the vocabularies that they use.
 
     Mistakes of spelling are in the result. Raises RulecError R0206 for a vocabulary.
     """
@@ -146,7 +149,10 @@ def parse_all(file: RulebookFile) -> Trees:
 
 
 def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
-    """The rulebook that the trees mean. Raises RulecError with every mistake in them."""
+    """Resolve syntax trees to a rulebook.
+
+    Raises RulecError with every mistake in them.
+    """
     loaded, diagnosis = _resolved(trees, at, traffic)
     if loaded is None:
         raise RulecError(diagnosis.findings)
@@ -191,7 +197,7 @@ def diagnose(
     search_path: Sequence[Path] = (),
     at: str = "",
 ) -> Diagnosis:
-    """Everything that there is to say about a rulebook or a vocabulary, errors and warnings.
+    """All errors and warnings about a rulebook or a vocabulary.
 
     Args:
         name: what messages call it.
@@ -230,7 +236,7 @@ def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagno
 
 
 def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
-    """The rulebook if it has no errors, and what there is to say about it."""
+    """The rulebook, None if it has errors, and its diagnosis."""
     file, books = trees.file, tuple(book.file for book in trees.books)
     rulebook, meanings = resolve(
         file,

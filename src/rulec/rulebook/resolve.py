@@ -1,4 +1,4 @@
-"""From the trees of a rulebook, its bases and their vocabularies to the rulebook as meant."""
+"""Resolution of syntax trees to the rulebook that they mean."""
 
 from __future__ import annotations
 
@@ -117,13 +117,13 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
 
 
 def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
-    """The names in `priority` lines that could not be read: they may be meant as levels."""
+    """Names in unreadable `priority` lines, which may be levels."""
     broken = (item for book in books for item in book.items if isinstance(item, tree.BrokenItem))
     return sorted({name for item in broken if item.word == "priority" for name in item.names})
 
 
 def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Each mistake once: a definition's may come back with every use of it."""
+    """Mistakes without repetitions, which come from uses of definitions."""
     first: dict[tuple[str, str, SourceLocation | None], Diagnostic] = {}
     for mistake in mistakes:
         first.setdefault((mistake.code, mistake.message, mistake.place), mistake)

@@ -37,7 +37,10 @@ ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A trace that its rule must accept or reject; unmentioned values take their defaults."""
+    """Trace that its rule must accept or reject.
+
+    Unmentioned values take their defaults.
+    """
 
     __repr__ = short_repr
 
@@ -56,7 +59,10 @@ ExemptionScope = Literal["initially", "at start", "throughout", "at some point",
 
 @dataclass(frozen=True, slots=True)
 class Exemption:
-    """The rule does not count where ``formula`` holds as ``scope`` says; see ``exceptions``."""
+    """Exception to a rule where ``formula`` holds within ``scope``.
+
+    See ``exceptions``.
+    """
 
     formula: Formula
     scope: ExemptionScope
@@ -98,7 +104,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class SourceFile:
-    """A file that went into a rulebook, by its base name and its content's SHA-256."""
+    """Source file of a rulebook: base name and SHA-256 of content."""
 
     name: str
     sha256: str
@@ -106,7 +112,7 @@ class SourceFile:
 
 @dataclass(frozen=True, slots=True)
 class Axiom:
-    """An axiom: it holds in every state, for distinct objects of the variables' types."""
+    """Axiom: a formula that holds in every state, for distinct objects."""
 
     variables: tuple[Variable, ...]
     formula: Formula
@@ -115,7 +121,7 @@ class Axiom:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """A rule that was dropped, or a topic that the rulebook is silent on, and why."""
+    """Remark, with its reason, on a changed rule or silent topic."""
 
     name: str
     because: str

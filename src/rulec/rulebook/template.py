@@ -61,7 +61,7 @@ law     "The law that it puts into rules" as of {today}
 
 
 def new_rulebook(name: str, today: date) -> str:
-    """The text of a rulebook that checks, tests and compiles, to be changed.
+    """Text of a new rulebook that checks, tests and compiles.
 
     Raises:
         RulecError: if a rulebook cannot have this name, at its place in the text.
@@ -72,7 +72,9 @@ def new_rulebook(name: str, today: date) -> str:
 
 
 def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[Path] = ()) -> str:
-    """The text of a rulebook that extends another one, with all that it could change as comments.
+    """Text of a new rulebook that extends another one.
+
+    All that it could change stands in comments.
 
     Raises:
         RulecError: if a rulebook cannot have this name, or if the base cannot be read.
@@ -100,7 +102,7 @@ def _changes(loaded: Loaded) -> Iterator[str]:
 
 
 def _settings(loaded: Loaded) -> list[str]:
-    """The options and parameters with the values that they have now, and what is said of them."""
+    """Lines with the values and comments of options and parameters."""
     values: dict[str, str] = {}
     notes: dict[str, str] = {}
     for item in (item for book in loaded.books for item in book.items):

@@ -1,1 +1,1 @@
-"""Numbers of expressions: sums of terms in cases, and how large they may become."""
+"""Linear arithmetic of expressions by cases, and limits of its size."""

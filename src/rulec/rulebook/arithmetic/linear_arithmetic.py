@@ -68,19 +68,19 @@ Case = tuple[Conditions, Linear]
 
 @dataclass(frozen=True, slots=True)
 class NumberByCases:
-    """A number in cases that exclude one another, of which always one holds."""
+    """Number by cases, exactly one of which holds."""
 
     cases: tuple[Case, ...]
 
     @property
     def dimension(self) -> Dimension | None:
-        """The dimension of all cases; None if all of them are a bare 0."""
+        """The dimension of all cases; None if all are a bare 0."""
         generator = (linear.dimension for _, linear in self.cases)
         return next((dimension for dimension in generator if dimension is not None), None)
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is the same for all states."""
+        """Tell whether the number is the same for all states."""
         return len(self.cases) == 1 and not self.cases[0][1].coefficients
 
     @property
@@ -92,7 +92,7 @@ class NumberByCases:
 
 
 class TooManyCasesError(Exception):
-    """An expression has too many cases, or has otherwise grown beyond anything to be read."""
+    """Error: an expression has too many cases or is too large."""
 
 
 def constant(value: Fraction, dimension: Dimension | None, text: str) -> NumberByCases:
@@ -117,7 +117,7 @@ def combined(
 def _pairs(
     left: Sequence[Case], right: Sequence[Case]
 ) -> Iterator[tuple[Conditions, Linear, Linear]]:
-    """The cases of two numbers side by side, without those that exclude each other."""
+    """Pairs of two numbers' cases, without those that exclude each other."""
     for (first, one), (second, other) in product(left, right):
         both = (*first, *(condition for condition in second if condition not in first))
         if not any(negated(condition) in first for condition in second):

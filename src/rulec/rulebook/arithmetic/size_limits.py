@@ -22,7 +22,7 @@ class TooLargeError(Exception):
 
 
 def exceeded_limit(formula: Formula) -> Literal["", "deep", "large"]:
-    """The limit that a formula exceeds, if any. A part that occurs twice counts twice."""
+    """The limit that a formula exceeds, if any; repeated parts count again."""
     rest = [(formula, 1)]
     parts = 0
     while rest:

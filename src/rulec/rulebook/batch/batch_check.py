@@ -1,4 +1,4 @@
-"""Rulebooks and vocabularies, many at once: which files are meant, and what is to say of each."""
+"""Check of several rulebooks and vocabularies at once."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _STANDARD_INPUT = Path("standard input")
 
 @dataclass(frozen=True, slots=True)
 class Checked(Rows):
-    """The files that were checked, what was found in them, and why others could not be read."""
+    """Result of a batch check: checked files, findings, unread files."""
 
     __repr__ = short_repr
 
@@ -38,7 +38,7 @@ class Checked(Rows):
     unread: tuple[Diagnostic, ...]
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a finding, and one a file that could not be read."""
+        """Rows of the findings and of the files that are unreadable."""
         return diagnostic_rows((*self.findings, *self.unread))
 
 
@@ -50,7 +50,7 @@ def check(
     *,
     recalls: bool = False,
 ) -> Checked:
-    """Check what the references mean, each file once, and say each finding once.
+    """Check the files that references name; report each finding once.
 
     Args:
         references: names of rulebooks and vocabularies, paths of files, folders, ``-``.
@@ -113,14 +113,17 @@ def _meant(
 
 
 def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
-    """A vocabulary's mistakes are found again by every rulebook that uses it, by another path."""
+    """Identity of a finding, independent of the path to its file.
+
+    Every rulebook that uses a vocabulary finds its mistakes again.
+    """
     place = diagnostic.place
     where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
     return diagnostic.code, diagnostic.message, where
 
 
 def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]:
-    """The files that are meant by a rulebook's or a vocabulary's name, by a path, or by a folder.
+    """The files that a name, a path or a folder refers to.
 
     A folder stands for every ``.rules`` file in it and below it, hidden folders left out. A path
     that leads nowhere is returned as it is; reading it tells why.

@@ -1,4 +1,4 @@
-"""Many files in their canonical form: which are meant, and what becomes of each."""
+"""Formatting of several files in their canonical form."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.syntax.formatting import format_source
 
 @dataclass(frozen=True, slots=True)
 class Formatted:
-    """A file as it is and as it should be; ``path`` is None for standard input."""
+    """File before and after formatting; ``path`` is None for standard input."""
 
     name: str
     path: Path | None
@@ -27,14 +27,14 @@ class Formatted:
 
     @property
     def changed(self) -> bool:
-        """Whether it is not in canonical form."""
+        """Tell whether the file is not in canonical form."""
         return self.before != self.after
 
 
 def format_files(
     references: Iterable[str], search_path: Sequence[Path] = ()
 ) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
-    """The files that paths mean, each once, and why others could not be formatted.
+    """Format the files at the paths, each once, and collect errors.
 
     Nothing is written. A folder stands for every ``.rules`` file in it and below it, hidden folders
     left out. ``search_path`` is for who gives a name instead.
@@ -62,7 +62,10 @@ def format_files(
 
 
 def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
-    """The files at a path. Names are not looked up: what they mean is often another's file."""
+    """The files at a path; a rulebook's name is refused.
+
+    The file that it stands for is often another's.
+    """
     if "/" not in reference and not os.path.lexists(reference):
         elsewhere = _named(reference, search_path)
         if elsewhere is not None:
@@ -84,12 +87,15 @@ def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
 
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
-    """One file. Raises RulecError with its mistakes, or FormattingError, a mistake in rulec."""
+    """Format one file.
+
+    Raises RulecError with its mistakes, or FormattingError, a mistake in rulec.
+    """
     return Formatted(name, path, data, format_source(decode(name, data)).encode())
 
 
 def replace_files(files: Sequence[Formatted]) -> tuple[Diagnostic, ...]:
-    """Write the files that change, each whole or not at all; why some could not be."""
+    """Write changed files, each whole or not at all; return errors."""
     refused: list[Diagnostic] = []
     for file in files:
         if file.path is None or not file.changed:

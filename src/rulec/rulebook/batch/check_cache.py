@@ -1,4 +1,4 @@
-"""Cache of a check's findings, kept until a file that it depends on is another.
+"""Cache of a check's findings, valid while its files are unchanged.
 
 Checking a rulebook means parsing it and all that it builds upon; asking whether any of that has
 changed means reading the files alone. What is kept are diagnostics, one small file for each
@@ -34,7 +34,7 @@ _WORDS = 200
 
 @dataclass(frozen=True, slots=True)
 class CheckQuestion:
-    """The key of a check: all that the findings depend on but other files.
+    """Key of a check: its inputs except for other files.
 
     ``name`` is what messages call the file, ``path`` where it is (empty for standard input),
     ``day`` the day whose law it is where the rulebook does not say.
@@ -48,7 +48,7 @@ class CheckQuestion:
     day: str
 
     def place(self) -> str:
-        """A name for what is kept, the same when only the contents are others."""
+        """Name of the cache file, independent of the files' contents."""
         parts = (self.name, self.path, str(Path.cwd()), self.at, *self.search_path)
         return sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:40]
 
@@ -75,7 +75,7 @@ def cache_folder() -> Path | None:
 
 
 def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
-    """The findings of the last check like it; None if they are not known any more."""
+    """The cached findings of an equal check; None if unknown."""
     folder = cache_folder()
     if folder is None:
         return None
@@ -98,7 +98,7 @@ def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
 def remember(
     question: CheckQuestion, findings: Sequence[Diagnostic], dependencies: Sequence[Dependency]
 ) -> None:
-    """Keep what was found. Where that cannot be, the next check takes longer, and that is all."""
+    """Cache the findings of a check, if that is possible."""
     folder = cache_folder()
     if folder is None or _size(findings) > MOST_CHARACTERS:
         return
@@ -115,7 +115,7 @@ def remember(
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:
-    """The number of characters of sources that findings quote, with some for their words."""
+    """Estimated size of findings, in characters."""
     places = [
         place
         for finding in findings
@@ -152,7 +152,7 @@ def _diagnostic(data: dict[str, Any]) -> Diagnostic:
 
 
 def _program() -> str:
-    """Changes with rulec itself, also in a checkout that is being worked on."""
+    """Hash of rulec's own files by their times and sizes."""
     seen = sha256()
     for path, status in package_files():
         seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())

@@ -25,7 +25,7 @@ _Time = tuple[Fraction, Literal["s", "steps"]]
 def bound_of(
     node: tree.Prefix | tree.Infix, bound: tree.BoundNode | None, scope: Scope, evaluate: Evaluate
 ) -> Bound | Literal[False] | None:
-    """The bound as meant; False if it has a mistake, which is then reported.
+    """The meaning of a bound; False if it has a reported mistake.
 
     ``evaluate`` gives the number that a parameter stands for.
     """

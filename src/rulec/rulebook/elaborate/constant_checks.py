@@ -1,4 +1,4 @@
-"""Parameters and definitions by themselves: what is wrong with them, whoever uses them."""
+"""Checks of parameters and definitions, independent of their uses."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check_constants_and_macros(
 
 
 def _in_order_of_use(constants: ConstantsAndMacros) -> list[str]:
-    """Parameters and definitions, as far as there is no circle after those that they use."""
+    """Parameters and definitions, each after those it uses, circles aside."""
     uses: dict[str, list[str]] = {}
     for name, values in constants.overlay.parameters.items():
         uses[name] = [one for value in values for one in names_used(value.item)]

@@ -1,4 +1,4 @@
-"""From an expression as written to a formula or a number: the one place that checks types."""
+"""Elaboration of expressions into formulas and numbers, with type checks."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def number(node: tree.Formula, scope: Scope) -> NumberByCases | None:
 
 
 def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
-    """The meaning of an expression; None if it has a mistake, which is then reported.
+    """Elaborate an expression; None if it has a reported mistake.
 
     Raises:
         TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
@@ -199,7 +199,10 @@ def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -
 
 
 def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
-    """Report ``never p then q``, which means ``never (p then q)``: ``never p`` has no end."""
+    """Report a phase without end before ``then``.
+
+    ``never p then q`` means ``never (p then q)``, and ``never p`` has no end.
+    """
     if phase.operator in ("always", "never", "eventually") and not phase.grouped:
         yield say.endless_phase(phase)
 

@@ -16,7 +16,7 @@ _Meaning = TypeVar("_Meaning")
 def expand_macro(
     use: tree.AtomUse, scope: Scope, evaluate: Callable[[tree.Formula, Scope], _Meaning]
 ) -> _Meaning | None:
-    """The meaning of a definition's use; None if it has a mistake, which is then reported."""
+    """Expand the use of a definition; None after a reported mistake."""
     name = use.name.text
     item = scope.constants.definitions[name]
     if any(call.name == name for call in scope.calls):

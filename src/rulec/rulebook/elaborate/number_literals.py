@@ -20,7 +20,7 @@ _EXPONENT = re.compile(r"[eE]([+-]?[0-9]+)$")
 
 
 def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
-    """A number with its unit; None if it has a mistake, which is then reported."""
+    """Number literal with its unit; None after a reported mistake."""
     value = exact_value(node, scope)
     if value is None:
         return None
@@ -34,7 +34,10 @@ def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
 
 
 def exact_value(node: tree.NumberLiteral, scope: Scope) -> Fraction | None:
-    """The number that is written, without its unit; None if it is too long, which is reported."""
+    """Exact value of a number literal, without unit.
+
+    None if it is too long, which is reported.
+    """
     exponent = _EXPONENT.search(node.text)
     if len(node.text) <= _LONGEST and (exponent is None or abs(int(exponent[1])) <= _LONGEST):
         value = Fraction(node.text)

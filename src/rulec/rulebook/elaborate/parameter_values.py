@@ -17,7 +17,7 @@ Evaluate = Callable[[tree.Formula, Scope], NumberByCases | None]
 
 
 def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> NumberByCases | None:
-    """The number that a parameter stands for; None if it has a mistake, which is then reported."""
+    """Value of a parameter; None after a reported mistake."""
     name = use.name.text
     if any(call.name == name for call in scope.calls):
         scope.report(say.circle(use, "parameter", scope))
@@ -31,7 +31,7 @@ def parameter(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> NumberByCa
 
 
 def value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
-    """The value in force: of the rulebook nearest to the one in question that has any."""
+    """The value in force, from the nearest rulebook that has any."""
     name, constants = use.name.text, scope.constants
     values = constants.overlay.parameters[name]
     good = [value for value in values if in_force(value.item.in_force, constants.at)]

@@ -29,7 +29,7 @@ _ONE = Fraction(1)
 def aggregate(
     node: tree.Aggregate, scope: Scope, truth: Callable[[tree.Formula, Scope], Formula | None]
 ) -> Formula | NumberByCases | None:
-    """A count, or the comparison that ``some`` and ``every`` are; None if there is a mistake.
+    """Elaborate a count, ``some`` or ``every``; None after a mistake.
 
     ``truth`` gives the formula that the body means. Raises TooManyCasesError for a body that has
     grown too large.
@@ -68,7 +68,7 @@ def aggregate(
 
 
 def _with_counted(node: tree.Aggregate, scope: Scope, kind: str | None) -> Scope:
-    """The view of the body, in which the variable stands for what is counted."""
+    """Scope of the body, in which the counted variable is bound."""
     written = node.variable.name.text
     actual, number = written, 2
     while actual in scope.taken:

@@ -84,7 +84,7 @@ NOT_A_MULTIPLE = Code(
 
 
 def too_deep(what: str, name: tree.Name) -> Diagnostic:
-    """A formula, definition or parameter that is too deep once definitions are put in."""
+    """Mistake: an expanded formula, definition or parameter is too deep."""
     return FORMULA_TOO_DEEP.at(
         name.span,
         f"the {what}{_of(what)} `{name.text}` is nested more than {DEEPEST} levels deep, with "
@@ -123,7 +123,7 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
-    """Inherited examples that do not fit the rule any more as it has been changed."""
+    """Mistake: inherited examples do not fit the changed rule."""
     return replace(
         first,
         message=f"the examples that `{changed.text}` inherits do not fit it any more: "
@@ -178,7 +178,7 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
 
 
 def no_stretch(unless: tree.Unless, scope: str, require: Span | None) -> Diagnostic:
-    """A scope of an exception to a formula that guards no stretch of time."""
+    """Mistake: an exception's scope needs a formula that guards a stretch."""
     written = f"`{scope}`" if unless.scope else "this exception"
     labels = () if require is None else (Label(require.place, "this is what the rule requires"),)
     return UNFITTING_SCOPE.at(

@@ -12,7 +12,7 @@ from rulec.syntax import tree
 def variables_of(
     parameters: tuple[tree.Parameter, ...], symbols: SymbolTable, mistakes: list[Diagnostic]
 ) -> dict[str, BoundVariable]:
-    """Variables with their types; what is wrong with them is added to ``mistakes``."""
+    """Variables with their types; mistakes are added to ``mistakes``."""
     bound_variables: dict[str, BoundVariable] = {}
     for parameter in parameters:
         name, type_ = parameter.name, parameter.type

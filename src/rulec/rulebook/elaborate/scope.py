@@ -21,7 +21,7 @@ SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
 
 @dataclass(frozen=True, slots=True)
 class BoundVariable:
-    """A variable: its type, None if that is not known, and its place.
+    """Bound variable: its type, None if unknown, and its place.
 
     ``actual`` is its name in the rule: inside a definition that is the argument's.
     """
@@ -33,12 +33,12 @@ class BoundVariable:
 
 @dataclass(frozen=True, slots=True)
 class AnyArgument:
-    """A definition's parameter while the definition is checked by itself: object or relation."""
+    """Object or relation, unknown while a definition is checked by itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A definition that is being put in the place of its use, or a parameter evaluated.
+    """Expansion of a definition, or evaluation of a parameter, in progress.
 
     ``span`` is the use; None where that says nothing: a parameter is the same wherever it is used.
     """
@@ -96,7 +96,10 @@ class Scope:
             self.mistakes.append(mistake)
 
     def behind(self, name: str) -> Declared_ | None:
-        """The signal or quantity of that name, or the enumeration that has such a value."""
+        """The signal, quantity or enumeration that a name refers to.
+
+        An enumeration is found by the names of its values.
+        """
         quantity = self.symbols.items.get(name)
         if isinstance(quantity, QuantityDeclaration):
             return quantity
@@ -107,7 +110,7 @@ class Scope:
         return [*self.symbols.atoms(), *SIDES, *self.constants.names(), *self.relations]
 
     def absolute(self, use: tree.AtomUse, name: str) -> str | None:
-        """``near_side_of`` as the side that it is; other names as they are; None if reported."""
+        """The name with ``near_side_of`` resolved by traffic; None if reported."""
         if name not in SIDES or self.behind(name) is not None:
             return name
         traffic = self.constants.traffic
@@ -129,7 +132,7 @@ class Scope:
         return item if isinstance(item, Enumeration) and not hidden else None
 
     def reference(self, use: tree.AtomUse) -> Atom | Quantity | None:
-        """The atom or quantity meant; None when that is not known, which is then reported."""
+        """The atom or quantity of a use; None after a reported mistake."""
         name = self.absolute(use, use.name.text)
         if name is None:
             return None
@@ -188,7 +191,7 @@ class Scope:
         parameter: tuple[str, int] | None = None,
         relations: Sequence[str] = (),
     ) -> str | None:
-        """The actual name of an object of a type; None if there is none such, which is reported.
+        """The actual name of an argument; None after a reported mistake.
 
         ``parameter``: which parameter of which declaration asks for it. ``relations``: what could
         be meant besides an object.

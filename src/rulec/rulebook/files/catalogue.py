@@ -19,7 +19,7 @@ from rulec.syntax import decode, parse, tree
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A file with a name to ask for it by, and a few words on what it holds."""
+    """Entry of a catalogue: a file's name, title and path."""
 
     name: str
     title: str
@@ -33,7 +33,7 @@ def list_rulebooks(search_path: Sequence[Path] = ()) -> list[Entry]:
 
 
 def rulebook_trees(search_path: Sequence[Path] = ()) -> list[tree.File]:
-    """The trees of the rulebooks that can be read, by their names in alphabetical order."""
+    """Syntax trees of all readable rulebooks, by name, in alphabetical order."""
     paths = (find_rulebook(name, search_path) for name in available_rulebooks(search_path))
     return [file for path in paths if (file := _tree(path)) is not None and file.name is not None]
 

@@ -23,7 +23,7 @@ MOST_BASES = 50
 
 @dataclass(frozen=True, slots=True)
 class Book:
-    """A rulebook's tree, and where it was read; None if that is nowhere."""
+    """Syntax tree of a rulebook, with its path or None."""
 
     file: tree.File
     path: Path | None
@@ -31,7 +31,7 @@ class Book:
 
 @dataclass(slots=True)
 class Bases:
-    """The rulebooks that one extends, the most general first; what was wrong on the way.
+    """Rulebooks that one extends, most general first, with their mistakes.
 
     ``failed``: one of them could not be read.
     """

@@ -1,4 +1,4 @@
-"""The search path of rulebooks and vocabularies, then those that ship with rulec."""
+"""Search path of rulebooks and vocabularies, with rulec's own last."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BY_PATH = "a file is given by its path, such as `./mine.rules`"
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """A file that was looked for by ``name`` on behalf of the file ``user``, and its content then.
+    """Dependency of the file ``user`` on another, with its content's hash.
 
     ``user`` is empty where that is no file.
     """
@@ -35,7 +35,9 @@ class Dependency:
 
 
 def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
-    """The file of a rulebook given by name or, with a ``/`` or ``.rules`` in it, by path.
+    """The file of a rulebook, given by name or path.
+
+    A path has a ``/`` or ``.rules`` in it.
 
     Raises:
         RulecError: R0703 with the nearest name and all those available.
@@ -73,12 +75,14 @@ def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
 
 
 def available_vocabularies(search_path: Sequence[Path] = ()) -> tuple[Path, ...]:
-    """The files of the vocabularies that any rulebook may use, in the order of their names."""
+    """Files of the generally available vocabularies, in order of their names."""
     return tuple(_vocabularies_in(_vocabulary_folders(None, search_path)))
 
 
 def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
-    """The file of a vocabulary: beside the rulebook that uses it, on the search path, or ours.
+    """The file of a vocabulary, searched from the rulebook that uses it.
+
+    Beside that rulebook, then on the search path, then among rulec's own.
 
     Raises:
         RulecError: R0703 at the ``use`` line.
@@ -105,7 +109,9 @@ def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path])
 
 
 def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
-    """The file of a rulebook that another one extends: beside it, on the search path, or ours.
+    """The file of an extended rulebook, searched from the one extending it.
+
+    Beside that one, then on the search path, then among rulec's own.
 
     Raises:
         RulecError: R0703 at the ``extends`` line.
@@ -130,7 +136,7 @@ def _around(user: Path | None) -> list[Path]:
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
-    """A file's bytes, but not more than it takes to see that they are too many.
+    """Read a file's bytes, up to just above the size limit.
 
     Raises:
         RulecError: R0701; ``use`` is the line that asked for the file.
@@ -177,7 +183,7 @@ def _is_file(path: Path) -> bool:
 
 
 def is_same_file(one: Path, other: Path) -> bool:
-    """Whether two paths lead to the same file."""
+    """Tell whether two paths lead to the same file."""
     try:
         return one.samefile(other)
     except OSError:

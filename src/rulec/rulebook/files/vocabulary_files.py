@@ -28,7 +28,7 @@ class Vocabularies:
     read_already: list[Path] = field(default_factory=list)
 
     def read(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
-        """The tree of a vocabulary; None if there is none to be had, or if it has been read."""
+        """Syntax tree of a vocabulary; None if unreadable or already read."""
         name = use.name
         try:
             path = find_vocabulary(name.text, name.span, user, self.search_path)

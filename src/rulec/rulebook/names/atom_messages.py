@@ -117,7 +117,7 @@ def explain(
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
-    """Why a name is no atom: it is something else, or it is not known.
+    """Mistake: a name is no atom, but something else or unknown.
 
     ``variables`` have types, None if not known; ``others`` are names that a formula may use too.
     """
@@ -187,7 +187,7 @@ def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
-    """``near_side_of`` in a rulebook that does not say on which side traffic drives."""
+    """Mistake: ``near_side_of`` without a declared side of traffic."""
     return UNKNOWN_SIDE.at(
         use.name.span,
         f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
@@ -221,7 +221,10 @@ def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> st
 
 
 def _glued(name: str, atoms: set[str]) -> str:
-    """``GFp`` as ``G F p``, ``pUq`` as ``p U q``, if p and q are atoms."""
+    """Operators and atoms split from one word: ``GFp`` to ``G F p``.
+
+    Likewise ``pUq`` to ``p U q``; empty if the parts are no atoms.
+    """
     unary = _GLUED.fullmatch(name)
     if unary is not None:
         for cut in range(len(unary[1]), 0, -1):
@@ -280,7 +283,7 @@ def unknown_variable(
     known: Iterable[str],
     owner: str,
 ) -> Diagnostic:
-    """A variable that its ``owner``, a rule or a definition, does not have."""
+    """Mistake: the rule or definition ``owner`` lacks a variable."""
     if variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
     else:
@@ -306,7 +309,7 @@ def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Lab
 
 
 def two_types(name: tree.Name, wanted: str, known_type: str | None, known: Span) -> Diagnostic:
-    """A variable of a fact that would have to be of two types."""
+    """Mistake: a fact's variable would need two types."""
     return WRONG_ARGUMENT_TYPE.at(
         name.span,
         f"`{name.text}` cannot be both a `{known_type}` and a `{wanted}`",

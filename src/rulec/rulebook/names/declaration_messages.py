@@ -109,7 +109,7 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
-    """A parameter without a type, where there is more than one possibility or none."""
+    """Mistake: the missing type of a parameter is not clear."""
     why = any_of([f"`{root}`" for root in roots]) if roots else "no type is declared"
     example = roots[0] if roots else "road_user"
     return PARAMETER_WITHOUT_TYPE.at(
@@ -131,7 +131,7 @@ def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -
 
 
 def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
-    """A type, a name, a parameter or a variable declared a second time."""
+    """Mistake: a type, name, parameter or variable is declared again."""
     return DECLARED_TWICE.at(
         again.span,
         f"the {what} `{again.text}` is declared twice",
@@ -154,7 +154,7 @@ def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine)
 
 
 def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
-    """A unit, such as that of a quantity, that nobody knows or that cannot be converted exactly."""
+    """Mistake: a unit is unknown or cannot be converted exactly."""
     refusal = unit_refusal(unit)
     if refusal is not None:
         of_quantity = f" of `{quantity}`" if quantity else ""

@@ -6,7 +6,7 @@ from rulec.diagnostics import Span
 
 
 def description(span: Span) -> str:
-    """The comment behind an item, else the comment lines right above it, as one line of text.
+    """Description of an item: the comment behind it, else those above.
 
     With one behind the item, those above it may be about several items. A comment with a blank line
     below it is about more than the next item. Empty if there is none.

@@ -8,7 +8,7 @@ from rulec.syntax import tree
 
 
 def names_used(item: tree.Item) -> Iterator[str]:
-    """Every name in the formulas of an item, with repetitions; not in its examples."""
+    """Every name in an item's formulas, with repetitions, without its examples."""
     match item:
         case tree.RuleItem(require=require, when=when, unless=unless):
             for formula in (require, when, *(one.formula for one in unless)):
@@ -34,7 +34,7 @@ def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:
 
 
 def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
-    """Every name in a formula with its arguments, with repetitions; not those in bounds."""
+    """Every use of a name in a formula, except those in bounds."""
     if isinstance(formula, tree.AtomUse):
         yield formula
     for part in parts_of(formula):

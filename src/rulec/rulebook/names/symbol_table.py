@@ -61,13 +61,13 @@ class SymbolTable:
         return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
 
     def unit(self, text: str) -> Unit | None:
-        """The unit of that text, read once; None if there is none such."""
+        """The unit of a text, parsed once; None if there is none."""
         if text not in self.units:
             self.units[text] = parse_unit(text)
         return self.units[text]
 
     def unit_of(self, quantity: str) -> Unit | None:
-        """The unit of a quantity; None if it is not known, which has been reported."""
+        """The unit of a quantity; None if unknown, which has been reported."""
         item = self.items[quantity]
         return self.unit(item.unit) if isinstance(item, Quantity) else None
 
@@ -87,17 +87,20 @@ class SymbolTable:
         return [name for name, item in generator if item is not None and len(item.parameters) == 1]
 
     def behind_atom(self, name: str) -> Signal | Enumeration | None:
-        """The signal of that name, or the enumeration that has such a value."""
+        """The signal of a name, or the enumeration with such a value."""
         signal = self.items.get(name)
         return signal if isinstance(signal, Signal) else self.value_of.get(name)
 
     def may_know(self, name: str) -> bool:
-        """Whether the name, or the ``b`` of ``b_v``, may be declared by what could not be read."""
+        """Tell whether unreadable text may declare a name.
+
+        In a name ``b_v`` it may also declare ``b``.
+        """
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
     def may_know_type(self, name: str) -> bool:
-        """Whether the type may be declared by what could not be read."""
+        """Tell whether unreadable text may declare a type."""
         return self.opaque_types or self.may_know(name)
 
     def ancestors(self, type_name: str) -> list[str]:
@@ -110,14 +113,14 @@ class SymbolTable:
         return names
 
     def fits(self, type_name: str, wanted: str) -> bool:
-        """Whether every ``type_name`` is a ``wanted``, as far as is known."""
+        """Tell whether a type may be a subtype of ``wanted``."""
         above = self.ancestors(type_name)
         unsure = wanted not in self.types or not self.uncertain.isdisjoint(above) or not above
         return unsure or wanted in above
 
 
 def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
-    """The declarations of used vocabularies and of the file that uses them, in this order."""
+    """Symbol table of the used vocabularies, then of the using file."""
     vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
     symbols = SymbolTable(
         of_vocabularies=vocabularies,
@@ -144,7 +147,7 @@ def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
 
 
 def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
-    """Types with the name of a signal, a quantity, an enumeration or a value."""
+    """Note types that share the name of another declaration."""
     order = [file.span.source for file in files]
     for name in symbols.type_spans.keys() & symbols.spans.keys():
         spans = (symbols.type_spans[name], symbols.spans[name])
@@ -207,7 +210,10 @@ def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:
 
 
 def _roots(symbols: SymbolTable, file: tree.File) -> list[str]:
-    """Types without a parent: a vocabulary's own ones, for a rulebook all that it knows."""
+    """Types without a parent that a parameter may default to.
+
+    A vocabulary's own ones, for a rulebook all that it knows.
+    """
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
         type_.name

@@ -65,12 +65,12 @@ class ConstantsAndMacros:
         return [*overlay.options, *overlay.parameters, *overlay.definitions]
 
     def may_know(self, name: str) -> bool:
-        """Whether the name may be given by what could not be read."""
+        """Tell whether unreadable text may declare a name."""
         return self.overlay.unsure or name in self.overlay.suspects
 
 
 def in_force(dates: tree.InForce | None, day: str) -> bool:
-    """Whether something is in force on a day (ISO). The last day counts."""
+    """Tell whether a day (ISO) lies within dates, the last included."""
     if dates is None:
         return True
     return dates.since <= day and (not dates.until or day <= dates.until)

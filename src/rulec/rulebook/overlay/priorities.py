@@ -21,7 +21,7 @@ MOST_LEVELS = 100
 def pre_order(
     lines: Sequence[tree.PriorityLine],
 ) -> tuple[tuple[str, ...], Order, list[Diagnostic]]:
-    """The levels in the order in which they are named, their pre-order, and what is wrong.
+    """Levels in order of first mention, their pre-order, and the mistakes.
 
     What contradicts the lines before it is reported and left out.
     """
@@ -51,7 +51,7 @@ def pre_order(
 
 
 def _with_pair(order: set[tuple[str, str]], pair: tuple[str, str]) -> set[tuple[str, str]]:
-    """A transitive order with one more pair, transitive again; no level stands above itself."""
+    """Transitive closure of an order and one more pair, without reflexive pairs."""
     higher, lower = pair
     above = [higher, *(one for one, other in order if other == higher)]
     below = [lower, *(other for one, other in order if one == lower)]

@@ -1,4 +1,4 @@
-"""A rulebook laid over those that it extends: what is in force of each rule, option and definition.
+"""Overlay of a rulebook on its bases: rules, options and definitions.
 
 Everything here is still as written; meaning comes afterwards, so that an inherited rule uses the
 definitions of the rulebook that inherits it.
@@ -32,7 +32,7 @@ class RuleEntry:
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """One value of a parameter, given by the file number ``level`` of the chain."""
+    """Value of a parameter, from file number ``level`` of the chain."""
 
     item: tree.ParamItem | tree.SetItem
     level: int
@@ -152,7 +152,7 @@ class _Layer:
                 return
 
     def _new(self, name: tree.Name, kind: str) -> bool:
-        """Whether the name is free; what takes it is reported."""
+        """Declare a name; return False and report it if taken."""
         first = self.spans.get(name.text)
         known = self.result.declared_at.get(name.text)
         if known is not None:
@@ -184,7 +184,7 @@ class _Layer:
             self._nothing(name, "option or parameter", "set", known)
 
     def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Whether an option, parameter or definition is another rulebook's; if not, report it."""
+        """Tell whether an option, parameter or definition is inherited; else report."""
         if self.result.levels[name.text] < self.level:
             return True
         known = self.result.declared_at[name.text]
@@ -192,7 +192,7 @@ class _Layer:
         return False
 
     def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Whether it is inherited and not changed yet in this rulebook; mistakes are reported."""
+        """Note the first change of an inherited name; report mistakes."""
         if not self._is_inherited(name, kind, verb):
             return False
         before = self.result.changed_at.get(name.text)
@@ -244,7 +244,7 @@ class _Layer:
         self.result.remarks.append(Remark(item.name.text, because, "softened"))
 
     def _inherited(self, name: tree.Name, verb: str) -> bool:
-        """Whether it is an inherited rule; anything else is reported."""
+        """Tell whether a name is an inherited rule; report anything else."""
         known = self.result.rules.get(name.text)
         before = self.result.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
@@ -268,12 +268,12 @@ class _Layer:
 
 
 def never_in_force(dates: tree.InForce | None) -> bool:
-    """Whether the dates end before they begin."""
+    """Tell whether the dates end before they begin."""
     return dates is not None and bool(dates.until) and dates.until < dates.since
 
 
 def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parameter]:
-    """Variables that an override leaves out although what it inherits speaks of them."""
+    """Variables that an override omits although inherited clauses use them."""
     if not over.variables:
         return []
     inherited = replace(
@@ -297,7 +297,7 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
-    """An override over a rule: each kind of clause that it has replaces those of the rule.
+    """A rule with the clauses that an override gives it replaced.
 
     Where a provision was read, and how sure that is, goes with the provision.
     """

@@ -1,4 +1,4 @@
-"""Examples that speak of states which cannot be, because a fact holds in every state."""
+"""Check of examples against axioms, which hold in every state."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rulec.vocabulary.object_choices import choices
 
 @dataclass(frozen=True, slots=True)
 class ExampleValues:
-    """Values of an example's state, and defaults for whatever else a rule reads.
+    """Values of an example's state, and defaults for others read.
 
     What neither of them speaks of is not known. ``read`` are those: declarations and objects.
     """
@@ -47,7 +47,7 @@ class ExampleValues:
 def contradicted(
     rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary
 ) -> Iterator[Diagnostic]:
-    """One mistake (R0306) for each state of the rule's examples that contradicts a fact."""
+    """Mistakes (R0306), one per state of examples that contradicts an axiom."""
     for example in rule.examples if axioms else ():
         objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
         read = frozenset(
@@ -61,7 +61,7 @@ def contradicted(
 
 
 def _broken(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
-    """The first fact that does not hold, and how it is said of the objects."""
+    """The first violated axiom, and its text about the chosen objects."""
     for fact in axioms:
         names = [variable.name for variable in fact.variables]
         types = [variable.type for variable in fact.variables]

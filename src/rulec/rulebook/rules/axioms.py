@@ -18,7 +18,7 @@ from rulec.syntax import tree
 def axiom_of(
     item: tree.FactItem, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> tuple[Axiom | None, list[Diagnostic]]:
-    """The fact as meant (None if it has a mistake), and what is wrong with it.
+    """Elaborate a fact; return its axiom or None, and its mistakes.
 
     Its variables are not declared: they are of the types that what it says of them is about.
     """
@@ -60,7 +60,7 @@ def _asked_for(
     constants: ConstantsAndMacros,
     counted: frozenset[str] = frozenset(),
 ) -> Iterator[tuple[tree.Name, str]]:
-    """Every object that the formula speaks of, with the type that is needed there.
+    """Every object in a formula, with the type required of it.
 
     ``counted`` are the variables of the counts around it, which are no objects of the fact's.
     """
@@ -79,7 +79,7 @@ def _asked_for(
 def _parameters(
     use: tree.AtomUse, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> Sequence[str | None]:
-    """The types of what is asked for by this name; None for one that may be anything."""
+    """Parameter types of a name; None where any argument will do."""
     name = use.name.text
     definition = constants.definitions.get(name)
     if definition is not None:

@@ -81,7 +81,7 @@ def _state(
 
 
 def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
-    """The subject of a fact; None if it has a mistake, which is reported."""
+    """Subject of a state literal; None after a reported mistake."""
     kind = scope.constants.overlay.kind_of(use.name.text)
     if kind and scope.behind(use.name.text) is None:
         scope.report(say.no_fact(use, kind, scope.constants.overlay.declared_at[use.name.text]))
@@ -92,7 +92,7 @@ def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
 def _value(
     fact: tree.StateLiteral, atom: Atom | Quantity, scope: Scope
 ) -> bool | str | float | None:
-    """The value that a fact states; None if it has a mistake, which is reported."""
+    """Value of a state literal; None after a reported mistake."""
     if isinstance(atom, Quantity):
         return _number(fact, atom, scope)
     if fact.value is not None:

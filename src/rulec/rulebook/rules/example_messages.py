@@ -85,7 +85,7 @@ def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -
 
 
 def left_open(state: tree.ExampleState, what: Atom | Quantity, symbols: SymbolTable) -> Diagnostic:
-    """Something that the formula needs, that has no default, and that the state does not say."""
+    """Mistake: a state lacks a needed value that has no default."""
     item = symbols.items[what.name]
     if isinstance(what, Quantity):
         ways = [f"`{term_text(what)} = … {symbols.unit_text(what.name)}`"]

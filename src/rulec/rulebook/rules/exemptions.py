@@ -68,7 +68,7 @@ def _with_stretch(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
 
 @dataclass(frozen=True, slots=True)
 class _Phase:
-    """A phase, and how long it lasts; no bound for the last one."""
+    """Phase of a sequence with its duration; the last has none."""
 
     formula: Formula
     bound: Bound | None = None
@@ -110,7 +110,10 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
 def _border(
     phases: list[_Phase], before: Formula, behind: Formula, throughout: Sequence[Formula]
 ) -> Formula:
-    """Two phases: the last instant of the first, and the first one of the second."""
+    """Formula of two phases, split at the border between them.
+
+    ``before`` holds in the last instant of the first, ``behind`` in the first one of the second.
+    """
     first, second = phases
     ways = [
         _ends(
@@ -125,7 +128,10 @@ def _border(
 
 
 def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
-    """The phase from now on, ``at_last`` in its last instant, ``behind`` in the one after it."""
+    """Formula of the rest of a phase and the instant behind.
+
+    ``at_last`` holds in its last instant, ``behind`` in the one after it.
+    """
     if at_last == all_of([]):
         return Binary(_THEN, phase.formula, behind, phase.bound)
     if phase.bound is not None:
@@ -149,12 +155,15 @@ class _Inner:
     everywhere: Formula
 
     def whole(self, somewhere: frozenset[Formula]) -> Formula:
-        """From the first instant; each of ``somewhere`` has to hold somewhere in the stretch."""
+        """Formula of all phases, at their first instant.
+
+        Each of ``somewhere`` has to hold somewhere in the stretch.
+        """
         first = self.phases[0]
         return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
 
     def _enter(self, index: int, rest: frozenset[Formula]) -> Formula:
-        """From the first instant of a phase, with ``rest`` still to hold somewhere."""
+        """Formula at a phase's first instant, with ``rest`` to hold somewhere."""
         if index == len(self.phases) - 1:
             return self.phases[-1].formula
         inside = self._inside(index, rest)

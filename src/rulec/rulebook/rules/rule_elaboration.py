@@ -39,7 +39,7 @@ def translate_rule(
     constants: ConstantsAndMacros,
     levels: Sequence[str] | None,
 ) -> tuple[Rule | None, list[Diagnostic]]:
-    """The rule as meant (None if it has a mistake), its mistakes and warnings.
+    """Elaborate a rule; return it or None, its mistakes and warnings.
 
     ``levels`` are those of the rulebook's priorities; None if they are not known for sure.
     """
@@ -123,7 +123,7 @@ def _step_of(file: tree.File, scope: Scope) -> Fraction:
 
 
 def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
-    """A mistake in what a rule inherits, with the line that changed the rule."""
+    """Inherited mistake, labelled with the line that changed the rule."""
     changed = None if entry.changed is None else entry.changed.span.place
     if changed is None or mistake.place is None or mistake.place.file == changed.file:
         return mistake
@@ -140,7 +140,7 @@ class _Parts:
 
 
 def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
-    """The parts of a rule's formula; None if one has a mistake, which is then reported."""
+    """Parts of a rule's formula; None after a reported mistake."""
     try:
         required = None if item.require is None else truth(item.require, scope)
         result = [
@@ -164,7 +164,7 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
 
 
 def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> Formula | None:
-    """The whole rule as one formula; None if it has a mistake, which is then reported."""
+    """Formula of a whole rule; None after a reported mistake."""
     formula = _with_exceptions(item, parts, scope)
     match "" if formula is None else exceeded_limit(formula):
         case "deep":
