@@ -44,7 +44,7 @@ class _AxiomInstance:
         return f"`{formula_text(rename_variables(self.axiom.formula, self.bound))}`"
 
     def truth(self, view: StateView) -> bool | Unknown:
-        """Whether the axiom holds in a state."""
+        """Truth value of the axiom in a state."""
         return holds(self.axiom.formula, self.bound, view)
 
 
@@ -85,7 +85,7 @@ def check_counting_axioms(
     where: Callable[[int], str],
     place: SourceLocation | None,
 ) -> None:
-    """Check the axioms that count, in every state, of the objects that are present.
+    """Check the counting axioms in every state, for the objects present.
 
     Only those that speak of something that a rule reads: machines know nothing of such axioms.
 

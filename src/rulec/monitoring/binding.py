@@ -26,7 +26,7 @@ def bindings(
     present: Mapping[str, tuple[int, int]],
     n_states: int,
 ) -> Iterator[Binding]:
-    """Every way to bind the rule's variables to distinct objects of their types.
+    """All bindings of a rule's variables to distinct objects of their types.
 
     A binding counts on the stretch in which all its objects are present; one whose objects are
     never present together is left out. A rule without variables has one binding, the empty one.

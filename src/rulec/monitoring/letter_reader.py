@@ -1,4 +1,4 @@
-"""Letters that a rule's machine reads, for the objects that it is bound to."""
+"""Reader of the letters of a rule's machine for bound objects."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class LetterReader:
     def _values_of(
         self, name: str, items: tuple[str, ...], first: int, last: int, rule: str
     ) -> list[Value]:
-        """The values of a name in each state; one for all, if all give the very same."""
+        """Values of a name by state; a single one if constant."""
         key = (name, items, first, last)
         if key not in self._values:
             numbers = self._numbers_of((name,), first, last)
@@ -160,13 +160,13 @@ class LetterReader:
         return self._digits_of_reads[key]
 
     def _numbers_of(self, names: Sequence[str], first: int, last: int) -> range:
-        """The states to look at for some names: the first, if all give the very same values."""
+        """Indices of the states to read; the first if all are identical."""
         if self._present or not all(self._is_constant(name) for name in names):
             return range(first, last + 1)
         return range(first, last + 1)[:1]
 
     def _is_constant(self, name: str) -> bool:
-        """Whether all states give the same object for a name, as cells do for a whole scene."""
+        """Tell whether all states share one value object for a name."""
         if name not in self._constant:
             given = self._given_by_states(name)
             self._constant[name] = all(value is given[0] for value in given)
@@ -195,7 +195,7 @@ def _digits(column: Iterable[int]) -> Digits:
 def present_in(
     number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
 ) -> Mapping[str, str]:
-    """The objects that are present in a state, with their types; ``present`` as in a trace."""
+    """Objects present in a state, with types; ``present`` as in a trace."""
     if not present:
         return objects
     return {

@@ -25,7 +25,7 @@ _Look: TypeAlias = Callable[[Any], bool]
 
 
 class StateValidator:
-    """Checks of states in which these objects, of types that the vocabulary knows, are present."""
+    """Validator of states with these objects, whose types are known."""
 
     def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
         self._vocabulary = vocabulary
@@ -44,7 +44,7 @@ class StateValidator:
                 check_state(state, self._objects, self._vocabulary, where(number), place)
 
     def passes(self, state: Any) -> bool:
-        """Whether a state plainly fits; one that does not may fit all the same."""
+        """Quick check that a state fits; False leaves it open."""
         looks = self._looks
         try:
             if type(state) is not dict:
@@ -55,7 +55,7 @@ class StateValidator:
 
 
 class _Looks(dict[str, _Look]):
-    """A quick look at the values of each name, compiled when the name is first met."""
+    """Quick checks of values by name, compiled on first use."""
 
     def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
         self._vocabulary = vocabulary
@@ -77,7 +77,7 @@ class _Looks(dict[str, _Look]):
 def check_objects(
     objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary knows the type of every object. Raises RulecError R0505."""
+    """Check that the vocabulary knows all objects' types. Raises RulecError R0505."""
     for name, kind in objects.items():
         if kind not in vocabulary.types:
             raise UNKNOWN_OBJECT.error(

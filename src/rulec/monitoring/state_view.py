@@ -18,7 +18,7 @@ from rulec.vocabulary import Declaration, Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """A state that has passed ``check_state``, and the objects present, with their types."""
+    """State checked by ``check_state``, with the types of its present objects."""
 
     state: State
     objects: Mapping[str, str]
@@ -44,7 +44,7 @@ class StateView:
 def value_in(
     state: State, name: str, objects: Sequence[str], declaration: Declaration
 ) -> Value | None:
-    """The value that a state gives, or the declared default; None if there is neither."""
+    """Value in a state, or its default; None if there is neither."""
     value: Any = state.get(name)
     for item in objects:
         value = value.get(item) if value is not None else None

@@ -29,7 +29,7 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Verdict(Rows):
-    """A rulebook's verdict on a trace: the violations in the order of rules and objects."""
+    """Verdict of a rulebook: a trace's violations by rule and objects."""
 
     __repr__ = short_repr
 
@@ -38,7 +38,7 @@ class Verdict(Rows):
 
     @property
     def satisfied(self) -> bool:
-        """Whether every hard rule is kept; soft rules may yield."""
+        """Tell whether no hard rule is violated; soft rules may be."""
         return all(violation.strength != "hard" for violation in self.violations)
 
     def rows(self) -> list[dict[str, Any]]:
@@ -57,7 +57,7 @@ class Verdict(Rows):
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
-    """A trace without a verdict: its id, if it could be read that far, and what is wrong."""
+    """Trace without a verdict: its id, if known, and the error."""
 
     __repr__ = short_repr
 

@@ -56,7 +56,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
 def letter_reader_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
 ) -> LetterReader:
-    """The reader of a trace that has been checked; ``where`` names a state in messages."""
+    """Letter reader of a checked trace; ``where`` names states in messages."""
     vocabulary = rulebook.vocabulary
     return LetterReader(
         trace.states,
@@ -77,7 +77,7 @@ def rulebook_for_trace(trace: Trace, rulebook: CompiledRulebook) -> CompiledRule
 def rulebook_for_step(
     step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
-    """The rulebook with the machines for the step of a trace at some place."""
+    """Rulebook compiled for a trace's step (s); errors name its place."""
     try:
         return rulebook.fitted_to(step_s)
     except RulecError as error:
@@ -106,7 +106,7 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
 
 
 def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
-    """Run a machine over a non-empty word of letter classes, from a state.
+    """Run a machine on a non-empty word of letter classes from ``start``.
 
     Returns:
         Whether it accepts, and the index of the letter with which it was lost, however the word

@@ -1,4 +1,4 @@
-"""Further objects of a state, so that the counts of rules come out.
+"""Additional objects of a state that satisfy the counts of rules.
 
 The search is breadth first over how many objects each count has reached.
 """
@@ -27,7 +27,7 @@ MOST_TRIED = 20_000
 
 @dataclass(frozen=True, slots=True)
 class CountedObject:
-    """A further object: its type, which counts it adds to, and what a state says of it."""
+    """Additional object: its type, the counts it adds to, and its values."""
 
     type: str
     adds: tuple[int, ...]
@@ -38,7 +38,7 @@ CountedObjects = tuple[CountedObject, ...]
 
 
 def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> CountedObjects | None:
-    """Find as few further objects as make the counts come out; None if none do."""
+    """Find the fewest additional objects that satisfy the counts, or None."""
     counts = _counts_of(state)
     if not counts:
         return ()
@@ -67,7 +67,7 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
 def counted_objects_of_types(
     state: JointState, universe: ObjectUniverse, types: Sequence[str]
 ) -> CountedObjects | None:
-    """Find one further object of each type, so that the counts come out; None if there are none."""
+    """Find an additional object of each type for the counts, or None."""
     counts = _counts_of(state)
     kinds = object_kinds(state, universe, types) if types else []
     start = tuple(dict(state.counted)[count] for count in counts)
@@ -87,7 +87,7 @@ def counted_objects_of_types(
 
 
 def _enough(count: Count, state: JointState) -> int:
-    """The number from which on further counted objects make no difference, if there is one."""
+    """Number of counted objects from which on more make no difference."""
     most = 0
     for read, _ in state.number_digits:
         if any(term == count for _, term in read.terms):
@@ -117,10 +117,9 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
 def object_kinds(
     state: JointState, universe: ObjectUniverse, types: Sequence[str] = ()
 ) -> list[CountedObject]:
-    """The further objects that the counts tell apart; the most general types first.
+    """Additional objects that the counts distinguish, most general types first.
 
-    That is of any type that is counted, or one of ``types``, which may be there to be counted in
-    another state.
+    Their types are those that are counted, and ``types``, which another state may need.
     """
     vocabulary = universe.vocabulary
     counts = _counts_of(state)
@@ -182,7 +181,7 @@ def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse)
 def _said(
     digits: Sequence[tuple[Read | NumberRead, int]], state: JointState, universe: ObjectUniverse
 ) -> dict[Subject, Value] | None:
-    """What a state says of the object so that the reads come out so; None if it cannot."""
+    """Values of an object that give the reads these digits, or None."""
     values: dict[Subject, Value] = {}
     sides = []
     for read, digit in digits:
@@ -203,7 +202,7 @@ def _said(
 
 
 def _given(read: NumberRead, state: JointState, universe: ObjectUniverse) -> NumberRead:
-    """The sum over what is not known yet, the rest moved into the thresholds."""
+    """Sum of the unknown terms, with known ones moved into the thresholds."""
     known = Fraction(0)
     left = []
     for factor, term in read.terms:

@@ -1,4 +1,4 @@
-"""States for the letters of a rule's monitor that its examples do not cover."""
+"""States that witness uncovered letters of a rule's monitor."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rulec.witnesses.state_synthesis import (
 
 @dataclass(frozen=True, slots=True)
 class CoverageWitness:
-    """A state: what it says, and in ``besides`` the comparisons that have to hold in it, in words.
+    """State for a letter, with further comparisons in words in ``besides``.
 
     Those are of counts, or of sums of numbers that cannot be chosen.
     """
@@ -39,7 +39,7 @@ class CoverageWitness:
 
 
 def is_possible(read: Read | NumberRead, digit: int) -> bool:
-    """Whether a state can have this digit. False only if it is certain that none can."""
+    """Tell whether a state can have this digit; False only if certain."""
     if isinstance(read, Read) or scale(read).quantity is None:
         return True
     bounds = (-inf, *scale(read).floors, inf)
@@ -47,7 +47,7 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
 
 
 def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
-    """For every class of letters that some state has, the first of its letters."""
+    """First letter of every letter class that some state has."""
     first: dict[int, int] = {}
     for letter, letter_class in enumerate(monitor.letters):
         if letter_class == IMPOSSIBLE or letter_class in first:
@@ -60,7 +60,7 @@ def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
 def truth_values(
     propositions: Sequence[Proposition], monitor: MealyMonitor
 ) -> Mapping[Proposition, tuple[bool, ...]]:
-    """The values that each proposition has in the letters of possible states, true first."""
+    """Truth values of each proposition in possible states, True first."""
     reads = monitor.reads
     excluded = {
         (place, digit)
@@ -89,7 +89,7 @@ def coverage_witness(
     vocabulary: Vocabulary,
     axioms: Sequence[Formula] = (),
 ) -> CoverageWitness:
-    """Synthesise a state in which the monitor of a rule with this formula reads the letter.
+    """Synthesise a state in which a rule's monitor reads the letter.
 
     ``axioms`` hold in every state. Where chosen numbers would contradict one, they are left to the
     reader.
@@ -136,7 +136,7 @@ def coverage_witness(
 def _choose(
     numbers: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
 ) -> tuple[dict[Quantity, float], list[NumberRead]]:
-    """Numbers with these digits, and the sums for which there are none any more."""
+    """Numbers with these digits, and the sums left without any."""
     chosen = numbers_near_thresholds(numbers, vocabulary)
     if chosen is not None:
         return chosen, []

@@ -25,7 +25,7 @@ class _Nodes:
         self.all: list[tuple[float, Children]] = []
 
     def add(self, level: float, children: Children) -> int:
-        """The node that tests a level; the class is the only child of one that tests nothing."""
+        """Node that tests a level; a leaf's only child is its class."""
         if level != inf and children.count(children[0]) == len(children):
             return children[0]
         key = (level, children)
@@ -37,7 +37,7 @@ class _Nodes:
 
 
 class _Own:
-    """A function in the order of its own reads, the last one tested first."""
+    """Decision diagram of a function over its own reads, last read first."""
 
     def __init__(self, letters: Sequence[int], sizes: Sequence[int]) -> None:
         self._nodes = _Nodes()
@@ -54,7 +54,7 @@ class _Own:
         return self._nodes.all[node][1][0]
 
     def after(self, node: int, place: int, digit: int) -> int:
-        """What is left of a node when a read has this digit."""
+        """Restriction of a node to one digit of a read."""
         own, children = self._nodes.all[node]
         if own == place:
             return children[digit]
@@ -105,11 +105,11 @@ class DecisionDiagrams:
         return built(own.root, 0)
 
     def level(self, node: int) -> float:
-        """The joint read that a node tests; infinity for one that tests nothing any more."""
+        """Index of the joint read that a node tests; infinity for leaves."""
         return self._nodes.all[node][0]
 
     def child(self, node: int, level: float, digit: int) -> int:
-        """What is left of a node when a joint read has this digit."""
+        """Restriction of a node to one digit of a joint read."""
         own, children = self._nodes.all[node]
         return children[digit] if own == level else node
 

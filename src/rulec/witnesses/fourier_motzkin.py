@@ -96,7 +96,7 @@ _Ends = list[tuple[Fraction, bool]]
 def _interval(
     unknown: Term, bounds: Sequence[LinearBound], solution: Mapping[Term, Fraction]
 ) -> tuple[_Ends, _Ends]:
-    """The lower and the upper limits of one unknown, those eliminated after it being known."""
+    """Lower and upper limits of an unknown, given those eliminated later."""
     lows: _Ends = []
     highs: _Ends = []
     for bound in bounds:
@@ -121,7 +121,7 @@ def _lies_in(number: Fraction, lows: _Ends, highs: _Ends) -> bool:
 def _candidates(
     preferred: Fraction | None, ends: Sequence[Fraction], *, whole: bool, zero_first: bool
 ) -> Iterator[Fraction]:
-    """Numbers at and beside the ends of the interval, those with the shortest decimals first."""
+    """Numbers at and beside the interval's ends, shortest decimals first."""
     if preferred is not None and (preferred.denominator == 1 or not whole):
         yield preferred
     if zero_first or not ends:

@@ -1,4 +1,4 @@
-"""The joint letters of several monitors: what they can read in one and the same state.
+"""Joint letters of several monitors: their letters in one common state.
 
 The product of their decision diagrams is walked level by level, sums of numbers first, for these
 depend on each other.
@@ -39,7 +39,7 @@ Steps = tuple["tuple[int, int]", "Steps"] | None
 
 
 class JointAlphabet:
-    """The joint letters of monitors, each with a state in which they are read, as plain as can be.
+    """Joint letters of monitors, each with the plainest state that gives it.
 
     States are those that the universe's axioms allow; numbers fit together, and there can be as
     many further objects as counts ask for. Raises UndecidedError where that is too much to tell.
@@ -118,7 +118,7 @@ class JointAlphabet:
     def _numbered(
         self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
     ) -> Iterator[tuple[tuple[tuple[int, int], ...], Mapping[JointLetter, tuple[int, Steps]]]]:
-        """The digits that sums can have, and the joint letters for each of them."""
+        """Possible digits of sums, and the joint letters for each of them."""
         if not nodes:
             return
         level = self._level(nodes)
@@ -131,7 +131,7 @@ class JointAlphabet:
                 yield from self._numbered(self._after(nodes, level, digit), chosen)
 
     def _fits(self, number_digits: Sequence[tuple[int, int]]) -> bool:
-        """Can the sums come out so? The last one is new, the others can."""
+        """Tell whether sums can have these digits, all but the last checked."""
         reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
         numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
         *earlier, (last, _) = numbers
@@ -141,7 +141,7 @@ class JointAlphabet:
         return solve_numbers(numbers, self._universe.vocabulary, {}) is not None
 
     def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
-        """For each joint letter the digits with most defaults, and how many are not."""
+        """Number of non-defaults and digits with fewest, for each joint letter."""
         if nodes in self._plain:
             return self._plain[nodes]
         if len(self._plain) > MOST_NODES:

@@ -1,4 +1,4 @@
-"""Joint reads of several letter functions: each subject once, with all thresholds and values."""
+"""Joint reads of letter functions, one per subject."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Terms = tuple[tuple[Fraction, Term], ...]
 
 @dataclass(frozen=True, slots=True)
 class JointDigits:
-    """A function's own view of a joint read: ``digits[joint digit]`` is its own digit."""
+    """View of a joint read: ``digits[joint digit]`` is a function's own digit."""
 
     joint: int
     digits: tuple[int, ...]
@@ -25,7 +25,7 @@ class JointDigits:
 
 @dataclass(frozen=True, slots=True)
 class JointReads:
-    """The joint reads, numbers first, and for each function the views that its reads have."""
+    """Joint reads, numbers first, and the views of each function's reads."""
 
     reads: tuple[Read | NumberRead, ...]
     views: tuple[tuple[JointDigits, ...], ...]
@@ -68,7 +68,7 @@ def _subject(read: Read | NumberRead) -> object:
 
 
 def normal(read: NumberRead) -> tuple[Terms, Fraction]:
-    """The sum that is read as a multiple of one in normal form: that one, and the factor.
+    """Normal form of a read's sum, and the factor between the two.
 
     In normal form terms are sorted by their text, and the first coefficient is 1.
     """
@@ -99,7 +99,7 @@ def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read 
 
 
 def _sides(read: NumberRead) -> Iterable[tuple[Threshold, bool]]:
-    """The read's thresholds as those of the normal sum; are they passed by what passes those?"""
+    """Thresholds scaled to the normal form, each with its upward direction."""
     _, factor = normal(read)
     for threshold in read.thresholds:
         limit = threshold.limit / factor

@@ -35,7 +35,7 @@ MOST_LETTERS = 1 << 14
 
 @dataclass(frozen=True, slots=True)
 class LetterFunction:
-    """``letters[letter]`` is the class of a letter of these reads, which speak of objects."""
+    """Function from letters of some reads about objects to letter classes."""
 
     reads: tuple[Read | NumberRead, ...]
     letters: tuple[int, ...]
@@ -52,7 +52,7 @@ class LetterFunction:
 def monitor_function(
     machine: MealyMonitor, names: Mapping[str, str], universe: ObjectUniverse
 ) -> LetterFunction:
-    """A rule's monitor for a binding of its variables, as a function of what it reads."""
+    """Letter function of a rule's monitor for a binding of its variables."""
     reads: list[Read | NumberRead] = []
     for read in machine.reads:
         if isinstance(read, Read):
@@ -74,7 +74,7 @@ def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
 
 
 def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
-    """Class 1 where the formula of one state holds, else 0. Raises UndecidedError."""
+    """Letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
     return LetterFunction(
         reads, tuple(holds >> letter & 1 for letter in range(count_letters(reads)))
@@ -83,7 +83,7 @@ def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
 
 @dataclass(frozen=True, slots=True)
 class CountFunction:
-    """How many of the universe's own objects count: ``counted[class]``.
+    """Number of the universe's own objects that count: ``counted[class]``.
 
     Its class also tells apart all else that the count depends on, besides further objects.
     """
@@ -93,7 +93,7 @@ class CountFunction:
     counted: tuple[int, ...]
 
     def counted_in(self, digits: Sequence[int]) -> int:
-        """How many objects count in the letter with these digits."""
+        """Number of counted objects in the letter with these digits."""
         return self.counted[self.function.value(digits)]
 
 
@@ -138,12 +138,12 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[Count]:
 
 
 def body_of(count: Count, name: str) -> Formula:
-    """The formula that is required_inputs of an object that a count goes over."""
+    """Condition that an object must satisfy to be counted."""
     return _settled(rename_variables(count.body, {count.variable: name}))
 
 
 def speaks_of_extra(read: Read | NumberRead) -> bool:
-    """Whether an object that is there only to be counted is read."""
+    """Tell whether a read is about an additional, counted object."""
     if isinstance(read, Read):
         return EXTRA in read.variables
     return any(EXTRA in variables_of(term) for _, term in read.terms)
@@ -161,7 +161,7 @@ def _all_of(formulas: Sequence[Formula]) -> Formula:
 
 
 def _settled(formula: Formula) -> Formula:
-    """The formula with each equality of two names replaced by its truth value."""
+    """Replace each equality of two names by its truth value."""
     match formula:
         case Same(left, right):
             return Constant(left == right)
@@ -175,7 +175,7 @@ def _settled(formula: Formula) -> Formula:
 def truths_of(
     formulas: Sequence[Formula], vocabulary: Vocabulary
 ) -> tuple[tuple[Read | NumberRead, ...], list[int]]:
-    """The joint reads of formulas of one state, and for each the letters in which it holds.
+    """Joint reads of non-temporal formulas, and the letters that satisfy each.
 
     A set of letters is the bits of an integer. Raises UndecidedError if there are too many.
     """

@@ -56,7 +56,7 @@ class WitnessTrace:
 
 
 class LetterWitnesses:
-    """The letters of a rule's monitor as states, those that no state has left out."""
+    """Witness states for the possible letters of a rule's monitor."""
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
         self._monitor = rule.machine
@@ -78,11 +78,11 @@ class LetterWitnesses:
         self._choices: _ObjectChoices | None = None
 
     def plainest(self, letter_class: int) -> int | None:
-        """The possible letter of a class that has most defaults; None if none is possible."""
+        """Possible letter of a class with most defaults, or None."""
         return self._nearest_of(letter_class, self._plain)
 
     def nearest(self, letter: int) -> list[tuple[int, int]]:
-        """From every other class the possible letter nearest to this one, behind its distance.
+        """Nearest possible letter in every other class, after its distance.
 
         The distance is the number of reads in which two letters differ (Hamming).
         """
@@ -145,7 +145,7 @@ class LetterWitnesses:
 
 
 class _ObjectChoices:
-    """What a monitor reads, together with what its counts read of the rule's own objects."""
+    """Joint reads of a monitor and of its counts about own objects."""
 
     def __init__(
         self, monitor: MealyMonitor, universe: ObjectUniverse, counts: Sequence[Count]
@@ -157,7 +157,7 @@ class _ObjectChoices:
         self._joint = joint_reads(functions, universe.vocabulary)
 
     def state(self, digits: Sequence[int]) -> JointState | None:
-        """A state with these digits of the monitor's reads, in which its counts come out.
+        """State with these digits of the monitor's reads and fitting counts.
 
         What the monitor leaves open has its default where it can.
         """
@@ -176,7 +176,7 @@ class _ObjectChoices:
         return None
 
     def _ordered(self, level: int, digits: Sequence[int]) -> Iterator[int]:
-        """The digits of a joint read that the monitor's digits allow, the default one first."""
+        """Digits of a joint read that the monitor's allow, default first."""
         read = self._joint.reads[level]
         default = default_digit(read, self._universe.vocabulary)
         views = [

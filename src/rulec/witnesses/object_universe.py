@@ -1,4 +1,4 @@
-"""The objects that rules are compared on, and what is known of them."""
+"""Universe of objects for comparing rules, with its axioms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.vocabulary.object_choices import choices
 
 @dataclass(frozen=True, slots=True)
 class ObjectUniverse:
-    """Objects with their types, all of them there all the time, and what holds in every state.
+    """Objects that are always present, their types, and the axioms on them.
 
     ``unsaid`` are declarations that traces leave out.
     """
@@ -42,7 +42,7 @@ class ObjectUniverse:
         return rename_variables(self.canonical(formula), names)
 
     def canonical(self, formula: Formula) -> Formula:
-        """The formula with the universe's own name for what its counts go over."""
+        """Rename the variables of a formula's counts to canonical names."""
         match formula:
             case Comparison(terms, relation, limit, text):
                 own = tuple((factor, self.canonical_term(term)) for factor, term in terms)
@@ -54,7 +54,7 @@ class ObjectUniverse:
         return formula
 
     def canonical_term(self, term: Term) -> Term:
-        """A term whose count, if it is one, goes over ``COUNTED``, so that equal ones are equal."""
+        """Rename a count's variable to ``COUNTED``, so that equal counts are equal."""
         if not isinstance(term, Count):
             return term
         body = self.canonical(term.body)
@@ -71,7 +71,7 @@ EXTRA = "+"
 
 
 def _depth(formula: Formula) -> int:
-    """How deep counts stand in each other."""
+    """Nesting depth of the counts in a formula."""
     return max((len(count.variable) for count in counts_in(formula)), default=0)
 
 

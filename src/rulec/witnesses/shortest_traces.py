@@ -15,7 +15,7 @@ from rulec.witnesses.shortest_word import shortest_word
 
 @dataclass(frozen=True, slots=True)
 class ShortestTraces:
-    """A trace that is accepted, and one that is rejected; None if there is none.
+    """Accepted trace and shortest rejected trace of a rule, each or None.
 
     No shorter trace is rejected. The accepted one differs from it in one state where that is
     possible, and else shows more of the rule than a trace that never leaves the first state of its
@@ -56,7 +56,7 @@ def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTrace
 
 
 def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
-    """The monitor with only those words accepted whose runs leave the first state.
+    """Monitor that accepts only words whose runs leave the first state.
 
     State ``n + 1`` is state ``n`` of a run that has left; state 0 the first one until then.
     """
@@ -78,9 +78,10 @@ def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
 def _near_miss(
     monitor: MealyMonitor, rejected: Sequence[int], witnesses: LetterWitnesses
 ) -> list[int] | None:
-    """The rejected word with one letter changed so that it is accepted, the last one if possible.
+    """Accepted word that differs from the rejected one in one letter.
 
-    It is changed as little as possible, and then so that it sees most states of the automaton.
+    The letter is as late as possible, changed as little as possible, and then so that the run
+    visits most states of the monitor.
     """
     for place in reversed(range(len(rejected))):
         candidates = []
@@ -95,7 +96,7 @@ def _near_miss(
 
 
 def _run(monitor: MealyMonitor, word: Sequence[int]) -> tuple[bool, int]:
-    """The verdict on a word of letters, and how many states its run sees."""
+    """Verdict on a word, and the number of states it visits."""
     states, accepted = [0], False
     for letter in word:
         letter_class = monitor.letters[letter]

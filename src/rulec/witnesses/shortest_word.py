@@ -1,4 +1,4 @@
-"""Shortest words on which several monitors give the verdicts that are asked for.
+"""Shortest words on which several monitors give requested verdicts.
 
 The product of the monitors is searched breadth first, and built as far as the search gets.
 """
@@ -21,7 +21,7 @@ ProductState = tuple[int, ...]
 def shortest_word(
     monitors: Sequence[MealyMonitor], verdicts: Sequence[bool], letters: Sequence[JointLetter]
 ) -> tuple[JointLetter, ...] | None:
-    """Find a shortest word, not empty, with these verdicts; None if there is none.
+    """Find a shortest non-empty word with these verdicts, or None.
 
     Of several the first in the order of ``letters``. A single monitor is searched to its end;
     raises UndecidedError where a product is too large for that.

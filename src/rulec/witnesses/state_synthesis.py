@@ -57,7 +57,7 @@ def synthesize_state(
     digits: Sequence[tuple[Read | NumberRead, int]],
     counted: tuple[tuple[Count, int], ...] = (),
 ) -> JointState | None:
-    """Synthesise a state in which each read has a given digit; None if there is none."""
+    """Synthesise a state with a given digit for each read, or None."""
     vocabulary = universe.vocabulary
     number_digits = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
     numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
@@ -79,7 +79,7 @@ def solve_numbers(
     vocabulary: Vocabulary,
     least: Mapping[Count, int],
 ) -> dict[Term, Fraction] | None:
-    """Numbers with these digits, defaults where they fit, counts being ``least`` or more."""
+    """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
     counts, quantities = _terms_of(number_digits)
     system = _linear_system(number_digits, counts, least)
     preferred: dict[Term, Fraction] = {}
@@ -99,7 +99,7 @@ def solve_numbers(
 def numbers_near_thresholds(
     number_digits: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
 ) -> dict[Quantity, float] | None:
-    """Numbers with these digits, close to the thresholds, as a test of them needs.
+    """Numbers with these digits, close to the thresholds, for tests.
 
     Of a sum of several quantities one is close, the others have their defaults, or are zero, unless
     they are compared by themselves. None if there are none, or if floats cannot write them.
@@ -136,13 +136,13 @@ def _is_float(number: Fraction) -> bool:
 
 
 def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, int]:
-    """How many objects the numbers of a synthesised state ask each count to come to."""
+    """Values of the counts that a synthesised state requires."""
     numbers = solve_numbers(state.number_digits, vocabulary, dict(state.counted)) or {}
     return {term: int(number) for term, number in numbers.items() if isinstance(term, Count)}
 
 
 def are_consistent(number_digits: Sequence[tuple[NumberRead, int]]) -> bool:
-    """Whether some numbers have these digits, counts being whole and not below zero."""
+    """Tell whether numbers with these digits exist; counts are natural numbers."""
     counts, quantities = _terms_of(number_digits)
     system = _linear_system(number_digits, counts, {})
     return solve(system, [*quantities, *counts], {}, frozenset(counts)) is not None
@@ -169,7 +169,7 @@ def _linear_system(
 
 
 def _bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
-    """The inequalities by which a sum has a digit: above one threshold, below the next."""
+    """Inequalities for a sum's digit: above one threshold, below the next."""
     terms: dict[Term, Fraction] = {term: coefficient for coefficient, term in read.terms}
     if digit > 0:
         passed = read.thresholds[digit - 1]
@@ -202,7 +202,7 @@ def default_value(declaration: Declaration) -> Value:
 
 
 def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
-    """The digit of a read by defaults alone; None if a default is missing."""
+    """Digit of a read by defaults alone; None if one is missing."""
     if isinstance(read, Read):
         default = vocabulary.declarations[read.name].default
         return None if default is None else read.digit(default)
@@ -219,7 +219,7 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
 def subjects_of(
     vocabulary: Vocabulary, objects: Mapping[str, str]
 ) -> Iterator[tuple[Subject, Declaration]]:
-    """The subjects of all that a state could say of these objects, and their declarations."""
+    """Subjects that states can have values for, and their declarations."""
     for name, declaration in vocabulary.declarations.items():
         candidates = [
             [item for item, kind in objects.items() if vocabulary.is_subtype(kind, parameter)]

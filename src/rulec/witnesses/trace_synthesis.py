@@ -20,7 +20,7 @@ from rulec.witnesses.undecided import UndecidedError
 def place_objects(
     states: Sequence[JointState], universe: ObjectUniverse, stem: Callable[[str], str]
 ) -> tuple[dict[str, str], list[dict[Subject, Value]]]:
-    """Name the further objects that the counts of all states need, and say what is true of them.
+    """Name the additional objects that all states' counts need, with values.
 
     Args:
         states: synthesised states.
@@ -55,7 +55,7 @@ def synthesize_trace(
     step_s: Fraction,
     shows: Callable[[Trace], bool],
 ) -> Trace:
-    """Synthesise a trace through these states that shows what it is to show.
+    """Synthesise a trace through these states for which ``shows`` holds.
 
     Raises UndecidedError if the objects that are there to be counted are in the way.
     """
@@ -83,7 +83,7 @@ def _does_show(trace: Trace, shows: Callable[[Trace], bool], *, certain: bool) -
 
 
 def _types(groups: Iterable[Sequence[Any]]) -> list[str]:
-    """The types of the companions that are there in all states, so that each has enough."""
+    """Types of companions, each as often as any state needs it."""
     most: Counter[str] = Counter()
     for group in groups:
         most |= Counter(companion.type for companion in group)
@@ -101,7 +101,7 @@ def _names(stems: Sequence[str], taken: Mapping[str, str]) -> list[str]:
 
 
 def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
-    """Values of what nobody asks about further objects: the defaults, then others of each."""
+    """Values for unread properties of additional objects, defaults first."""
     yield {}
     if not types:
         return
@@ -117,7 +117,7 @@ def _written(
     all_objects: Mapping[str, str],
     fill: Mapping[str, Value],
 ) -> dict[str, Any]:
-    """A state as a trace has it: what is not the default, and what has none."""
+    """State in a trace's form, without values that equal their defaults."""
     state: dict[str, Any] = {}
     for (name, items), declaration in subjects_of(universe.vocabulary, all_objects):
         value = values.get((name, items))
@@ -138,5 +138,5 @@ def _written(
 def single_rule_rulebook(
     rulebook: CompiledRulebook, rule: CompiledRule, universe: ObjectUniverse
 ) -> CompiledRulebook:
-    """The rulebook with one rule only, for traces in the vocabulary of a universe."""
+    """Rulebook of one rule, in the vocabulary of a universe."""
     return replace(rulebook, vocabulary=universe.vocabulary, rules=(rule,))

@@ -1,4 +1,4 @@
-"""A question that is too large, or of a kind that is not answered."""
+"""Error for questions that are too large or not supported."""
 
 from __future__ import annotations
 

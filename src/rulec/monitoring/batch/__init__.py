@@ -1,1 +1,1 @@
-"""Many traces at once: machines run over columns of letters, one step of all traces at a time."""
+"""Batch verification: one step of many traces at a time."""

@@ -1,4 +1,4 @@
-"""Many traces judged together; each verdict is the one that ``verify`` gives of the trace alone.
+"""Verification of many traces together, with verdicts equal to ``verify``'s.
 
 Traces that are alike but for their objects' names run through the machines together. Whatever is
 odd about a trace, from an unknown name to a missing value, is left to ``verify``, which says it
@@ -46,7 +46,7 @@ Answer = Verdict | NotJudged
 def verify_many(
     traces: Iterable[Trace | RulecError], rulebook: CompiledRulebook
 ) -> Iterator[Answer]:
-    """The verdict on each trace, in their order; in place of one that cannot be given, why.
+    """Answers for many traces in order: a verdict, or a ``NotJudged``.
 
     Traces are read some thousands at a time, fewer if they are long, so there may be any number of
     them. A ``RulecError`` in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
@@ -65,7 +65,7 @@ def verify_many(
 def verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
 ) -> list[Answer]:
-    """The same for a few traces; ``fewest`` of one shape are judged together."""
+    """Answers for some traces, together from ``fewest`` of one shape on."""
     answers: list[Answer | None] = [None] * len(items)
     shapes: dict[Shape, list[int]] = {}
     for place, item in enumerate(items):
@@ -84,7 +84,7 @@ def verify_chunk(
 
 
 def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
-    """Have traces so many states together that it does not matter how few they are?"""
+    """Tell whether few traces have enough states to be verified together."""
     traces = [items[place] for place in places]
     return sum(len(trace.states or ()) for trace in traces if isinstance(trace, Trace)) >= _LONG
 
@@ -125,7 +125,7 @@ _Placed = tuple[int, Trace]
 
 @dataclass(frozen=True, slots=True)
 class _GroupVerdicts:
-    """What the engine says of the objects of a group, of which traces, and in which order."""
+    """Verdicts on a group's ``objects``, its traces and their order."""
 
     verdicts: Sequence[VerdictColumns]
     traces: Sequence[_Placed]
@@ -172,7 +172,7 @@ def _is_framed(trace: Trace) -> bool:
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook for traces of this one's shape. Raises RulecError if it cannot judge them."""
+    """Rulebook for traces of this shape. Raises RulecError if it cannot judge."""
     rules = rulebook_for_trace(trace, rulebook)
     for rule in rules.rules:
         check_step(rule, exact(trace.step_s))
@@ -196,7 +196,7 @@ def _fits(
 
 
 def violations_in(verdicts: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
-    """The violations of each trace that has some, in the order of rules and objects."""
+    """Violations by trace, in the order of rules and objects."""
     result: dict[int, list[Violation]] = {}
     for verdict in verdicts:
         rule, objects = verdict.task.rule, verdict.task.objects

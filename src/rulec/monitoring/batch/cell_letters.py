@@ -1,4 +1,4 @@
-"""The letters that a rule's machine reads in each of a few states."""
+"""Letters that a rule's machine reads in each cell."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rulec.vocabulary import Vocabulary
 
 
 class CellLetterReader:
-    """The states of walks, read for bindings, by the code that reads single traces."""
+    """Reader of the letters of bindings, cell by cell."""
 
     def __init__(self, traces: TraceCells, vocabulary: Vocabulary) -> None:
         self._n_cells = len(traces.states)
@@ -34,7 +34,7 @@ class CellLetterReader:
         ]
 
     def letters(self, binding: RuleBinding) -> list[int]:
-        """For each cell the class of the letter; -1 where there is none to be read.
+        """Letter class of each cell; -1 where there is none to read.
 
         Where an object of the binding is not there its machine does not run; any letter will do.
         """

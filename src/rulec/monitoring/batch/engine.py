@@ -1,4 +1,4 @@
-"""The batch engine: traces of one shape, verified by every rule for every binding."""
+"""Batch engine: all rules and bindings on traces of one shape."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[VerdictColumns]:
-    """The verdicts on traces that are given as columns, in the order of rules and objects.
+    """Verdicts on traces as columns, in the order of rules and objects.
 
     Raises NotGivenError where a rule needs what is neither given nor has a default.
     """
@@ -30,7 +30,7 @@ def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Ve
 
 
 def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[VerdictColumns]:
-    """The verdicts on traces that are given as cells; their states have passed ``check_state``."""
+    """Verdicts on traces as cells, whose states have passed ``check_state``."""
     bindings = _bindings_of(traces, rulebook)
     reader = CellLetterReader(traces, rulebook.vocabulary)
     together: dict[tuple[int, int | None], list[RuleBinding]] = {}

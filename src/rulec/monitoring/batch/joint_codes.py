@@ -1,4 +1,4 @@
-"""Joint codes: one number, a cell, for all that some rules read of a state."""
+"""Joint codes: one number (cell) for everything that rules read."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _Key = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Digit:
-    """A thing that is read: a column of numbers below ``size``, or one number for all states.
+    """Joint read's digits below ``size``: a column, or a constant for all.
 
     ``meanings`` are the digits of a machine's letter that these numbers stand for.
     """
@@ -43,7 +43,7 @@ _Digits = Sequence[_Digit]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Alphabet:
-    """A machine's classes of letters, and the ``meanings`` of each thing that it reads."""
+    """Letter classes of a machine, and the ``meanings`` of its reads."""
 
     letters: Array
     meanings: Sequence[Array]
@@ -177,7 +177,7 @@ def _numbers(
 def _class_cells(
     reader: ColumnReader, binding: RuleBinding, digits: _Digits, alphabet: _Alphabet
 ) -> JointCells:
-    """For a machine with very many letters: its classes themselves are the cells."""
+    """Cells that are letter classes, for a machine with very many letters."""
     layout, machine = reader.columns.layout, binding.rule.machine
     given = {digit.key: digit.values for digit in digits if isinstance(digit.values, np.ndarray)}
     numbers = _numbers(machine, digits, given, layout.n_states)

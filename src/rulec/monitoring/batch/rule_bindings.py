@@ -12,7 +12,7 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RuleBinding:
-    """A rule, bound to ``objects``, from step ``first`` to ``last`` (inclusive) of every trace.
+    """Rule bound to ``objects`` from step ``first`` to ``last`` (inclusive).
 
     ``last`` is None for each trace's own end. Bindings are compared by identity: they are keys.
     """
@@ -35,7 +35,7 @@ def rule_bindings(
     present: Mapping[str, tuple[int, int]],
     n_steps: int,
 ) -> Iterator[RuleBinding]:
-    """All bindings on traces with these objects, of which the longest has ``n_steps`` states.
+    """All bindings of rules to objects, for at most ``n_steps`` states.
 
     In the order in which a verdict lists violations. All traces have the steps that ``present``
     speaks of.

@@ -1,4 +1,4 @@
-"""Blocks of tables, judged as they are; each verdict is the one that the trace gets alone."""
+"""Verification of blocks of tables, with verdicts equal to ``verify``'s."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Items = Sequence[Trace | RulecError]
 
 
 def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
-    """As ``verify_chunk``, of traces that may be a block; with the traces as they were read."""
+    """Traces as they were read, perhaps a block, and their answers."""
     if isinstance(items, Block):
         answers = _verify_block(items, rulebook)
         if answers is not None:
@@ -71,7 +71,7 @@ def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | No
 def _verify_group(
     group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
-    """Answer for the traces of which all that the rules read can be."""
+    """Answer for those traces of a group whose values are all readable."""
     presence = group.presence
     objects = dict(zip(group.objects, group.types, strict=True))
     step_s = float(presence.step_s[group.traces[0]])

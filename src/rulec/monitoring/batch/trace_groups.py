@@ -1,4 +1,4 @@
-"""Groups of traces of one shape, as cells: the states that they share."""
+"""Groups of traces of one shape, as cells of shared states."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ StateIdentity: TypeAlias = int
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TraceGroup:
-    """Traces of one shape as cells; ``order`` are their places in the order of the layout.
+    """Traces of one shape as cells, their places in layout ``order``.
 
     The objects are the first trace's. ``names`` has for each state what they are called there, in
     their order; it is empty if all traces have the same.
@@ -80,14 +80,14 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
 
 
 def _distinct(keys: Sequence[Hashable]) -> tuple[Sequence[int], NDArray[np.int64]]:
-    """A place for each distinct key, and for every key which of these it is."""
+    """Place of each distinct key, and index of every key among these."""
     places = dict(zip(keys, range(len(keys)), strict=True))
     numbers = {key: number for number, key in enumerate(places)}
     return list(places.values()), np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
 
 
 def under_common_names(group: TraceGroup) -> TraceCells:
-    """The group's cells, their states renamed; None in place of one that ``renamed`` refuses."""
+    """Cells of a group, their objects renamed; None for a refused state."""
     if not group.names:
         return group.cells
     renaming = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
@@ -96,7 +96,7 @@ def under_common_names(group: TraceGroup) -> TraceCells:
 
 
 def _scenes(trace: Trace, n_steps: int) -> tuple[list[Mapping[str, str]], list[int]]:
-    """Which objects are there together at any time; and for each step which of these are."""
+    """Distinct sets of objects present together, and their index by step."""
     changes = {0, n_steps}
     for first, last in trace.present.values():
         changes |= {first, last + 1}

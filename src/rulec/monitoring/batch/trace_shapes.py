@@ -1,4 +1,4 @@
-"""Traces that are alike but for the names of their objects, and what they are called."""
+"""Shapes of traces: all but the names of their objects."""
 
 from __future__ import annotations
 
@@ -17,19 +17,16 @@ _PLAIN = frozenset((bool, int, float, str))
 
 
 def shape_of(trace: Trace) -> Shape:
-    """What traces have in common that are judged together.
-
-    The step, and in their order the objects' types and when they are there; not their names.
-    """
+    """Shape of a trace: step, object types in order, presence; no names."""
     places = {name: place for place, name in enumerate(trace.objects)}
     stretches = [(places[name], stretch) for name, stretch in trace.present.items()]
     return trace.step_s, tuple(trace.objects.values()), tuple(sorted(stretches))
 
 
 def renamed(about: object, names: Mapping[str, str]) -> dict[str, Any] | None:
-    """What is said of objects, said of those of other names.
+    """Values by object, with the objects renamed.
 
-    None if it speaks of what is none of the objects, or is unusual.
+    None if they are about anything but these objects, or are unusual.
     """
     if type(about) is not dict:
         return None
@@ -43,7 +40,7 @@ def renamed(about: object, names: Mapping[str, str]) -> dict[str, Any] | None:
 
 
 def renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
-    """The same for a whole state."""
+    """State with its objects renamed; None if that is not possible."""
     if type(state) is not dict:
         return None
     result = {
@@ -56,7 +53,7 @@ def renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | N
 def under_own_names(
     violations: Sequence[Violation], objects: Names, own: Names
 ) -> tuple[Violation, ...]:
-    """Violations that are told of some objects, told of those of other names."""
+    """Violations with the group's object names replaced by a trace's own."""
     if not violations or objects == own:
         return tuple(violations)
     names = dict(zip(objects, own, strict=True))

@@ -18,7 +18,7 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointCells:
-    """A column of cells, and the letters that some bindings read in them.
+    """Column of cells, and the letters of some bindings in them.
 
     ``letters[k][cell]`` is the letter class that the k-th binding's machine reads there; below
     0 if it reads none: a value is missing, or what is read cannot be the case.
@@ -32,7 +32,7 @@ class JointCells:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class VerdictColumns:
-    """The verdicts for a binding: ``accepted`` has one for each trace, in the layout's order.
+    """Verdicts for a binding; ``accepted`` follows the layout's order of traces.
 
     ``unread`` are traces with a state, on the binding's stretch, that the machine reads no letter
     of; their verdicts mean nothing.
@@ -53,7 +53,7 @@ class VerdictColumns:
         return np.flatnonzero(~self.accepted)
 
     def lost_at(self) -> NDArray[np.int64]:
-        """For each of ``violated`` the first state after which nothing can save the rule, or -1.
+        """First state that loses the rule for each of ``violated``, or -1.
 
         -1 if only the end of the trace, or of the objects' stretch, decides.
         """
@@ -75,12 +75,12 @@ class VerdictColumns:
 
 
 def _n_longer(ends: NDArray[np.int64], step: int) -> int:
-    """How many of these, which descend, are above a step."""
+    """Number of ends, in descending order, that are above a step."""
     return int(np.searchsorted(-ends, -step))
 
 
 def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
-    """The verdicts for some bindings, in their order. All have the same stretch."""
+    """Verdicts for some bindings with a common stretch, in their order."""
     if not cells.bindings:
         return
     first, last = cells.bindings[0].stretch
@@ -101,7 +101,7 @@ def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
 
 
 def _any_where_none(letters: Sequence[int]) -> tuple[int, ...]:
-    """Some letter for the cells that have none: they are met in no trace, or in unread ones."""
+    """Letters with 0 for cells without one, met in unread traces only."""
     if min(letters, default=0) >= 0:
         return tuple(letters)
     return tuple([max(letter, 0) for letter in letters])

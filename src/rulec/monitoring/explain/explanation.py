@@ -1,4 +1,4 @@
-"""Explanations of violations: the values read in each state, and of the formula's parts."""
+"""Explanations of violations: values of reads and subformulas by state."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Something that the rule reads, such as ``position(v1)``, and its value in each state.
+    """Read of a rule, such as ``position(v1)``, with its values by state.
 
     ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
     ``changed``: does the rule tell the value in the decisive state from the one before?
@@ -55,7 +55,7 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of the formula, ``depth`` operators inside it, and whether it holds in each state.
+    """Subformula at a ``depth`` of nesting, with its truth by state.
 
     ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
     it one of those that, at some instant, make the formula come out as it does?
@@ -93,7 +93,7 @@ class Explanation:
 
 
 def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
-    """Explain one of the violations that ``verify`` found in this trace by this rulebook."""
+    """Explain a violation that ``verify`` reported for this trace and rulebook."""
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     binding = _binding(violation, rule, trace, rulebook.vocabulary)
     columns = letter_reader_of(trace, rulebook)
@@ -161,7 +161,7 @@ def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _ObservedStates:
-    """The states of a binding; verify has read all of their values, so none is unknown.
+    """States of a binding, all of whose values are known.
 
     ``shown`` are the indices of the states to show, ``decisive`` is one of them.
     """
@@ -172,7 +172,7 @@ class _ObservedStates:
     decisive: int
 
     def truths(self, proposition: Proposition) -> list[bool]:
-        """Whether a proposition holds in each state."""
+        """Truth of a proposition in each state."""
         return [holds(proposition, self.bound, view) is True for view in self.views]
 
     def values(self, name: str, arguments: Sequence[str]) -> list[Value]:
@@ -202,14 +202,14 @@ class _ObservedStates:
         return [objects for objects in result if not isinstance(objects, Unknown)]
 
     def changes(self, values: Sequence[object]) -> bool:
-        """Whether the value in the decisive state is another than in the one before."""
+        """Tell whether the decisive state's value differs from the one before."""
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
 
 
 def _facts(
     truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], observed: _ObservedStates
 ) -> Iterator[Observation]:
-    """All that is read, in the order in which the formula first speaks of it."""
+    """Observations of all reads, in order of first mention."""
     readers: dict[Atom | Term, list[Proposition]] = {}
     for proposition in truths:
         for read in _read_by(proposition):
@@ -256,7 +256,7 @@ def _parts(
     observed: _ObservedStates,
     depth: int,
 ) -> Iterator[Part]:
-    """The parts as they are written, with the values of the same formula with bounds in steps."""
+    """Subformulas as written, with the truth of those in steps."""
     values = truths[stepped]
     shown = tuple(values[n] for n in observed.shown)
     text, decides = formula_text(written), stepped in deciding

@@ -31,7 +31,7 @@ _FAR = 1 << 40
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """The values that a state would have had to have: the letters of any of the ``cubes`` do.
+    """Values that repair a state: the letters of any of the ``cubes``.
 
     ``place`` is the state's in the word. Of what need not be otherwise a cube has all digits.
     """
@@ -115,7 +115,7 @@ def _accepts(machine: MealyMonitor, state: int, rest: Sequence[int]) -> bool:
 
 
 class _LetterDistances:
-    """All letters of a machine, as columns of digits, and how far they are from a letter."""
+    """Letters of a machine as columns of digits, and their distances."""
 
     def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
@@ -161,7 +161,7 @@ class _LetterDistances:
         self._near.clear()
 
     def can_be(self, number: int) -> bool:
-        """Whether there are numbers with the digits of this letter."""
+        """Tell whether some numbers have the digits of this letter."""
         digits = tuple(self._digits[self._is_number, number].tolist())
         if digits not in self._can_be:
             reads = [read for read in self._reads if isinstance(read, NumberRead)]
@@ -169,7 +169,7 @@ class _LetterDistances:
         return self._can_be[digits]
 
     def ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
-        """The letters as near to a given one as this one, of the classes that do as well."""
+        """Cubes of equally good letters, as near to a given one."""
         key = given, number, does.tobytes()
         if key not in self._ways:
             self._ways[key] = self._found_ways(given, number, does)
@@ -187,7 +187,7 @@ class _LetterDistances:
         return tuple(islice((cube for cubes in generator for cube in cubes), LIMITS.repairs_listed))
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
-        """Letters with the same changes: in one cube if they are all that it has."""
+        """Cubes of letters with common changes, one cube if that is exact."""
         rows = {
             tuple(self._digits[changed, letter].tolist())
             for letter in letters

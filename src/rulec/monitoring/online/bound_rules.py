@@ -33,7 +33,7 @@ KnownState: TypeAlias = tuple[StateShape, tuple[Encoded, ...]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundRule:
-    """A rule with every binding of its variables to objects that are present.
+    """Rule with every binding of its variables to present objects.
 
     ``bindings`` are those objects, in the order of the variables. They have the ``places`` among
     all bindings of all groups; there the rule is the one with this ``number`` in its ``group``.
@@ -51,7 +51,7 @@ class BoundRule:
 
 
 class BoundRules:
-    """Rules, and the objects that are present, of types that the vocabulary knows."""
+    """Rules bound to the present objects, whose types the vocabulary knows."""
 
     def __init__(
         self, rulebook: CompiledRulebook, groups: RuleGroups, objects: Mapping[str, str]
@@ -78,7 +78,7 @@ class BoundRules:
     def read(
         self, state: State, number: int, place: SourceLocation | None
     ) -> tuple[Letters, KnownState | None]:
-        """The letters of a state, and the state encoded, if that can be done.
+        """Letters of a state, and its encoding if it has one.
 
         Raises:
             RulecError: R0502 to R0505 or R0508, naming the state by its ``number``.
@@ -96,7 +96,7 @@ class BoundRules:
         return self._careful_letters(state, number, place), known
 
     def _reader_of(self, names: tuple[str, ...]) -> GroupLetters | None:
-        """The reader of states with values for these names; None if they need a closer look."""
+        """Reader of states with these names; None for the careful way."""
         try:
             return self._readers[names]
         except KeyError:
@@ -110,7 +110,7 @@ class BoundRules:
         return self._readers[names]
 
     def _careful_letters(self, state: State, number: int, place: SourceLocation | None) -> Letters:
-        """The letters by the way of ``verify``, which knows every case and every complaint."""
+        """Letters read like ``verify`` does, with all cases and errors."""
         where = f"state {number}"
         check_state(state, self.objects, self._rulebook.vocabulary, where, place)
         reader = LetterReader(

@@ -1,4 +1,4 @@
-"""The past of a graph, as far as it bears on what can come."""
+"""Past of a monitor, as far as it affects future verdicts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True)
 class CarriedState:
-    """States of the machines whose objects stay, and what is violated for good.
+    """Machine states of objects that stay, and the permanent violations.
 
     ``settled`` are rules for objects that stay that are among the ``violations``.
     """

@@ -23,7 +23,7 @@ other two the end decides: if it came now, what ``holds so far`` would be kept, 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MonitorEdge:
-    """A monitor behind a letter: the state reached, and the verdict as of this letter.
+    """Edge of a monitor: the state reached, and the four-valued verdict.
 
     ``successors`` has an edge for each letter class that may come next. Edges of one monitor that
     are alike are identical.
@@ -61,7 +61,7 @@ def linked_monitor(machine: MealyMonitor) -> LinkedMonitor:
 
 
 def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourValued:
-    """The verdict on a word that leads to a state and is accepted or not if it ends here."""
+    """Four-valued verdict (RV-LTL) on a word that leads to a state."""
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
     if accepted:
         return "satisfied" if state == machine.accepting_sink else "holds so far"

@@ -1,4 +1,4 @@
-"""Letters that rule groups read of states of one shape, binding by binding.
+"""Letters of rule groups for states of one shape, by binding.
 
 The letters for one state of the world, and for some values, are computed once and kept.
 """
@@ -35,7 +35,7 @@ _ReadLetters: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[int]]
 
 
 class GroupLetters:
-    """A reader of states of a shape, for groups with one or more bindings each.
+    """Reader of the letters of groups with bindings, for one shape.
 
     Raises:
         LookupError, TypeError: such states need a closer look.
@@ -93,7 +93,7 @@ class GroupLetters:
 
 
 class _LetterTable(dict[Any, int]):
-    """A group's letters by the encoded values of its own inputs, with the digits of all others.
+    """Letters of a group by the encoded values of its own inputs.
 
     The encoded value of a single input stands for itself, those of several are a tuple.
     """
@@ -124,7 +124,7 @@ class _LetterTable(dict[Any, int]):
 
 
 class _GroupReader:
-    """The reader of a group's letters; ``read`` are the values that it looks at."""
+    """Reader of a group's letters; ``read`` are the values it looks at."""
 
     def __init__(
         self,
@@ -169,7 +169,7 @@ class _GroupReader:
         self._whole = None if None in whole else [part for part in whole if part is not None]
 
     def in_world(self, world: Sequence[Encoded]) -> _ReadLetters:
-        """The function that reads a letter for each binding in this state of the world."""
+        """Reader of the letters of all bindings, for one world state."""
         digits = {
             read: read.digit(world[part][place], self._breakpoints)
             for read, part, place in self._world

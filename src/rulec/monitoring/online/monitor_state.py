@@ -1,4 +1,4 @@
-"""States of a running monitor: frozen, so that a state that is refused changes nothing."""
+"""Immutable states of a running monitor; a refused state changes nothing."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.value_display import short_repr
 
 
 class VerdictChange(NamedTuple):
-    """A rule's verdict for some objects is not what it was before this state.
+    """Change of a rule's verdict for some objects by a state.
 
     Objects that have just come count as having held so far. ``ended`` says that their time together
     ended with the state before: one of them is no longer there.
@@ -58,7 +58,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
 
 class MonitorState(msgspec.Struct, frozen=True, eq=False):
-    """All that a monitor knows while no object comes or goes, but for the number of the state.
+    """State of a monitor for fixed objects, without the state's number.
 
     ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
     ``n_violations`` is how many bindings have violated their rule for good. ``after`` is a cache of
@@ -112,7 +112,7 @@ def nodes_at(
 
 
 def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) -> StepResult:
-    """Take one step with these letters; the rules may be bound to other objects now.
+    """Take one step with these letters, for the rules as bound now.
 
     Takes no longer for a long past than for a short one.
     """
@@ -146,7 +146,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
 def carry_over(
     bound_rules: BoundRules, nodes: Sequence[GroupNode], into: BoundRules
 ) -> tuple[dict[str, list[MonitorEdge]], list[VerdictChange]]:
-    """The edges, by rule, with which bindings begin when the objects have changed.
+    """First edges of bindings, by rule, after the objects have changed.
 
     A binding goes on if its objects have stayed, that is, are there under the same names and of the
     same types; others start. There are also the changes by bindings that end.

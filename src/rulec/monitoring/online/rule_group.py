@@ -1,4 +1,4 @@
-"""Groups of rules about the same types of objects, whose machines take one step together.
+"""Groups of rules about common types of objects, stepped as products.
 
 For objects that such rules are bound to, the states of all their machines are one node, and what
 all of them read in a state is one letter. The product is built lazily: nodes and letters are made
@@ -82,7 +82,7 @@ class GroupNode(dict[int, "GroupNode"]):
 
 
 class CacheSize:
-    """How many nodes, letters and transitions there are."""
+    """Number of cached nodes, letters and transitions."""
 
     n = 0
 
@@ -137,7 +137,7 @@ class RuleGroup:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RuleGroups:
-    """The rules of a rulebook, one by one and by the types of their variables.
+    """Rules of a rulebook, singly and grouped by their variables' types.
 
     The groups cache their nodes, letters and transitions.
     """

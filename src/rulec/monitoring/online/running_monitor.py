@@ -70,12 +70,12 @@ class Monitor:
 
     @property
     def step_s(self) -> Fraction | None:
-        """Seconds from one state to the next; None if it makes no difference."""
+        """Seconds from state to state; None if no rule depends on it."""
         return self._step_s
 
     @property
     def so_far(self) -> SoFar:
-        """The verdicts as of the last state; before the first one, it has the number -1."""
+        """Verdicts as of the last state; number -1 before the first one."""
         current, number, changes, _ = self._now
         return SoFar(number, current.verdict, current.rules, changes)
 
@@ -135,7 +135,7 @@ class Monitor:
         place: SourceLocation | None,
         same_objects: bool,
     ) -> SoFar:
-        """Take the next state, whether such a state has been there before or not."""
+        """Take the next state without the cache of earlier steps."""
         current, number, _, cache = self._now
         number += 1
         bound_rules = current.bound_rules
@@ -165,7 +165,7 @@ class Monitor:
         return SoFar(number, after.verdict, after.rules, changes)
 
     def past(self, objects: Mapping[str, str]) -> CarriedState:
-        """The past as far as it bears on a next state in which these objects are present."""
+        """Past that affects verdicts on future states with these objects."""
         current = self._now[0]
         bound_rules = BoundRules(self._rulebook, current.bound_rules.groups, objects)
         edges, ended = carry_over(current.bound_rules, current.nodes, bound_rules)

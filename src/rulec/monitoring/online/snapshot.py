@@ -49,7 +49,7 @@ class _Violation(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
-    """A saved monitor: behind how many states, and where each rule stands for each binding."""
+    """Saved monitor: its number of ``states``, and states by rule and binding."""
 
     format: str
     version: int
@@ -69,7 +69,7 @@ def to_data(
     step_s: Fraction | None,
     violations: Sequence[Violation],
 ) -> dict[str, Any]:
-    """The data that ``from_data`` reads, behind the state with a number: all of it is JSON's."""
+    """JSON data of a monitor after a state, for ``from_data``."""
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -97,7 +97,7 @@ def _rule_to_data(bound_rule: BoundRule, nodes: Sequence[GroupNode]) -> dict[str
 
 
 def fingerprint(rulebook: CompiledRulebook) -> str:
-    """A hash of the machines of all rules, and of all that decides what they read."""
+    """Hash of all rules' machines and of everything that defines their reads."""
     rules = [
         {
             "name": rule.name,
@@ -115,7 +115,7 @@ def fingerprint(rulebook: CompiledRulebook) -> str:
 
 
 def step_in(data: Any, rulebook: CompiledRulebook, place: SourceLocation | None) -> Fraction | None:
-    """The step that a monitor was saved with, once it is clear that it fits the rulebook.
+    """Step (s) of a saved monitor, checked against the rulebook.
 
     Raises:
         RulecError: R0510.
@@ -126,7 +126,7 @@ def step_in(data: Any, rulebook: CompiledRulebook, place: SourceLocation | None)
 def from_data(
     data: Any, rulebook: CompiledRulebook, groups: RuleGroups, place: SourceLocation | None
 ) -> tuple[int, MonitorState, list[Violation]]:
-    """The number of the last state, the monitor's state behind it, and the violations by then.
+    """Last state's number, monitor state and violations of a saved monitor.
 
     Raises:
         RulecError: R0510 if this is no saved monitor, one of another rulebook or damaged.
@@ -178,7 +178,7 @@ def _checked(
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:
-    """The edge of each binding. Raises LookupError or ValueError unless just these are saved."""
+    """Edges of exactly these bindings. Raises LookupError or ValueError otherwise."""
     edges: dict[str, list[MonitorEdge]] = {}
     for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):
         name, monitor = bound_rule.prepared.name, bound_rule.prepared.monitor

@@ -32,7 +32,7 @@ def read_saved(path: Path) -> Any:
 
 
 def step_of(saved: Any) -> Fraction | None:
-    """The step that a monitor was saved with; None if it says none that makes sense."""
+    """Step (s) of a saved monitor; None if missing or invalid."""
     try:
         step_s = Fraction(saved["step_s"])
     except (TypeError, LookupError, ValueError, ZeroDivisionError):
@@ -42,7 +42,7 @@ def step_of(saved: Any) -> Fraction | None:
 
 @contextmanager
 def saved_at_the_end(monitor: Monitor, path: Path | None) -> Iterator[None]:
-    """Save a monitor however the block ends; at its beginning, too, to know that it can be done.
+    """Save a monitor at the block's beginning and end, even on errors.
 
     Without a path this does nothing. Raises RulecError R0702.
     """

@@ -1,4 +1,4 @@
-"""Answers of a monitor to a stream in which some states cannot be read."""
+"""Answers of a monitor to a stream with unreadable states."""
 
 from __future__ import annotations
 

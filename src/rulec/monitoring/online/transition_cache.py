@@ -1,4 +1,4 @@
-"""A cache of a monitor's steps, by the states of a trace that have come before."""
+"""Cache of a monitor's steps by the states of earlier traces."""
 
 from __future__ import annotations
 

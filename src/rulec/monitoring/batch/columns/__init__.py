@@ -1,1 +1,1 @@
-"""Columns: made of states or of tables, and read by rules as digits."""
+"""Columns of values by state, and the digits that rules read."""

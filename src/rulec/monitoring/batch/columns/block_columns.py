@@ -1,4 +1,4 @@
-"""Blocks of tables as columns, as far as nothing about them is odd."""
+"""Columns of values from blocks of tables without oddities."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MOST_EMPTY = 64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockGroup:
-    """Traces of one shape, whose ``objects`` are called as in one of them.
+    """Traces of one shape in a block, with one trace's object names.
 
     ``traces`` are their places in the block, in the order of the ``layout``; ``rows`` those of the
     block that are theirs, ``state`` where these rows' states stand in a column.
@@ -102,7 +102,7 @@ def _by_objects(
     group: BlockGroup,
     vocabulary: Vocabulary,
 ) -> dict[Key, Array]:
-    """For all objects that anything is told of what is told of them."""
+    """Columns of a name's values by the objects that they describe."""
     rows, state = group.rows[told], group.state[told]
     about = [group.presence.item[rows], group.presence.other[rows]]
     n_parameters = len(declaration.parameters)
@@ -141,7 +141,7 @@ def _by_objects(
 
 
 def _values(column: Column, rows: NDArray[np.int64], declaration: Declaration) -> Array:
-    """What rows tell, as ``TraceColumns`` has it."""
+    """Encoded values of rows, in the encoding of ``TraceColumns``."""
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0
@@ -162,7 +162,7 @@ def _fill(
     declaration: Declaration,
     group: BlockGroup,
 ) -> None:
-    """Give a column its default where nothing is told of objects that are there."""
+    """Fill in a column's default for objects present but without values."""
     default = declaration.default
     if default is not None:
         line[missing] = encode_values([default], declaration)[0]

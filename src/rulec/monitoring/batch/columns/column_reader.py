@@ -1,4 +1,4 @@
-"""What rules read of columns: values, numbers, counts, as digits of letters."""
+"""Reader of columns: values, numbers and counts as digits of letters."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (
 
 
 class NotGivenError(Exception):
-    """There is no column for a name about some objects, no default, and a rule needs it."""
+    """A rule needs a value that has neither column nor default."""
 
     def __init__(self, name: str, objects: tuple[str, ...]) -> None:
         super().__init__(name)
@@ -47,7 +47,7 @@ class NotGivenError(Exception):
 
 
 class ColumnReader:
-    """Columns, read for the rules of a vocabulary. What has been worked out once is kept."""
+    """Caching reader of columns for the rules of a vocabulary."""
 
     def __init__(self, columns: TraceColumns, vocabulary: Vocabulary) -> None:
         self.columns = columns
@@ -55,7 +55,7 @@ class ColumnReader:
         self._known: dict[tuple[object, ...], Array] = {}
 
     def values(self, name: str, items: tuple[str, ...]) -> Array | bool | float | None:
-        """A column as it is given, or the declared default; None if there is neither.
+        """Column of a name, or its default; None if there is neither.
 
         The default of an enumeration is its place among the declared values.
         """
@@ -70,7 +70,7 @@ class ColumnReader:
         return default
 
     def digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
-        """How many thresholds a number passes in each state. Raises NotGivenError."""
+        """Number of thresholds passed in each state. Raises NotGivenError."""
         chosen = {name: bound[name] for name in scale(read).variables}
         key = (read.terms, read.thresholds, *sorted(chosen.items()))
         if key not in self._known:
@@ -96,7 +96,7 @@ class ColumnReader:
     def _summands(
         self, terms: tuple[tuple[Fraction, Term], ...], bound: ObjectBinding
     ) -> list[Summand]:
-        """What is summed up. Raises NotGivenError."""
+        """Columns of a sum's terms, with their coefficients. Raises NotGivenError."""
         summands: list[Summand] = []
         for coefficient, term in terms:
             if isinstance(term, Quantity):
@@ -110,7 +110,7 @@ class ColumnReader:
         return summands
 
     def _counted(self, count: Count, bound: ObjectBinding) -> Array:
-        """How many objects count in each state. Raises NotGivenError where that is not known."""
+        """Value of a count in each state. Raises NotGivenError if not known."""
         n_states = self.columns.layout.n_states
         total: Array = np.zeros(n_states, dtype=np.int64)
         for name, kind in self.columns.objects.items():
@@ -124,7 +124,7 @@ class ColumnReader:
         return total
 
     def _missing(self, count: Count, bound: ObjectBinding) -> NotGivenError:
-        """The first thing that the body speaks of and that is not given."""
+        """Error for the first missing value that a count's body reads."""
         for atom in atoms_of(count.body):
             if isinstance(atom, Atom):
                 items = tuple([bound[variable] for variable in atom.arguments])
@@ -149,7 +149,7 @@ class ColumnReader:
         return there
 
     def _truth(self, formula: Formula, bound: ObjectBinding) -> Truth:
-        """Where a formula of one state is known to hold, or not to."""
+        """Three-valued truth of a non-temporal formula in each state."""
 
         def proposition(part: Proposition) -> Truth:
             if isinstance(part, Comparison):
@@ -169,7 +169,7 @@ class ColumnReader:
             return UNKNOWN
 
     def compared(self, comparison: Comparison, bound: ObjectBinding) -> Mask:
-        """Where a comparison holds. Raises NotGivenError."""
+        """Truth of a comparison in each state. Raises NotGivenError."""
         at = Threshold(comparison.limit, inclusive=True)
         above = Threshold(comparison.limit, inclusive=False)
         # 0 below the limit, 1 at it, 2 above it.
@@ -177,7 +177,7 @@ class ColumnReader:
         return np.isin(side, _SIDES[comparison.relation])
 
     def atom(self, name: str, items: tuple[str, ...], wanted: str | None) -> Truth:
-        """Where a signal is on, or an enumeration has a value."""
+        """Three-valued truth of an atom in each state."""
         values = self.values(name, items)
         if values is None:
             return UNKNOWN

@@ -56,7 +56,7 @@ class _Columnizer:
         parameters: Sequence[str],
         items: tuple[str, ...],
     ) -> None:
-        """Add the columns for what states say of a name about some objects, and of further ones."""
+        """Add the columns of a name for some objects and further ones."""
         if not parameters:
             self.columns[declaration.name, items] = self._column(values, declaration, items)
             return
@@ -70,7 +70,7 @@ class _Columnizer:
             self.add(inner, declaration, parameters[1:], (*items, item))
 
     def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Sequence[tuple[str, Sequence[Any]]]:
-        """What states say of each object that any of them speaks of."""
+        """Values of all states for each object that any state mentions."""
         if set(map(len, maps)) == {len(maps[0])}:
             with suppress(KeyError, ValueError):
                 return self._if_of_the_same(maps)
@@ -84,9 +84,9 @@ class _Columnizer:
     def _if_of_the_same(
         self, maps: Sequence[Mapping[str, Any]]
     ) -> Sequence[tuple[str, Sequence[Any]]]:
-        """As ``_by_object``, if all speak of the objects of the first; KeyError otherwise.
+        """Values by object, if all states mention the same; KeyError otherwise.
 
-        ValueError if that speaks of what is none.
+        ValueError if the first state mentions something that is no object.
         """
         if not self._names:
             return [(item, list(map(itemgetter(item), maps))) for item in maps[0]]
@@ -119,7 +119,7 @@ class _Columnizer:
         return [filler if value is _NOT_GIVEN else value for value in values]
 
     def _are_there_in_any(self, items: tuple[str, ...], places: Sequence[int]) -> bool:
-        """Are all these objects there in any of the states at these places?"""
+        """Tell whether all these objects are present together in some state."""
         if not self._traces.there:
             return bool(places)
         return bool(set(places).intersection(*map(self._places_of, items)))

@@ -1,4 +1,4 @@
-"""Formulas about one instant, for all states of many traces: true, false, or not known.
+"""Three-valued truth of non-temporal formulas in all states of many traces.
 
 Kleene's strong three-valued logic, as ``rulec.monitoring.state_view`` has it for one state.
 """
@@ -17,7 +17,7 @@ Mask = NDArray[np.bool_] | np.bool_
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Truth:
-    """Where something is known to hold, and where it is known not to: columns, or one value."""
+    """Truth known to be true, and known to be false, as masks."""
 
     true: Mask
     false: Mask
@@ -27,7 +27,7 @@ UNKNOWN = Truth(np.False_, np.False_)
 
 
 def known(values: Mask) -> Truth:
-    """What is known everywhere."""
+    """Truth that is known in every state."""
     return Truth(values, ~values)
 
 

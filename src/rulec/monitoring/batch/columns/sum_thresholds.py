@@ -1,4 +1,4 @@
-"""Which thresholds the sums of columns of numbers pass: exactly, though mostly by floats.
+"""Exact comparison of sums of columns with thresholds, mostly by floats.
 
 A float stands for the decimal that Python writes for it, which is up to half a unit in the last
 place away from the float itself. Sums of floats therefore decide only where they are further from a
@@ -61,7 +61,7 @@ def _exactly(summands: Sequence[Summand], state: int) -> Fraction:
 
 
 def _nearest(number: Fraction) -> float:
-    """The float nearest to a number; infinity, which decides nothing, if it is too large."""
+    """Float nearest to a number; infinity, which decides nothing, on overflow."""
     try:
         return float(number)
     except OverflowError:

@@ -14,7 +14,7 @@ from rulec.vocabulary import Declaration, Enumeration, Signal
 
 
 class UnencodableError(Exception):
-    """A state does not fit the vocabulary, or lacks a value without a default, or is unusual."""
+    """State with an invalid, missing or unusual value."""
 
 
 def column_dtype(declaration: Declaration) -> np.dtype[Any]:
@@ -25,7 +25,7 @@ def column_dtype(declaration: Declaration) -> np.dtype[Any]:
 
 
 def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:
-    """Encode values. Raises UnencodableError if one does not fit, and for some unusual types."""
+    """Encode values. Raises UnencodableError for invalid values and unusual types."""
     kinds = set(map(type, values))
     if isinstance(declaration, Enumeration):
         places = {value: place for place, value in enumerate(declaration.values)}

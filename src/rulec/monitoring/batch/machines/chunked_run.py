@@ -1,4 +1,4 @@
-"""A machine runs over one long trace: in pieces, a step of all pieces at a time.
+"""Run of a machine over one long trace, in parallel pieces.
 
 Where in the machine a piece begins is only known when the piece before it has ended, so each is
 run from every state first; then from the one that it is.
@@ -32,14 +32,14 @@ _STEP_IN_PIECES = 64
 
 
 def run_alone(n_traces: int, n_steps: int, n_states: int) -> bool:
-    """Are these traces run one by one, by a machine with so many states?"""
+    """Tell whether it is cheaper to run these traces one by one."""
     if n_traces <= _FEW and n_steps >= _FEW:
         return True
     return n_steps >= FEWEST_STEPS and n_traces * min(n_states, _MOST_STATES) <= _MOST_RUNS
 
 
 def visited(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
-    """The states, from 0, in which a machine reads each letter of a word of one or more."""
+    """State before each letter of a non-empty word; 0 comes first."""
     n_states, n_letters = len(successors), len(letters)
     if n_states > _MOST_STATES or n_letters < FEWEST_STEPS:
         return _one_by_one(successors, letters)
@@ -77,7 +77,7 @@ def _one_by_one(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[
 
 
 def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
-    """The first letter of a word with which a machine is lost; -1 if there is none."""
+    """Index of the letter that loses a word; -1 if none does."""
     if machine.rejecting_sink is None:
         return -1
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.

@@ -1,4 +1,4 @@
-"""Products of machines, which read what all of them read and give all their verdicts."""
+"""Products of machines, with joint letters and all their verdicts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class JointMachine:
 
     @property
     def n_letters(self) -> int:
-        """How many letters there are."""
+        """Number of letters."""
         return len(self.successors[0])
 
 
@@ -44,7 +44,7 @@ LetteredMachine = tuple[MealyMonitor, tuple[int, ...]]
 def join_machines(
     machines: Sequence[LetteredMachine], most_entries: int = MOST_ENTRIES
 ) -> Iterator[JointMachine]:
-    """Joint machines that together do what all of these do, in this order.
+    """Join neighbouring machines into products, in their order.
 
     Neighbours are joined as long as what comes out has no more than ``most_entries``; a machine
     that is larger by itself stays alone.
@@ -81,9 +81,9 @@ def _one_by_one(
 def _join(
     members: tuple[int, ...], machines: tuple[LetteredMachine, ...], most_entries: int
 ) -> JointMachine | None:
-    """The smallest machine that does the same; None if it is too large, or would be on the way.
+    """Minimal product of machines; None if it gets too large.
 
-    Many traces come some thousand at a time, and mean the same each time.
+    Cached: many traces come in chunks, each of which needs the same product.
     """
     columns = list(zip(*(letters for _, letters in machines), strict=True))
     spelled = list(dict.fromkeys(columns))

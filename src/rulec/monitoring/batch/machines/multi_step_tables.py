@@ -1,4 +1,4 @@
-"""A machine runs over many traces, several steps of all of them in one look-up.
+"""Run of a machine over many traces, several steps per look-up.
 
 What a trace reads in some steps is one number: the letters are its digits. A table says, for every
 state and every such number, where that leads.
@@ -30,7 +30,7 @@ _WORTH = 4
 
 
 def is_cheaper(n_states: int, n_letters: int, n_traces: int) -> bool:
-    """Are two steps in one look-up cheaper than two look-ups, however the traces end?"""
+    """Tell whether a look-up of two steps is cheaper than two look-ups."""
     return n_states * n_letters**2 <= _most_entries(n_traces)
 
 
@@ -73,7 +73,7 @@ def run_multi_step(
 
 @lru_cache(maxsize=64)
 def _next_states(successors: Rows, length: int, begins: int, next_length: int) -> Array:
-    """Where so many letters lead, from each of the states that runs begin in.
+    """Table from a start state and ``length`` letters to the next state.
 
     A state is said as the first entry that it has in the next leap's table.
     """
@@ -90,7 +90,7 @@ def _verdicts(successors: Rows, verdicts: Rows, length: int, begins: int) -> Arr
 
 
 def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
-    """What ``last`` says of the last letter, for all that comes before it."""
+    """Entries of ``last`` for all words of ``length`` letters."""
     if length == 1:
         return last[:begins].ravel()
     n_continuing = np.array(successors, dtype=np.uint16)
@@ -116,7 +116,7 @@ def _step_blocks(
 
 
 def _most(n_entries: int, n_letters: int) -> int:
-    """How many letters a number has that has no more values than these."""
+    """Largest number of letters with at most ``n_entries`` words."""
     length = 1
     while n_letters ** (length + 1) <= n_entries and length < _LONGEST:
         length += 1
@@ -124,7 +124,7 @@ def _most(n_entries: int, n_letters: int) -> int:
 
 
 def _lengths(n_steps: int, first: int, later: int) -> Iterator[int]:
-    """As few parts of so many steps as there can be, much alike, as that makes small tables.
+    """Split steps into the fewest parts, of nearly equal lengths.
 
     The first part has no more than ``first`` steps, no other more than ``later``.
     """

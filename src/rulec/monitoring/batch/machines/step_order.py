@@ -10,7 +10,7 @@ from rulec.trace.trace_columns import Layout
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step of ``now`` traces, ``onward`` of which have a next one; ``part`` is their column."""
+    """Step of ``n_traces`` traces, ``n_continuing`` of them with a next one."""
 
     n_traces: int
     n_continuing: int
@@ -18,7 +18,7 @@ class Step:
 
 
 def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
-    """The steps from one to another (inclusive), or to the end of each trace."""
+    """Steps from first to last (inclusive), or to each trace's end."""
     starts = layout.starts.tolist()
     steps = range(first, layout.n_steps if last is None else last + 1)
     # No trace goes on after the last of these steps.

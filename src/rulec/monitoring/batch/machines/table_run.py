@@ -1,4 +1,4 @@
-"""Runs of a machine over many traces, a step of all of them at a time."""
+"""Run of a machine over many traces, one step at a time."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _run_bytes(
     column: NDArray[np.uint8],
     steps: Sequence[Step],
 ) -> NDArray[np.uint8]:
-    """A byte names the state and the cell; the C library's own loop looks up what follows."""
+    """Run a small machine by byte translation, in the C library's loop."""
     width = len(letters)
     successors = _padded([row[letter] * width for row in joint.successors for letter in letters])
     verdicts = _padded([row[letter] for row in joint.verdicts for letter in letters])
@@ -120,7 +120,7 @@ def _run_long(
 def first_lost(
     machine: MealyMonitor, letters: Sequence[int], by_step: Iterable[Array], lengths: NDArray[Any]
 ) -> NDArray[np.int64]:
-    """Where traces are lost, counted from their first step here; -1 where they are not.
+    """Step that loses each trace, from its first here; -1 for none.
 
     Args:
         machine: the machine.

@@ -1,1 +1,1 @@
-"""Encoding of states for rules: shapes, values, and the digits that rules read."""
+"""Encoding of states: shapes, values, and digits of letters."""

@@ -1,4 +1,4 @@
-"""Breakpoints of quantities: between two neighbours all values are alike for every rule."""
+"""Breakpoints of quantities: thresholds between values alike for every rule."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Encoders of a declaration's values: they check values, and keep of numbers what matters."""
+"""Encoders that check values and reduce numbers to breakpoints."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def encoder_of(declaration: Declaration, breakpoints: Breakpoints) -> Encoder:
 
 
 def encoded_default(declaration: Declaration, breakpoints: Breakpoints) -> Any:
-    """The encoding of a value that is not given. Raises as an ``Encoder``."""
+    """Encoding of a value not given. Raises like an ``Encoder``."""
     if declaration.default is None:
         return MISSING
     return encoder_of(declaration, breakpoints)((declaration.default,))[0]
 
 
 def values_at(names: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """A getter of the values at these names or places; it raises a LookupError if one is missing.
+    """Getter of the values at these keys; LookupError if one is missing.
 
     Unlike ``itemgetter`` it always gives a tuple.
     """

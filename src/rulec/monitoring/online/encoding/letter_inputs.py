@@ -1,4 +1,4 @@
-"""Inputs of rules: what they read of a state, each thing once, and its weight in a letter."""
+"""Distinct reads of rules, and their weights in a letter."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DigitWeight: TypeAlias = Callable[[Any], int]
 
 @dataclass(frozen=True, slots=True)
 class MonitorInput:
-    """Something that is read about variables, given by their places among the rule's variables.
+    """Read of a rule, with variables given by their places.
 
     ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
     are. A number's digit is how many thresholds it passes; that of anything else is its value.
@@ -31,7 +31,7 @@ class MonitorInput:
     variables: tuple[str, ...] = ()
 
     def digit(self, encoded: Any, breakpoints: Breakpoints) -> Any:
-        """The digit of an encoded value; of a count or a sum the value is the digit.
+        """Digit of an encoded value; counts and sums are their own.
 
         Raises a TypeError where a number is missing.
         """

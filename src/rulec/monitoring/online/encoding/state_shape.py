@@ -1,4 +1,4 @@
-"""Shapes of states: the names with values, and the places of these values in one order.
+"""Shapes of states: names with values, and places of these values.
 
 Nearly all states of a drive have the same shape. What is to be looked at, and where it lies, is
 worked out once, so that a state is encoded far more quickly than any state could be.
@@ -29,7 +29,7 @@ _EncodePart: TypeAlias = Callable[[Any], Encoded]
 
 
 class StateShape:
-    """The shape of states with values for the same names while the same objects are present.
+    """Shape of states with values for one set of names and objects.
 
     ``places`` has by name and objects the part of an encoded state in which a value stands, and
     its place there; ``sizes`` are the parts' sizes. The first ``n_world`` parts are about the
@@ -89,7 +89,7 @@ class StateShape:
         self._parts.append(part)
 
     def encode(self, state: Any) -> tuple[Encoded, ...]:
-        """The parts of a state. States with equal parts are alike for every rule.
+        """Encode a state in parts; equal parts are alike for every rule.
 
         Raises a LookupError or a TypeError if the state has another shape, or needs a closer
         look. Values of enumerations may be wrong.
@@ -176,7 +176,7 @@ def _of_objects(
     breakpoints: Breakpoints,
     before: Items = (),
 ) -> _EncodePart:
-    """Encodes the values of every choice of distinct objects, in order, given those of some."""
+    """Encoder of a name's values for all choices of distinct objects."""
     items = tuple([item for item in fitting[0] if item not in before])
     if len(fitting) > 1:
         inner = [
