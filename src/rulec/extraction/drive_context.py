@@ -20,7 +20,9 @@ KMH = 3.6
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DriveContext:
-    """Arrays of one drive: rows are the participants that are ever relevant, columns its states.
+    """Arrays of one drive: a row per participant, a column per state.
+
+    The rows are the participants that are ever relevant.
 
     ``extents`` and ``tracks`` have these rows; ``ego`` and ``ego_extents`` have one. ``relevant``:
     whether a participant counts for ego; ``touched``: the lanes that it reaches into, a third axis;
@@ -48,13 +50,13 @@ class DriveContext:
 
     @property
     def ego_lane(self) -> NDArray[intp]:
-        """The number of the lane of ego's middle, from the right, by state."""
+        """The lane of ego's middle by state, numbered from the right."""
         lane: NDArray[intp] = self.road.lane_of(self.ego_extents.w)[0]
         return lane
 
     @property
     def going_along(self) -> Flags:
-        """Whether a participant is a vehicle that goes ego's way on its lanes."""
+        """Flags of participants that are vehicles going ego's way on its lanes."""
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
         return self.relevant & drives & (turned < 1.0) & self.touched.any(axis=-1)

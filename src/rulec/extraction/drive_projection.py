@@ -18,7 +18,7 @@ def project_columns(
     vocabulary: Vocabulary,
     names: frozenset[str] | None,
 ) -> SignalColumns:
-    """The signals that a vocabulary declares, only those among ``names`` if that is given.
+    """The signals that a vocabulary declares, optionally only those in ``names``.
 
     ``types`` are those of the objects, a row each, the most specific first.
     """
@@ -41,7 +41,7 @@ def project_columns(
 
 
 def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
-    """A surface in the paper's two words, if the vocabulary has only those."""
+    """Surfaces in the paper's two words, for vocabularies with only those."""
     if name != "surface" or not isinstance(declaration, Enumeration):
         return column
     if not set(PAPER_SURFACE.values()).issuperset(declaration.values):

@@ -1,4 +1,4 @@
-"""The drives of a recording: each vehicle along each road that it drove."""
+"""The drives of a recording: vehicles along the roads they drove."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _DRIVERS = ("vehicle", "light_rider")
 
 @dataclass(frozen=True, slots=True)
 class NoDrive:
-    """Why there is nothing to say of what ``ego`` did."""
+    """A vehicle ``ego`` without a drive, and the reason."""
 
     ego: str
     why: str
 
 
 class Drives:
-    """The drives of a recording. A road that several vehicles drive is laid out once."""
+    """The drives of a recording, with a shared layout of each road."""
 
     def __init__(
         self,
@@ -68,13 +68,19 @@ class Drives:
         )
 
     def kinds(self) -> dict[str, type]:
-        """The Python type of each signal of all drives; empty if there is no drive."""
+        """The Python type of each signal of all drives.
+
+        Empty if there is no drive.
+        """
         drives = (x for ego in self.egos() for x in self.of(ego) if isinstance(x, Drive))
         first = next(drives, None)
         return {} if first is None else dict(first.kinds)
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
-        """The drives of one vehicle: one, unless it leaves its road or the recording jumps."""
+        """The drives of one vehicle, usually one.
+
+        There are several if it leaves its road or the recording jumps.
+        """
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
         stretches = [
             stretch
@@ -121,7 +127,7 @@ class Drives:
         return to_trace(context, ego, name, self._writer)
 
     def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
-        """A road, and all extents along it unless those were too many to remember."""
+        """A road, and the extents along it unless too many to remember."""
         if route not in self._roads:
             try:
                 road = driven_road(self.recording, route, self._junctions)
@@ -133,7 +139,7 @@ class Drives:
 
 
 def _unbroken(tracks: Tracks, row: int, matches: MatchedLanelets) -> Iterator[MatchedLanelets]:
-    """The matches of a participant, parted where the recording does not have it for a while."""
+    """The matches of a participant, parted at gaps in its recording."""
     absent = np.cumsum(~tracks.present[row])
     for _, columns in groupby(matches, key=lambda column: int(absent[column])):
         yield {column: matches[column] for column in columns}

@@ -16,7 +16,10 @@ from rulec.extraction.drive_context import DriveContext
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """An object of a trace: a participant's row, and the first and last column of its presence."""
+    """A participant's row and the columns of its presence.
+
+    It is an object of a trace; the first and the last column are included.
+    """
 
     name: str
     row: int

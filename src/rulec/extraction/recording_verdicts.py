@@ -31,7 +31,7 @@ class DriveVerdict:
 
 
 class RecordingVerdicts(Rows):
-    """The verdicts of a rulebook on a recording's drives, computed when they are asked for.
+    """The verdicts of a rulebook on a recording's drives, computed on demand.
 
     Raises:
         RulecError: R0407 if the rulebook has bounds that are no multiples of the recording's step,
@@ -78,7 +78,7 @@ class RecordingVerdicts(Rows):
             yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """The names that each rule reads beyond these ``words``, in the order of the vocabulary.
+        """The names beyond ``words`` that each rule reads, in vocabulary order.
 
         They have their defaults in all states.
         """

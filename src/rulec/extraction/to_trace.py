@@ -1,4 +1,4 @@
-"""A drive as a trace: states of the signals that a rulebook's vocabulary declares."""
+"""A drive as a trace of the signals that a vocabulary declares."""
 
 from __future__ import annotations
 
@@ -43,7 +43,9 @@ _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A drive of ``ego`` as a trace that begins at ``start_s`` (s of the recording).
+    """A drive of ``ego`` as a trace from ``start_s`` on.
+
+    ``start_s`` is in seconds of the recording.
 
     ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
     object is there to have them.
@@ -62,14 +64,17 @@ class Drive:
         return frozenset(self.kinds)
 
     def time_s(self, state: int | None) -> float:
-        """The time of a state (s of the recording); None is the last one."""
+        """The time of a state (s of the recording).
+
+        None stands for the last state.
+        """
         number = len(self.trace.states) - 1 if state is None else state
         return round(self.start_s + number * self.trace.step_s, 9)
 
 
 @dataclass(frozen=True, slots=True)
 class TraceWriter:
-    """The signals to write: those of a vocabulary if one is given, and of these only ``names``.
+    """The choice of signals to write: a vocabulary's, optionally only ``names``.
 
     ``assumed`` are values that hold in every state, whatever the recording says.
     """

@@ -9,7 +9,7 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """Every number that the way from positions to words depends on; the unit ends the name.
+    """The thresholds that turn positions into words; units end their names.
 
     Speeds and accelerations are taken from positions, over ``smoothing_s`` around each moment:
     positions are noisy, and what some files say of speeds is another matter than where their

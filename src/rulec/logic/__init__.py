@@ -1,1 +1,1 @@
-"""Linear temporal logic over a vocabulary's atoms: formulas, their meaning on a word, printing."""
+"""Linear temporal logic over a vocabulary's atoms: formulas, semantics, printing."""

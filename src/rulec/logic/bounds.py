@@ -1,4 +1,4 @@
-"""Bounds of temporal operators: seconds as steps of a trace, and ranges of instants."""
+"""Bounds of temporal operators: seconds as steps, and ranges of instants."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class NotAMultipleError(ValueError):
 
 
 class Range(NamedTuple):
-    """The instants that an operator looks at: those ``low`` to ``high`` steps away, both included.
+    """The instants ``low`` to ``high`` steps away, both included.
 
     ``high`` is None where there is no end. A range may be empty.
     """
@@ -102,13 +102,16 @@ def _whole(steps: Fraction) -> int:
 
 
 def has_seconds(formula: Formula) -> bool:
-    """Whether it has a bound in seconds; if not, the step of a trace makes no difference."""
+    """True if the formula has a bound in seconds.
+
+    If not, the step of a trace makes no difference.
+    """
     bounds = (operation.bound for operation in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
 
 
 def fitting_step(formula: Formula, step_s: Fraction) -> Fraction:
-    """The longest step (s) that divides the given one and all bounds in seconds."""
+    """The longest divisor (s) of a step and all bounds in seconds."""
     bounds = [operation.bound for operation in operations_of(formula)]
     seconds = [bound for bound in bounds if bound is not None and bound.unit == "s"]
     ends = [end for bound in seconds for end in (bound.low, bound.high) if end is not None]
@@ -117,7 +120,10 @@ def fitting_step(formula: Formula, step_s: Fraction) -> Fraction:
 
 
 def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
-    """The operations in a formula, each before its operands; bodies of counts have no say."""
+    """The operations in a formula, each before its operands.
+
+    Those in bodies of counts are left out.
+    """
     waiting = [formula]
     while waiting:
         match waiting.pop():
@@ -130,7 +136,7 @@ def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
 
 
 def in_steps(formula: Formula, step_s: Fraction) -> Formula:
-    """The formula for traces whose states are ``step_s`` seconds apart, every bound in steps.
+    """The formula with bounds in steps of ``step_s`` seconds.
 
     It no longer says where its bounds are written.
 
@@ -165,7 +171,9 @@ def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
 
 
 def total_bound(formula: Formula) -> int:
-    """All bounds of the formula together, in steps: 0 if it has none but the unbounded operators'.
+    """The sum of all bounds of the formula, in steps.
+
+    It is 0 if there are none but those of unbounded operators.
 
     Each counts as far as it looks. ValueError for a bound in seconds.
     """

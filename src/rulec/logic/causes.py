@@ -1,4 +1,4 @@
-"""Causes: the parts of a formula that decide its value on a word, and at which instants.
+"""Causes: the parts and instants that decide a formula's value.
 
 As long as atoms keep their values where they decide, the formula keeps its own, whatever else
 changes. What decides is enough, not all there is: of two false operands of `and` the first one does
@@ -21,7 +21,9 @@ _Reason = tuple[Formula, int, int]
 def deciding_instants(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
-    """The instants at which the formula and its parts decide what holds at the first.
+    """The instants at which a formula and its parts decide its value.
+
+    It is the value at the first instant.
 
     Bounds are in steps. ValueError as for ``holds``.
     """
@@ -56,7 +58,7 @@ def deciding_instants(
 
 @dataclass(frozen=True, slots=True)
 class _Column:
-    """A part's values, and the next instant from each one on with either value.
+    """A part's values, and the next instant with either value.
 
     If there is none it is the number of instants.
     """
@@ -133,7 +135,10 @@ def _of_search(
     columns: Mapping[Formula, _Column],
     ends: bool,
 ) -> Iterator[_Reason]:
-    """Why there is, or is not, an instant within the range with ``right``, before it ``left``."""
+    """The reasons for the value of a search for ``right``.
+
+    It is for an instant within the range, with ``left`` at all those before it.
+    """
     wanted = part.operator not in _FAILING
     weak = part.operator in _WEAK
     low, high = range_of(part)

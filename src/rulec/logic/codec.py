@@ -1,4 +1,7 @@
-"""Formulas as plain data: what JSON can hold. Numbers are fractions, as text: ``"5/18"``."""
+"""Formulas as plain data for JSON; numbers as fractions in text.
+
+Such a text is ``"5/18"``.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,9 @@ _RELATIONS = {relation: relation for relation in get_args(Relation)}
 
 
 def to_data(formula: Formula) -> Any:
-    """A constant as itself, an operation as a list, its operator first, all else as an object.
+    """A formula as data: constants, lists for operations, objects otherwise.
+
+    A list begins with its operator.
 
     The bound of an operator, if it has one, comes last in its list.
     """
@@ -169,7 +174,10 @@ def _names(data: Any) -> tuple[str, ...]:
 
 
 def number_from_data(data: Any) -> Fraction:
-    """The fraction that this is the text of. ValueError if there is none."""
+    """The fraction that a text spells.
+
+    Raises ValueError if it spells none.
+    """
     if isinstance(data, str) and len(data) <= LONGEST and _FRACTION.fullmatch(data):
         number = Fraction(data)
         if str(number) == data:

@@ -128,7 +128,10 @@ def _joined(operator: BinaryOperator, left: Value, right: Value, algebra: Algebr
 
 
 def bit_sets(sets: Mapping[Proposition, int], everything: int) -> Algebra[int]:
-    """Sets as the bits of integers: one for each proposition, and the set of everything."""
+    """The algebra of sets as bits of integers.
+
+    ``sets`` has one for each proposition, and ``everything`` is the set of all.
+    """
     return Algebra(
         proposition=sets.__getitem__,
         constant=lambda value: everything if value else 0,
@@ -152,7 +155,9 @@ def temporal_operation(
     weak_until: Callable[[Value, Value, Range], Value],
     strong_release: Callable[[Value, Value, Range], Value],
 ) -> Callable[[Unary | Binary, Callable[[Formula], Value]], Value]:
-    """The operation of an algebra of words without a past: the operators of the future by four.
+    """The temporal operators of the future, derived from four of them.
+
+    They are the operation of an algebra of words without a past.
 
     Until without a left operand is ``eventually``, release without one is ``always``. Bounds are
     in steps. The operation raises ValueError for an operator of the past.

@@ -61,7 +61,10 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """``name(arguments)``: a number that every state gives, in the unit of its declaration."""
+    """A number in every state: ``name(arguments)``.
+
+    It is in the unit of its declaration.
+    """
 
     name: str
     arguments: tuple[str, ...] = ()
@@ -69,7 +72,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """The number of objects of the moment, of type ``type``, of which ``body`` holds.
+    """The number of present objects of ``type`` that satisfy ``body``.
 
     The objects of the moment are those present in the state; ``variable`` stands for each of them
     in turn, also for those that other variables name. ``body`` speaks of one state alone: it has no
@@ -107,7 +110,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """Whether two variables name one object. Only in the body of a ``Count``."""
+    """Equality of two variables' objects, only in a ``Count``'s body."""
 
     left: str
     right: str
@@ -125,7 +128,9 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The bound of a temporal operator: from ``low`` to ``high`` ahead or back, both inclusive.
+    """The bound of a temporal operator: ``low`` to ``high``, both inclusive.
+
+    It counts ahead or back, as the operator looks.
 
     In seconds or in steps of the trace; ``high`` is None where there is no end. For ``next`` and
     ``previously`` both are the distance. ``span`` is where it is written.

@@ -1,4 +1,4 @@
-"""Formulas of one state by Kleene's strong three-valued logic: some of it may not be known.
+"""Formulas of one partly known state by Kleene's strong three-valued logic.
 
 What can be told without it is told (`x = v or gap(x, v) < 5 m` holds for v itself, whatever its gap
 to itself may be); nothing else is (Kleene, "Introduction to metamathematics", 1952).
@@ -36,7 +36,7 @@ ObjectBinding: TypeAlias = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A value that decides but is not known: a declaration's name, and the objects it is about."""
+    """An unknown value that decides: its declaration's name and its objects."""
 
     name: str
     objects: tuple[str, ...]
@@ -111,7 +111,7 @@ def objects_counted(
 
 
 def _alias_of(variable: str, formula: Formula) -> str | None:
-    """Another variable that stands for the same object wherever the formula holds, if one does."""
+    """Another variable for the same object wherever the formula holds, or None."""
     match formula:
         case Same(left, right) if variable in (left, right) and left != right:
             return right if left == variable else left
@@ -121,13 +121,19 @@ def _alias_of(variable: str, formula: Formula) -> str | None:
 
 
 def holds(formula: Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
-    """Whether a formula without temporal operators holds. TypeError if it has one."""
+    """The value of a formula in a state, perhaps ``Unknown``.
+
+    Raises TypeError if it has a temporal operator.
+    """
     return _evaluator_of(formula)(binding, state)
 
 
 @lru_cache(maxsize=_MOST)
 def _evaluator_of(formula: Formula) -> _Evaluator:
-    """The formula as a function: it is asked of every object in every state."""
+    """The formula as a function of binding and state.
+
+    It is cached because it is asked of every object in every state.
+    """
     return fold(formula, _KLEENE)
 
 
@@ -167,7 +173,7 @@ def _comparison(comparison: Comparison) -> _Evaluator:
 
 
 def _settled(left: _Evaluator, right: _Evaluator, *, by: bool) -> _Evaluator:
-    """The conjunction, which an operand that is false settles, or the disjunction by a true one."""
+    """Conjunction settled by a false operand, or disjunction by a true."""
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         first = left(binding, state)

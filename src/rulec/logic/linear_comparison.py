@@ -1,4 +1,4 @@
-"""Normal form of linear comparisons: those of the same numbers have the same terms."""
+"""The normal form of linear comparisons, with equal terms for equal numbers."""
 
 from __future__ import annotations
 
@@ -49,5 +49,5 @@ _RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = {
 
 
 def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
-    """Whether a number stands in a relation to a limit."""
+    """True if a number stands in a relation to a limit."""
     return _RELATIONS[relation](number, limit)

@@ -1,4 +1,4 @@
-"""The past as registers: operators of the past give way to propositions about what was.
+"""The past as registers: propositions that replace operators of the past.
 
 Every operator of the past is a case of ``left since[low..high] right``. Where no operator of the
 future has a say in its operands, the word up to an instant decides it: a register, small and
@@ -61,7 +61,9 @@ class Register:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The proposition ``atom``: is there an instant before this one, and did ``formula`` hold then?
+    """The proposition ``atom`` that ``formula`` held an instant ago.
+
+    It is false at the first instant.
 
     ``formula`` has no operator of the past; it may speak of registers and memories, of this one
     too. The future has a say in it.
@@ -73,7 +75,7 @@ class Memory:
 
 @dataclass(frozen=True, slots=True)
 class WithoutPast:
-    """A formula without operators of the past, and what the fresh atoms in it stand for.
+    """A formula without past operators, and its fresh atoms' meanings.
 
     For any word there is one way to choose these atoms' values such that each does what it is said
     to; with them ``present`` holds at the first instant if the original formula does.
@@ -85,7 +87,10 @@ class WithoutPast:
 
 
 def eliminate_past(formula: Formula) -> WithoutPast:
-    """The formula without operators of the past. Its bounds are in steps; ValueError if not."""
+    """Eliminate operators of the past from a formula.
+
+    Its bounds are in steps. Raises ValueError if not.
+    """
     result = _Found()
     present = _present(formula, result)
     fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
@@ -105,7 +110,10 @@ def eliminate_past(formula: Formula) -> WithoutPast:
 
 
 def definition(memory: Memory) -> Formula:
-    """The definition of a memory: false at the first instant, then what the formula was."""
+    """The defining formula of a memory.
+
+    It is false at the first instant, then what the formula was an instant before.
+    """
     first = Unary(NOT, memory.atom)
     then = Unary(UnaryOperator.WEAK_NEXT, memory.atom)
     then_not = Unary(UnaryOperator.WEAK_NEXT, first)
@@ -116,7 +124,7 @@ def definition(memory: Memory) -> Formula:
 
 @dataclass(slots=True)
 class _Found:
-    """Registers by what they say, memories by what they remember, as found so far."""
+    """The registers and memories of a formula so far, by content."""
 
     registers: dict[tuple[Formula, Formula, Range], Register] = field(default_factory=dict)
     memories: dict[Formula, Memory] = field(default_factory=dict)
@@ -130,7 +138,7 @@ class _Found:
         return atom
 
     def is_settled(self, formula: Formula) -> bool:
-        """Whether the word up to an instant decides it."""
+        """True if the word up to an instant decides the formula."""
         unsettled = {memory.atom for memory in self.memories.values()}
         return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
 
@@ -165,7 +173,7 @@ def _since(left: Formula, right: Formula, span: Range, _found: _Found) -> Formul
 
 
 def _unfolded(left: Formula, right: Formula, span: Range, _found: _Found) -> Formula:
-    """``left since right`` in the words of the present and of one instant ago.
+    """``left since right`` in terms of the present and one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
     """
@@ -197,7 +205,7 @@ def _one_ago(formula: Formula, _found: _Found) -> Formula:
 
 
 def _is_present(formula: Formula) -> bool:
-    """Whether it speaks of the present alone."""
+    """True if the formula speaks of the present alone."""
     match formula:
         case Atom() | Comparison() | Same() | Constant():
             return True

@@ -38,7 +38,7 @@ _BINDING = {
 
 
 def formula_text(formula: Formula) -> str:
-    """The formula as a rulebook would say it, with no more parentheses than needed to read it."""
+    """The formula in a rulebook's notation, with the fewest readable parentheses."""
     match formula:
         case Atom() | Comparison() | Same():
             # A comparison binds tighter than any operator on formulas.
@@ -87,7 +87,10 @@ def time_in_words(amount: Fraction, unit: str) -> str:
 
 
 def number_in_words(number: Fraction) -> str:
-    """A decimal if it is one, however long, else a fraction: ``0.5``, ``-3``, ``5/18``."""
+    """A number as a decimal, or else a fraction: ``0.5``, ``5/18``.
+
+    The decimal may be long.
+    """
     rest = number.denominator
     places = 0
     for prime in (2, 5):

@@ -22,7 +22,9 @@ from rulec.logic.linear_comparison import comparison
 
 
 def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
-    """The formula with all its free variables renamed at once; those not in ``names`` stay.
+    """Rename all free variables of a formula at once.
+
+    Those not in ``names`` stay.
 
     Different variables keep different names, and no count inside has a new name for its variable.
     """

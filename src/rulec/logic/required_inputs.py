@@ -1,4 +1,4 @@
-"""Inputs that a formula requires of a state to have a value in it."""
+"""The inputs that determine a formula's value in a state."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from rulec.logic.renaming import rename_variables
 def required_inputs(
     formula: Formula, objects: Mapping[str, str], fits: Callable[[str, str], bool]
 ) -> Iterator[Atom | Quantity]:
-    """Every atom and quantity, with repetitions, those of every object that may count included.
+    """Every atom and quantity that a formula reads, with repetitions.
+
+    Those of every object that may count are included.
 
     ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
     types is the second or one below it.

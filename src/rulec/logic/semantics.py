@@ -36,7 +36,7 @@ Letter = Set[Proposition]
 
 
 def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
-    """Whether ``formula`` holds for ``word`` at its first instant.
+    """True if ``formula`` holds for ``word`` at its first instant.
 
     Its bounds are in steps. ValueError for an empty word, or for a bound in seconds.
     """
@@ -46,7 +46,10 @@ def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stut
 def truth_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
-    """The formula's truth value at each of the word's instants. ValueError as for ``holds``."""
+    """The formula's truth value at each of the word's instants.
+
+    Raises ValueError as ``holds`` does.
+    """
     known = extended_values(formula, word, semantics)
     return known[formula][: len(word)]
 
@@ -54,7 +57,10 @@ def truth_values(
 def values_of_parts(
     formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[Formula, list[bool]]:
-    """Truth values of the formula and of every part. ValueError as for ``holds``."""
+    """Truth values of the formula and of every part.
+
+    Raises ValueError as ``holds`` does.
+    """
     known = extended_values(formula, word, semantics)
     return {part: values[: len(word)] for part, values in known.items()}
 
@@ -62,7 +68,7 @@ def values_of_parts(
 def extended_values(
     formula: Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[Formula, list[bool]]:
-    """Truth values of all parts, on beyond the word's end until nothing changes any more.
+    """Truth values of all parts, extended beyond the word until they settle.
 
     Operands come before what they are operands of.
     """
@@ -76,7 +82,7 @@ def extended_values(
 
 
 def steps_to_settle(formula: Formula) -> int:
-    """The longest time for which values still change while the last letter is repeated.
+    """The longest time until values settle under a repeated last letter.
 
     Only the past carries a change on to later instants: where its operands are the same for ever
     from some instant on, it is so as soon as its range looks back at such instants alone, or, if
@@ -100,7 +106,10 @@ def _carried(span: Range) -> int:
 def _evaluate(
     formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
 ) -> list[bool]:
-    """Truth values on a word that ends with its last instant, or goes on like it for ever."""
+    """Truth values on a word that ends, or repeats its last letter.
+
+    In the second case it goes on like its last instant for ever.
+    """
     result = known.get(formula)
     if result is not None:
         return result
@@ -178,7 +187,10 @@ def _weak_until(left: list[bool], right: list[bool], span: Range, ends: bool) ->
 
 
 def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list[bool]:
-    """Some instant within the range ahead has ``right``, all before it from here on ``left``."""
+    """The values of until: ``right`` within range, ``left`` before it.
+
+    ``left`` holds at all instants from here on before that one.
+    """
     last = len(right) - 1
     first_right: list[int | None] = [None] * (last + 2)
     """The first instant from here on with ``right``."""
@@ -202,7 +214,10 @@ def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list
 
 
 def _since(left: list[bool], right: list[bool], span: Range) -> list[bool]:
-    """Some instant within the range back had ``right``, all after it up to here ``left``."""
+    """The values of since: ``right`` within range back, ``left`` after it.
+
+    ``left`` holds at all instants after that one up to here.
+    """
     values = []
     latest: list[int | None] = []
     """For each instant, the latest one up to it with ``right``."""

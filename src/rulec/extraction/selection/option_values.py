@@ -66,7 +66,10 @@ def _value(text: str, declaration: Declaration) -> Value:
 
 
 def _measure(text: str, name: str, unit: str) -> float:
-    """A number in its unit or in another one; a bare number is in its own."""
+    """A number in its unit or in another one.
+
+    A bare number is in its own unit.
+    """
     match = _NUMBER.fullmatch(text)
     own = parse_unit(unit)
     given = own if match is None or not match[2] else parse_unit(match[2])

@@ -36,7 +36,7 @@ class RequestedDrives:
 
 @dataclass(frozen=True, slots=True)
 class SelectedDrives:
-    """The drives of ``egos``; ``recording`` is the one that they are from, perhaps mirrored."""
+    """The drives of ``egos`` and the ``recording`` they are from, perhaps mirrored."""
 
     recording: Recording
     mirrored: bool
@@ -57,7 +57,9 @@ def selected_drives(
     *,
     names: frozenset[str] | None = None,
 ) -> SelectedDrives:
-    """The drives of a recording, for rules of a side of traffic, in the words of a vocabulary.
+    """The drives of a recording, in a vocabulary's words.
+
+    The rules are for a given side of traffic.
 
     Raises:
         RulecError: R0612 for a vehicle that is not there.

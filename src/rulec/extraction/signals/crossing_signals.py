@@ -1,4 +1,4 @@
-"""Signals of pedestrians at the crossing ahead of ego, and of vehicles that stop for them.
+"""Signals of pedestrians at the crossing ahead, and of vehicles stopping there.
 
 Intentions are not recorded. Who is on the crossing is on it, unless it walks away from
 ego's lanes, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
@@ -65,7 +65,7 @@ def _towards(context: DriveContext) -> Floats:
 
 
 def _stopped(context: DriveContext) -> Flags:
-    """Whether a participant stands on ego's lanes shortly before the crossing ahead of ego."""
+    """Flags of participants stopped on ego's lanes before the crossing ahead."""
     start, _ = next_crossing(context)
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
     way = start - context.extents.s_max

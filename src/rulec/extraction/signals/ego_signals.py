@@ -53,7 +53,10 @@ def _length(context: DriveContext) -> float:
 
 
 def steady_lane(context: DriveContext, existing: Flags) -> NDArray[intp]:
-    """Ego's lane by its middle, with hysteresis: left only ``changed_m`` beyond its mark."""
+    """Ego's lane by its middle, with hysteresis.
+
+    It is left only ``changed_m`` beyond its mark.
+    """
     straight = context.road.lanes.straight
     lane = np.array(context.ego_lane)
     middle = context.ego_extents.w[0]
@@ -66,7 +69,7 @@ def steady_lane(context: DriveContext, existing: Flags) -> NDArray[intp]:
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp], existing: Flags) -> NDArray[intp]:
-    """Indices into ``_LANES``: 0 at the kerb, 2 farthest from it, 1 between."""
+    """Indices into ``_LANES``: 0 at the kerb, 2 farthest, 1 between."""
     state = np.arange(len(lane))
     right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
     count = existing.sum(axis=1)
@@ -76,7 +79,7 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp], existing: Flags) -> N
 
 
 def _straddling(context: DriveContext, existing: Flags) -> Flags:
-    """Whether ego reaches into two lanes."""
+    """Flags of states in which ego reaches into two lanes."""
     straight = context.road.lanes.straight
     reach = context.thresholds.touching_m
     low, high = context.ego_extents.w_min[0][:, None], context.ego_extents.w_max[0][:, None]
@@ -86,7 +89,7 @@ def _straddling(context: DriveContext, existing: Flags) -> Flags:
 
 
 def _place_in_lane(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
-    """Indices into ``_PLACES``: 0 centred, 1 at the near edge, 2 at the far one."""
+    """Indices into ``_PLACES``: 0 centred, 1 near edge, 2 far edge."""
     straight = context.road.lanes.straight
     right: Floats = context.ego_extents.w_min[0] - straight[lane]
     left: Floats = straight[lane + 1] - context.ego_extents.w_max[0]

@@ -43,7 +43,7 @@ def _close(context: DriveContext) -> Flags:
 
 
 def _around(context: DriveContext) -> tuple[Floats, Floats]:
-    """The median speed (km/h) of ego and the vehicles around it, and their number."""
+    """The median speed (km/h) and number of ego and nearby vehicles."""
     close = _close(context)
     speeds = np.where(close, np.maximum(context.extents.along, 0.0), np.nan)
     with_own = np.concatenate((np.maximum(context.ego_extents.along, 0.0), speeds))
@@ -51,7 +51,7 @@ def _around(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _queues(context: DriveContext) -> tuple[Flags, Floats]:
-    """Whether there is a queue, and its median speed (km/h), by state and lane.
+    """Flags and median speeds (km/h) of queues, by state and lane.
 
     In a queue at least half of the gaps are short: up to ``queue_gap_m`` or ``queue_headway_s``.
     """
@@ -80,7 +80,7 @@ def _queues(context: DriveContext) -> tuple[Flags, Floats]:
 
 
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
-    """A flag of lanes, of the lane at ego's far side; False if there is none."""
+    """The flag of the lane at ego's far side; False without one."""
     lane = context.ego_lane + (1 if context.side == "right" else -1)
     inside = (lane >= 0) & (lane < lanes.shape[1])
     beside: Flags = inside & lanes[np.arange(context.states), np.clip(lane, 0, lanes.shape[1] - 1)]
@@ -88,14 +88,17 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
 
 
 def _sides(context: DriveContext) -> tuple[Flags, Flags]:
-    """Whether ego is on the far side of each participant, and on its near side."""
+    """Flags of ego being on each participant's far and near side."""
     lateral = relations.lateral(context.ego_extents, context.extents, context.touched, context.road)
     left, right = lateral == relations.LEFT_OF, lateral == relations.RIGHT_OF
     return (left, right) if context.side == "right" else (right, left)
 
 
 def _overtaking(context: DriveContext) -> Flags:
-    """Whether ego is beside a slower vehicle on its far side, about to be, or just past it."""
+    """Flags of ego overtaking a slower vehicle on its far side.
+
+    They begin shortly before ego is beside it and end just past it.
+    """
     limits = context.thresholds
     far, _ = _sides(context)
     station = relations.station(context.ego_extents, context.extents)
@@ -110,7 +113,10 @@ def _overtaking(context: DriveContext) -> Flags:
 
 
 def _being_overtaken(context: DriveContext) -> Flags:
-    """Whether a faster vehicle is beside ego, ego on its near side, or about to be."""
+    """Flags of ego being overtaken, or about to be, by state.
+
+    The vehicle is faster, and ego is on its near side.
+    """
     limits = context.thresholds
     _, near = _sides(context)
     station = relations.station(context.ego_extents, context.extents)

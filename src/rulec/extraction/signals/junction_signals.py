@@ -18,7 +18,7 @@ _COLOURS = {
 
 
 def junction_signals(context: DriveContext) -> SignalColumns:
-    """The signals of junctions on ego's road, and of the lights and signs before them."""
+    """The signals of junctions on ego's road, their lights and signs."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     zone = np.zeros(context.states, dtype=bool)
     enters = np.zeros(context.states, dtype=bool)
@@ -44,7 +44,10 @@ def junction_signals(context: DriveContext) -> SignalColumns:
 
 
 def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
-    """Whether a flag holds now or within ``preparing_s``: intentions are read off what ego did."""
+    """Flags that hold now or within ``preparing_s`` from now.
+
+    Intentions are read off what ego did.
+    """
     states = round(context.thresholds.preparing_s / context.recording.step_s)
     ahead = np.append(np.cumsum(flags[::-1])[::-1], 0)
     until = np.minimum(np.arange(context.states) + states + 1, context.states)
@@ -53,13 +56,16 @@ def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
 
 
 def _passes(front: Floats, line: float) -> Flags:
-    """Whether ego's front has come beyond a line since the state before."""
+    """Flags of states in which ego's front has just passed a line."""
     beyond = front > line
     return np.append(False, beyond[1:] & ~beyond[:-1])
 
 
 def _crosses_stop_line(context: DriveContext, front: Floats) -> Flags:
-    """Whether ego leaves a lanelet with a stop sign: its line is at the end."""
+    """Flags of ego leaving a lanelet with a stop sign.
+
+    The line is at the lanelet's end.
+    """
     crosses = np.zeros(context.states, dtype=bool)
     lanes = context.ego_lane.tolist()
     for piece, end in enumerate(context.road.borders[1:].tolist()):
@@ -81,7 +87,9 @@ def _turn(context: DriveContext, start: float, end: float) -> str:
 
 
 def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags]:
-    """The light for ego, empty if it shows several colours, and whether its line is crossed.
+    """The light for ego, and flags of ego crossing its line.
+
+    A light that shows several colours is empty.
 
     A light is for who is on its lanelet, at whose end the line is. In the state in which ego
     crosses the line the light is still the one that it crosses.

@@ -21,7 +21,10 @@ def lane_change_signals(context: DriveContext) -> SignalColumns:
 
 
 def _indicator(context: DriveContext) -> SignalColumns:
-    """Ego's indicator, if the recording has its lamps; both at once are no indication."""
+    """Ego's indicator, if the recording has its lamps.
+
+    Both at once are no indication.
+    """
     (ego,) = context.ego.participants
     if not ego.lamps:
         return SignalColumns()
@@ -40,7 +43,9 @@ def _indicator(context: DriveContext) -> SignalColumns:
 
 
 def _disturbs(context: DriveContext) -> Flags:
-    """Whether a vehicle in ego's lane has to brake for it.
+    """Flags of states in which a vehicle must brake for ego.
+
+    The vehicle is in ego's lane.
 
     One beside ego has to, and one behind it that would have to brake harder than
     ``disturbing_mps2`` after its reaction time not to run into it.

@@ -58,6 +58,9 @@ def _over(
 def _own_first(
     marks: tuple[str | None, str | None], line: int, lane: int
 ) -> tuple[str | None, str | None]:
-    """Put the mark at ego's side first; a line has the number of the lane to its left."""
+    """Put the mark at ego's side first.
+
+    A line has the number of the lane to its left.
+    """
     right, left = marks
     return (left, right) if lane >= line else (right, left)

@@ -1,4 +1,4 @@
-"""Signals of the map where ego is: surface, limit, class of the road, signs, crossings."""
+"""Signals of the map around ego: surface, limit, road class, signs, crossings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinar
 
 
 def map_signals(context: DriveContext) -> SignalColumns:
-    """The signals of the road where ego is; none of what the map says nothing about."""
+    """The signals of ego's road, as far as the map knows them."""
     lanelets = _lanelets_at(context, context.ego_extents.s[0])
     # Where ego's front was one state before, so that its sign still holds when ego crosses a line
     front = context.ego_extents.s_max[0]
@@ -62,14 +62,17 @@ def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
 
 
 def distance_to_crossing(context: DriveContext) -> Floats:
-    """The distance (m) from ego's front to the next pedestrian crossing, 0 on it."""
+    """The distance (m) from ego's front to the next crossing.
+
+    It is a pedestrian crossing; on it the distance is 0.
+    """
     start, _ = next_crossing(context)
     distance: Floats = np.clip(start - context.ego_extents.s_max[0], 0.0, NO_CROSSING_M)
     return distance
 
 
 def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
-    """Begin and end of the pedestrian crossing that ego is on, or of the next one, by state.
+    """Begin and end of ego's present or next pedestrian crossing, by state.
 
     Infinite where there is none.
     """
@@ -81,7 +84,10 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
-    """The surface under ego: any part of it counts on a crossing, its middle elsewhere."""
+    """The surface under ego, by state.
+
+    A crossing counts under any part of ego, all else under its middle.
+    """
     middle = context.ego_extents.s[0]
     surfaces = np.full(context.states, "carriageway", dtype="<U11")
     for start, end in context.road.junctions:

@@ -47,14 +47,14 @@ def participant_signals(context: DriveContext) -> SignalColumns:
 
 
 def _headway(context: DriveContext, gap: Floats) -> Floats:
-    """The time (s) that ego takes for the gap at its speed; ``LONGEST_S`` if it stands."""
+    """The time headway (s) of ego; ``LONGEST_S`` if it stands."""
     moves = context.ego_extents.along * KMH >= context.thresholds.standing_kmh
     seconds = gap / np.where(moves, context.ego_extents.along, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
 def safe_distance(context: DriveContext) -> Floats:
-    """The distance (m) at which ego can stop behind a participant that brakes as hard as it can.
+    """The distance (m) for ego to stop behind a participant braking fully.
 
     Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
     Shammah, Shashua 2017). An oncoming participant counts as standing.
@@ -67,14 +67,16 @@ def safe_distance(context: DriveContext) -> Floats:
 
 
 def is_oncoming(context: DriveContext) -> Flags:
-    """Whether a participant moves against ego's direction."""
+    """Flags of participants that move against ego's direction."""
     moves = np.abs(context.extents.along) * KMH >= context.thresholds.standing_kmh
     against: Flags = moves & (context.extents.along < 0)
     return against & _faces_ego(context)
 
 
 def _waits_oncoming(context: DriveContext) -> Flags:
-    """Whether a vehicle stands on lanes that lead against ego's way, as in a queue there.
+    """Flags of vehicles that stand on lanes against ego's way.
+
+    They do so in a queue there, for example.
 
     Ego does not overtake it, no more than one that moves. A vehicle that stands the wrong way
     round in ego's own lanes is an obstacle there.
@@ -91,7 +93,7 @@ def _faces_ego(context: DriveContext) -> Flags:
 
 
 def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
-    """Whether a participant is the next one ahead of ego in its lane."""
+    """Flags of participants that are next ahead of ego in its lane."""
     ahead = np.where(follows & context.relevant & ~is_oncoming(context), gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
     next_one: Flags = (ahead == nearest) & np.isfinite(ahead)

@@ -1,4 +1,4 @@
-"""Relations of ego to others: along the road, across it, and the distance between.
+"""Relations of ego to others: along and across the road, and distance.
 
 Along the road bodies count: ego is behind somebody until its front is level with the other's rear.
 Across the road lanes count, those of the other's body and that of ego's middle, so that who keeps
@@ -35,13 +35,16 @@ def station(ego: RoadExtents, others: RoadExtents) -> Codes:
 
 
 def lateral(ego: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenRoad) -> Codes:
-    """Ego right of others, in their lanes, or left of them, as indices into ``LATERALS``."""
+    """Ego's lateral relation to others, as indices into ``LATERALS``.
+
+    Ego is right of them, in their lanes, or left of them.
+    """
     low, high = _widened(others, touched, road)
     return _side(ego.w, low, high)
 
 
 def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Floats, Floats]:
-    """The bounds of the lanes that others are in; their own where they are in none."""
+    """The bounds of others' lanes; their own bounds off the lanes."""
     straight = road.lanes.straight
     first = touched.argmax(axis=-1)
     last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
@@ -69,7 +72,9 @@ def lateral_gap(ego: RoadExtents, others: RoadExtents) -> Floats:
 def position(
     ego: RoadExtents, others: RoadExtents, touched: Flags, walking: Flags, road: DrivenRoad
 ) -> NDArray[np.str_]:
-    """The paper's letters, b, f, l and r; pedestrians have a frame of their own.
+    """The paper's position letters b, f, l and r.
+
+    Pedestrians have a frame of their own.
 
     Where bodies are beside each other in one lane their middles decide.
     """
@@ -94,7 +99,9 @@ def position(
 
 
 def _facing(others: RoadExtents) -> Codes:
-    """The direction of motion, of the heading at rest, rounded to a right angle of the road.
+    """The direction of motion, or heading at rest, by right angles.
+
+    The angles are relative to the road.
 
     Indices into ``_FACING``; half-way counts as across the road.
     """

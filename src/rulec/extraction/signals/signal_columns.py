@@ -1,4 +1,4 @@
-"""The signals of a drive as columns: by name, about the world or about objects."""
+"""The signals of a drive as named columns, of world and objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ SignalColumn = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class SignalColumns:
-    """``world``: a value for each state. ``about``: a row of values for each participant.
+    """The signals of a drive, in arrays with a column per state.
+
+    ``world``: a value for each state. ``about``: a row of values for each participant.
 
     ``unknown``: the states in which a signal of the world has no value. ``only``: the participants
     that a signal about objects applies to.
@@ -42,5 +44,8 @@ def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
 
 
 def rounded(values: SignalColumn) -> SignalColumn:
-    """Numbers to a hundredth, as places are no better known, without negative zeros."""
+    """Round numbers to a hundredth, without negative zeros.
+
+    Places are no better known.
+    """
     return np.round(values, 2) + 0.0

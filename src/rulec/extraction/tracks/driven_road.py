@@ -22,7 +22,9 @@ from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DrivenRoad:
-    """Ego's own lanelets lie one behind the other, from ``borders[i]`` to ``borders[i + 1]``.
+    """The road of a drive, with ego's own lanelets end to end.
+
+    Lanelet ``i`` lies from ``borders[i]`` to ``borders[i + 1]``.
 
     ``rows[i]`` are those beside each other there, a lane each, from the right; None where the map
     has none. ``crossings`` are pedestrian crossings and ``junctions`` junctions, from where to
@@ -50,19 +52,19 @@ class DrivenRoad:
         return np.clip(pieces, 0, len(self.rows) - 1)
 
     def lanes_at(self, s: Floats) -> Flags:
-        """Whether lanes exist at places; the last axis is that of the lanes, from the right."""
+        """Flags of lanes (last axis, from the right) that exist at places."""
         at = np.searchsorted(self.lanes.s, np.nan_to_num(s), "right") - 1
         return self.lanes.there[np.clip(at, 0, len(self.lanes.there) - 1)]
 
     def lane_of(self, d: Floats) -> NDArray[intp]:
-        """The lanes at straightened offsets; who is beside the road counts to the nearest."""
+        """The lanes at straightened offsets, the nearest beside the road."""
         straight = self.lanes.straight
         lanes = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
         return np.clip(lanes, 0, len(straight) - 2)
 
 
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
-    """The road of a chain of lanelets, and what lies straight on before and after it.
+    """The road of a chain of lanelets, extended straight at both ends.
 
     ``junctions`` are the lanelets that lie in one.
 

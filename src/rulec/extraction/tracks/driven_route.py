@@ -1,4 +1,4 @@
-"""Map matching, second step: the chain of lanelets along which a vehicle's states lie.
+"""Map matching, second step: the chain of lanelets of a vehicle's states.
 
 Lanelets overlap in junctions, and ego changes lanes, so that the match of a single state says
 little. Of all chains in which each lanelet leads to the next, the cheapest is chosen: a shortest
@@ -25,7 +25,7 @@ _LANE_COST = 1.0
 
 @dataclass(frozen=True, slots=True)
 class RouteStretch:
-    """Columns ``first`` to ``last``, both included, in which ego follows a chain of lanelets."""
+    """Columns ``first`` to ``last`` inclusive of one chain of lanelets."""
 
     first: int
     last: int
@@ -34,7 +34,10 @@ class RouteStretch:
 
 @dataclass(frozen=True, slots=True)
 class _ChainEnd:
-    """The cheapest chain so far that ends in a lanelet: its cost, its last hops, what precedes."""
+    """The cheapest chain that ends in a lanelet.
+
+    It has its cost, its last hops, and the chain end before them.
+    """
 
     cost: float
     hops: tuple[str, ...]
@@ -59,7 +62,7 @@ def driven_stretches(recording: Recording, matches: MatchedLanelets) -> Iterator
 
 
 def _costs_of_rows(recording: Recording, matched: Mapping[str, float]) -> dict[str, float]:
-    """The costs of the lanelets that match a state, and of those beside them."""
+    """The costs of the lanelets that match a state, neighbours included."""
     costs: dict[str, float] = {}
     for number, cost in matched.items():
         for left in (True, False):
@@ -73,7 +76,7 @@ def _costs_of_rows(recording: Recording, matched: Mapping[str, float]) -> dict[s
 def _onward(
     recording: Recording, best: Mapping[str, _ChainEnd], costs: Mapping[str, float]
 ) -> dict[str, _ChainEnd]:
-    """The cheapest chains that go on to a next state's lanelets; empty if none does."""
+    """The cheapest chains on to a next state's lanelets, or none."""
     onward: dict[str, _ChainEnd] = {}
     for start, chain in best.items():
         for hops in _hops(recording, start, costs):
@@ -91,7 +94,10 @@ def _onward(
 def _hops(
     recording: Recording, start: str, targets: Mapping[str, float]
 ) -> Iterator[tuple[str, ...]]:
-    """The shortest chain of successors to each target; the empty one to the start."""
+    """The shortest chain of successors to each target.
+
+    The chain to the start is empty.
+    """
     if start in targets:
         yield ()
     reached = {start}

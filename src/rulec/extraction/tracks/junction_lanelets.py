@@ -1,4 +1,4 @@
-"""The lanelets that lie in a junction: as the map says, or because their ways cross."""
+"""The lanelets of junctions, by the map or by crossing ways."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
 
 
 def _angle(first: Lanelet, second: Lanelet, meeting: shapely.Geometry) -> float:
-    """The sharper angle between two lanelets where they meet (rad, up to a right angle)."""
+    """The sharper angle (rad) between two lanelets where they meet.
+
+    It is at most a right angle.
+    """
     place = np.array([shapely.point_on_surface(meeting)])
     turn = directions_beside(first, place)[0] - directions_beside(second, place)[0]
     return float(abs(np.arctan(np.tan(turn))))

@@ -1,4 +1,4 @@
-"""Map matching, first step: the lanelets on which each state of a vehicle may lie.
+"""Map matching, first step: candidate lanelets of a vehicle's states.
 
 A state matches the lanelets within ``NEAR_M`` that lead its way; each match has a cost. The second
 step, ``driven_route``, takes the cheapest chain of them, as matching by hidden Markov models does
@@ -29,7 +29,10 @@ MatchedLanelets = Mapping[int, Mapping[str, float]]
 
 
 def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanelets]:
-    """The matches of each moving participant, by its row; columns without a match are left out."""
+    """The matches of each moving participant, by row and column.
+
+    Columns without a match are left out.
+    """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
     rows, columns = np.nonzero(tracks.present & moving[:, None])

@@ -1,4 +1,4 @@
-"""A recording as a mirror shows it, so that traffic keeps to the other side."""
+"""A mirrored recording, whose traffic keeps to the other side."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ _OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None
 
 
 def mirrored_recording(recording: Recording) -> Recording:
-    """With ``y`` turned round, and left and right of everything exchanged. Its own inverse."""
+    """Mirror a recording: negate ``y``, exchange left and right.
+
+    It is its own inverse.
+    """
     return replace(
         recording,
         lanelets={number: _lanelet(item) for number, item in recording.lanelets.items()},

@@ -1,4 +1,4 @@
-"""The participants that count for ego: on its lanes or beside them, and near enough."""
+"""The participants that count for ego: near, on its lanes or beside."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ONCOMING_COSINE = -0.7
 def relevant_participants(
     ego: int, tracks: Tracks, extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds
 ) -> Flags:
-    """Whether each participant counts for ego, a row of the arrays, in each step.
+    """Flags of participants (rows) that count for ego, by step.
 
     On ego's lanes everything counts that is near; beside them only vulnerable road users, and
     oncoming vehicles that move at some time.
@@ -36,7 +36,7 @@ def relevant_participants(
 
 
 def _moves(tracks: Tracks, thresholds: Thresholds) -> Flags:
-    """Whether each participant moves at some time."""
+    """Flags of participants that move at some time."""
     fastest = np.nan_to_num(tracks.speed).max(axis=1, initial=0.0)
     moves: Flags = fastest * 3.6 >= thresholds.standing_kmh
     return moves

@@ -22,7 +22,7 @@ from rulec.scenario.recorded.outline_bounds import outline_bounds
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RoadExtents:
-    """The bounds of what participants occupy, and their motion as seen from the road.
+    """The bounds and the motion of participants in coordinates of the road.
 
     ``turned`` is the heading relative to the road's direction (rad, in [-pi, pi)), ``along`` and
     ``across`` are the velocity along the road and to its left (m/s).
@@ -98,7 +98,7 @@ def _directions(road: DrivenRoad, s: Floats) -> Floats:
 
 
 def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
-    """Whether bodies reach into lanes; the last axis is that of the lanes."""
+    """Flags of lanes (last axis) that bodies reach into."""
     right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
     low, high = extents.w_min[..., None], extents.w_max[..., None]
     inside = np.minimum(high, left) - np.maximum(low, right)

@@ -43,7 +43,10 @@ class Tracks:
     acceleration: Floats
 
     def outlines(self) -> Iterator[tuple[int, int, Points]]:
-        """Row, column and outline of all participants; of those that stand for good, once."""
+        """Row, column and outline of all participants.
+
+        Participants that stand for good have one outline.
+        """
         for row, body in enumerate(self.participants):
             if body.standing:
                 yield row, 0, next(iter(body.outlines.values()))
@@ -61,7 +64,7 @@ class Tracks:
         )
 
     def of_type(self, name: str) -> Flags:
-        """Whether each participant is of an object type or one of its subtypes."""
+        """Flags of participants of an object type or its subtypes."""
         types = [OBSTACLE_TYPES.get(x.type, OBSTACLE_TYPES["unknown"]) for x in self.participants]
         return np.array([name in own for own in types], dtype=bool)
 
@@ -124,7 +127,10 @@ def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
 
 
 def _windows(present: Flags, reach: int) -> tuple[NDArray[np.intp], ...]:
-    """The length in steps of the unbroken window around each moment, its first and its last."""
+    """The lengths, firsts and lasts of unbroken windows around moments.
+
+    Lengths are in steps.
+    """
     columns = np.arange(present.shape[1])
     absent = np.where(present, -1, columns)
     since = np.maximum.accumulate(absent, axis=1) + 1

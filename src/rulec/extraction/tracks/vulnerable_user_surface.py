@@ -13,12 +13,15 @@ from rulec.scenario.recorded.route import is_lane, lanelet_area
 
 
 def on_lanes(recording: Recording, tracks: Tracks) -> Flags:
-    """Whether a vulnerable road user's middle is on a lane of any direction, by row and column."""
+    """Flags of vulnerable road users with their middle on a lane.
+
+    They are by row and column; a lane of any direction counts.
+    """
     return _on(recording, tracks, is_lane)
 
 
 def on_crosswalks(recording: Recording, tracks: Tracks) -> Flags:
-    """Whether a vulnerable road user's middle is on a pedestrian crossing."""
+    """Flags of vulnerable road users with their middle on a pedestrian crossing."""
     return _on(recording, tracks, lambda lanelet: "crosswalk" in lanelet.types)
 
 

@@ -1,4 +1,4 @@
-"""Atoms, comparisons and bounds in plain English: the words that sentences are made of."""
+"""Atoms, comparisons and bounds as phrases of plain English."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MOST_PLACES = 12
 
 
 def number_text(value: Fraction) -> str:
-    """A number, exactly: as a decimal if it is a short one, else as a fraction."""
+    """An exact number as a short decimal, or else a fraction."""
     for places in range(_MOST_PLACES + 1):
         scaled = value * 10**places
         if scaled.denominator == 1:
@@ -47,7 +47,7 @@ def number_text(value: Fraction) -> str:
 
 
 def spoken(name: str) -> str:
-    """A name to be read aloud: ``in_front_of`` is three words, ``R_cw`` stays what it is."""
+    """A name in spoken words: ``in_front_of`` becomes three, ``R_cw`` stays."""
     formula_text = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
     return name.replace("_", " ") if formula_text else name
 
@@ -63,7 +63,7 @@ def of_objects(name: str, arguments: Sequence[str]) -> str:
 
 
 def atom_in_english(atom: Atom, *, holds: bool) -> str:
-    """A clause that says that the atom holds, or that it does not."""
+    """A clause stating that the atom holds, or not."""
     if atom.value is not None:
         verb = "is" if holds else "is not"
         return f"{of_objects(atom.name, atom.arguments)} {verb} “{spoken(atom.value)}”"
@@ -72,7 +72,7 @@ def atom_in_english(atom: Atom, *, holds: bool) -> str:
 
 
 def comparison_in_english(comparison: Comparison, *, holds: bool) -> str:
-    """A clause that says that the comparison holds, or that it does not."""
+    """A clause stating that the comparison holds, or not."""
     text = comparison_text(comparison)
     signs = _SIGN.findall(text)
     terms = [term for _, term in comparison.terms]
@@ -94,7 +94,7 @@ def _aloud(text: str, terms: Sequence[Term]) -> str:
 
 
 def single_count(comparison: Comparison) -> Count | None:
-    """The count, if it is a single one that is compared with a number."""
+    """The only count of a comparison with a number, or None."""
     match comparison.terms:
         case ((coefficient, Count() as count),) if coefficient == 1:
             return count
@@ -102,7 +102,10 @@ def single_count(comparison: Comparison) -> Count | None:
 
 
 def counted(comparison: Comparison, count: Count) -> str:
-    """``there are at least 8 vehicles x for which``, to go on with the body."""
+    """The head of a counting clause: ``there are at least 8 ...``.
+
+    In full ``there are at least 8 vehicles x for which``, to go on with the body.
+    """
     match comparison.relation, comparison.limit:
         case ">=", Fraction(numerator=1, denominator=1):
             return f"there is a {spoken(count.type)} {count.variable} for which"
@@ -122,7 +125,7 @@ def plural(noun: str) -> str:
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """The comparison's text, or one made of its terms, without units, if it has none."""
+    """The comparison's own text, or one made of its terms, without units."""
     if comparison.text:
         return comparison.text
     return f"{terms_text(comparison.terms)} {comparison.relation} {number_text(comparison.limit)}"
@@ -154,7 +157,10 @@ def amount(value: Fraction, unit: Literal["s", "steps"]) -> str:
 
 
 def span(bound: Bound, beyond: str) -> str:
-    """A time: ``from 1 s to 4 s later``, ``beyond`` being ``later`` or ``before``."""
+    """A time span: ``from 1 s to 4 s later``.
+
+    ``beyond`` is ``later`` or ``before``.
+    """
     low = amount(bound.low, bound.unit)
     if bound.high is None:
         return f"{low} or more {beyond}"

@@ -38,7 +38,7 @@ MOST_IN_A_LINE = 3
 
 
 class Shape(IntEnum):
-    """The complexity of a phrase, from a word to a list of its own."""
+    """The complexity of a phrase, from a word to a list."""
 
     CLAUSE = 0
     """One atom or comparison, or its denial."""
@@ -74,7 +74,7 @@ def label(index: int) -> str:
 
 
 def sentence(formula: Formula, variables: Sequence[tuple[str, str]], related: Related) -> Phrase:
-    """The rule that has this formula as a sentence, without its full stop.
+    """A rule's formula as a sentence, without its full stop.
 
     Args:
         formula: what the rule requires.
@@ -95,12 +95,18 @@ _WHEN = {
 
 
 def exemption(formula: Formula, scope: str) -> Phrase:
-    """An exception of a rule as a sentence, without its full stop; ``scope`` as in a rulebook."""
+    """An exception of a rule as a sentence, without its full stop.
+
+    ``scope`` is as in a rulebook.
+    """
     return _after(f"it does not count if, {_WHEN[scope]},", phrase(formula, inside=True))
 
 
 def condition(formula: Formula, *, guards: bool) -> Phrase:
-    """The condition of a rule; ``guards``: it guards a stretch of the trace."""
+    """The condition of a rule as a phrase.
+
+    ``guards``: it guards a stretch of the trace.
+    """
     when = _WHEN["throughout" if guards else "initially"]
     return _after(f"it counts only if, {when},", phrase(formula, inside=True))
 
@@ -117,7 +123,10 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
 
 
 def phrase(formula: Formula, *, inside: bool) -> Phrase:
-    """A formula as a phrase; ``inside``: it speaks of another time than the start of the trace."""
+    """A formula as a phrase.
+
+    ``inside``: it speaks of another time than the start of the trace.
+    """
     at_start = "" if inside else " at the start"
     match formula:
         case Unary(UnaryOperator.NOT, operand) if not _counts(operand):
@@ -169,7 +178,10 @@ def _clause(formula: Formula, *, holds: bool) -> str | None:
 
 
 def _after(lead: str, scope: Phrase) -> Phrase:
-    """Words at the head of a line, which reach to its end, or over the list that it introduces."""
+    """A phrase after words at the head of a line.
+
+    The words reach to the line's end, or over the list that they introduce.
+    """
     if scope.shape is Shape.JOINED and lead.endswith("that"):
         return Phrase(f"{lead} {_together(scope)}", Shape.REACHING)
     # A pause is made where more than a clause follows, unless there is one or `that` forbids it.
@@ -180,7 +192,7 @@ def _after(lead: str, scope: Phrase) -> Phrase:
 
 
 def _together(joined: Phrase) -> str:
-    """Clauses joined by ``and`` or ``or`` behind a denial, which has to be one of all of them."""
+    """Joined clauses behind a denial, worded as one whole."""
     if joined.joint == "or":
         return f"either {joined.text}"
     pair = joined.n_clauses == 2
@@ -188,7 +200,7 @@ def _together(joined: Phrase) -> str:
 
 
 def _between(pattern: str, left: Formula, right: Formula, *, inside: bool) -> Phrase:
-    """Clauses in the places of a pattern; what is more than a clause goes to a list below it."""
+    """Clauses in the places of a pattern, longer ones in a list."""
     first, last = phrase(left, inside=inside), phrase(right, inside=inside)
     if last.shape is Shape.JOINED and pattern.endswith("{}"):
         last = Phrase(_together(last), Shape.CLAUSE)
@@ -239,7 +251,10 @@ def _chain(formula: Binary, *, inside: bool) -> Phrase:
 
 
 def _phases(formula: Binary) -> Phrase:
-    """``then``, which is read from the right; a bound says how long the phase before it lasts."""
+    """The phases of ``then``, with bounds as their durations.
+
+    It is read from the right; a bound says how long the phase before it lasts.
+    """
     phases: list[tuple[Phrase, str]] = []
     rest: Formula = formula
     while isinstance(rest, Binary) and rest.operator is BinaryOperator.THEN:

@@ -1,4 +1,7 @@
-"""A sentence with its lists laid out: (a), (b), below them (i), (ii), below these (1), (2)."""
+"""A sentence laid out with its nested lists.
+
+They are labelled (a), (b), below them (i), (ii), below these (1), (2).
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,10 @@ _ROMAN = ((50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of a sentence, ``depth`` lists deep; the first one has no label."""
+    """A line of a sentence, ``depth`` lists deep.
+
+    The first one has no label.
+    """
 
     depth: int
     label: str

@@ -56,7 +56,7 @@ def adverb(operator: UnaryOperator, bound: Bound | None, *, inside: bool) -> str
 
 
 def pattern_of(operator: BinaryOperator, bound: Bound | None, *, inside: bool) -> str:
-    """The pattern of a line, with the left operand's place before the right one's."""
+    """The pattern of a binary operator's phrase, left operand first."""
     later = "later" if inside else "after the start"
     when = "" if bound is None else f" at some time {span(bound, later)}"
     always = "at all times" if bound is None else f"at all times {span(bound, later)}"
