@@ -21,7 +21,7 @@ from rulec.logic.formula import (
     Bound,
     Comparison,
     Count,
-    Quantity,
+    QuantityTerm,
     Unary,
     UnaryOperator,
 )
@@ -246,7 +246,7 @@ class TestVocabularyUse:
     COUNT = Count("o", "thing", Atom("place", ("o",), "near"))
 
     def test_names_in_the_order_of_the_formula(self):
-        terms = ((Fraction(1), Quantity("speed")), (Fraction(2), self.COUNT))
+        terms = ((Fraction(1), QuantityTerm("speed")), (Fraction(2), self.COUNT))
         formula = Binary(BinaryOperator.UNTIL, Comparison(terms, "<", Fraction(1)), no(P))
         assert list(declared_names_in(formula)) == ["speed", "place", "p"]
         own = book("a", rule("r", formula), rule("s", P))

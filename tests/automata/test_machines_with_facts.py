@@ -24,7 +24,7 @@ from rulec.logic.formula import (
     BinaryOperator,
     Comparison,
     Constant,
-    Quantity,
+    QuantityTerm,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -161,7 +161,7 @@ def test_verdicts_are_those_of_direct_evaluation(semantics, formula, axioms, wor
     check(formula, axioms, word, WORLDS, letter_of, VOCABULARY, semantics)
 
 
-SPEED = ((Fraction(1), Quantity("speed")),)
+SPEED = ((Fraction(1), QuantityTerm("speed")),)
 NUMBERS = Vocabulary(
     "numbers", {"thing": VOCABULARY.types["thing"]}, {"speed": DeclaredQuantity("speed", (), "m/s")}
 )

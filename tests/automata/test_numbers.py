@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import exact, floor_of, scale
-from rulec.logic.formula import Constant, Count, Quantity
+from rulec.logic.formula import Constant, Count, QuantityTerm
 
 floats = st.floats(allow_nan=False, allow_infinity=False)
-SPEED = Quantity("speed", ("v",))
+SPEED = QuantityTerm("speed", ("v",))
 
 
 @st.composite
@@ -93,7 +93,7 @@ def test_limits_beyond_all_floats(limit):
 
 def test_what_a_number_depends_on():
     near = Count("x", "car", Constant(True))
-    gap = Quantity("gap", ("v", "w"))
+    gap = QuantityTerm("gap", ("v", "w"))
     read = NumberRead(((Fraction(1), near), (Fraction(2), gap), (Fraction(-1), SPEED)), ())
     assert scale(read).variables == ("v", "w")
     assert scale(read).quantity is None

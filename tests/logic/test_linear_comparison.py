@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from rulec.logic.formula import Comparison, Constant, Quantity
+from rulec.logic.formula import Comparison, Constant, QuantityTerm
 from rulec.logic.linear_comparison import comparison, stands
 
-GAP = Quantity("gap")
+GAP = QuantityTerm("gap")
 RELATIONS = ["<", "<=", "=", "!=", ">=", ">"]
 
 

@@ -12,7 +12,7 @@ from rulec.logic.formula import (
     BinaryOperator,
     Bound,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     UnaryOperator,
@@ -89,8 +89,8 @@ def test_bounds_and_numbers_in_words(formula, text):
 
 
 def test_terms_in_words():
-    assert term_text(Quantity("speed")) == "speed"
-    assert term_text(Quantity("gap", ("v", "w"))) == "gap(v, w)"
+    assert term_text(QuantityTerm("speed")) == "speed"
+    assert term_text(QuantityTerm("gap", ("v", "w"))) == "gap(v, w)"
     count = Count("c", "car", Binary(BinaryOperator.AND, P, Same("c", "v")))
     assert term_text(count) == "count c: car (p and c = v)"
 

@@ -2,10 +2,10 @@
 
 from fractions import Fraction
 
-from rulec.logic.formula import Atom, Comparison, Count, Quantity, Same
+from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Same
 from rulec.logic.renaming import rename_variables
 
-GAP_V, GAP_W = Quantity("gap", ("v",)), Quantity("gap", ("w",))
+GAP_V, GAP_W = QuantityTerm("gap", ("v",)), QuantityTerm("gap", ("w",))
 
 
 def test_the_variable_of_a_count_is_its_own():
@@ -34,7 +34,7 @@ def test_terms_are_in_order_again():
 
 
 def test_text_of_several_arguments_and_units_by_the_same_name():
-    distance = Quantity("distance", ("m", "v"))
+    distance = QuantityTerm("distance", ("m", "v"))
     before = Comparison(((Fraction(1), distance),), "<", Fraction(3), "distance(m, v) < 3 m")
     assert str(rename_variables(before, {"m": "a", "v": "b"})) == "distance(a, b) < 3 m"
 

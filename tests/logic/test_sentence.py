@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     UnaryOperator,
@@ -33,7 +33,7 @@ BEHIND = Atom("station", ("v",), "behind")
 BESIDE = Atom("station", ("v",), "beside")
 FRONT = Atom("station", ("v",), "in_front_of")
 
-SPEED, GAP = Quantity("speed"), Quantity("lateral_gap", ("v",))
+SPEED, GAP = QuantityTerm("speed"), QuantityTerm("lateral_gap", ("v",))
 SLOW = Comparison(((Fraction(1), SPEED),), "<", Fraction(50), "speed < 50 km/h")
 WIDE = Comparison(
     ((Fraction(1), GAP), (Fraction(-1, 2), SPEED)),
@@ -181,7 +181,9 @@ distances = st.none() | st.builds(
 )
 relations = st.sampled_from(["<", "<=", "=", "!=", ">=", ">"])
 numbers = st.sampled_from([Fraction(0), Fraction(1), Fraction(1, 3), Fraction(-5, 2), Fraction(8)])
-quantities = st.sampled_from([Quantity("speed"), Quantity("gap", ("x",)), Quantity("gap", ("y",))])
+quantities = st.sampled_from(
+    [QuantityTerm("speed"), QuantityTerm("gap", ("x",)), QuantityTerm("gap", ("y",))]
+)
 sums = st.dictionaries(quantities, st.sampled_from([Fraction(2), Fraction(-1, 2)]), max_size=1)
 
 

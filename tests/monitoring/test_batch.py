@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.logic.formula import Comparison, Count, Quantity, Same
+from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
 from rulec.monitoring.batch import batch_verify, joint_codes
 from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
@@ -96,7 +96,7 @@ def violations(verdicts):
 
 
 def times(factor, quantity, *variables):
-    return Fraction(factor), Quantity(quantity, variables)
+    return Fraction(factor), QuantityTerm(quantity, variables)
 
 
 def number(relation, limit, *terms):

@@ -11,7 +11,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
 )
 from rulec.logic.kleene import Unknown, holds, number_of, objects_counted, weighted_sum
@@ -48,7 +48,7 @@ def less(limit, *terms):
 
 
 def close(one, other):
-    return less(5, times(1, Quantity("gap", (one, other))))
+    return less(5, times(1, QuantityTerm("gap", (one, other))))
 
 
 def test_objects_of_a_type_count_and_those_of_its_subtypes():
@@ -98,7 +98,7 @@ def test_the_inner_variable_hides_the_outer_one():
 
 
 def test_sums_are_exact():
-    gap, speed = Quantity("gap", ("v", "w")), Quantity("speed")
+    gap, speed = QuantityTerm("gap", ("v", "w")), QuantityTerm("speed")
     bound = {"v": "car1", "w": "car2"}
     # Three tenths are three tenths; floats would say 0.30000000000000004.
     assert weighted_sum([times(3, gap)], bound, HERE) == Fraction(3, 10)
@@ -113,7 +113,7 @@ def test_sums_are_exact():
     [("<", False), ("<=", True), ("=", True), ("!=", False), (">=", True), (">", False)],
 )
 def test_relations_at_the_limit(relation, truth):
-    one = Comparison((times(1, Quantity("gap", ("v", "w"))),), relation, Fraction(1, 10))
+    one = Comparison((times(1, QuantityTerm("gap", ("v", "w"))),), relation, Fraction(1, 10))
     assert holds(one, {"v": "car1", "w": "car2"}, HERE) is truth
 
 

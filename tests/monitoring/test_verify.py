@@ -6,7 +6,7 @@ import pytest
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.logic.formula import Atom, Constant, Quantity, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Constant, QuantityTerm, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook
@@ -254,7 +254,7 @@ def test_a_huge_whole_number_for_something_else_is_refused_in_few_words():
     ("formula", "state", "words"),
     [
         (closer("v", 5), {"gap": {"car1": 6}}, "the `gap` of `car2`"),
-        (number("", "<", 1, (1, gap("v")), (2, Quantity("speed"))), {}, "the `gap` of `car1`"),
+        (number("", "<", 1, (1, gap("v")), (2, QuantityTerm("speed"))), {}, "the `gap` of `car1`"),
         (
             number("", "<", 1, (1, others_near("v"))),
             {"place": {"car1": "near"}},

@@ -18,7 +18,7 @@ from rulec.logic.formula import (
     BinaryOperator,
     Comparison,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     UnaryOperator,
@@ -50,7 +50,7 @@ def number(relation, limit, *terms):
 
 
 def gap(variable):
-    return Quantity("gap", (variable,))
+    return QuantityTerm("gap", (variable,))
 
 
 def until(left, right):
@@ -68,7 +68,7 @@ CROWD = Count(
     "x", "car", number(">=", 2, (1, Count("y", "thing", both(far("y"), no(Same("x", "y"))))))
 )
 
-MIXED = number("<=", TIGHT, (1, gap("v")), (-1, gap("w")), (2, Quantity("speed")))
+MIXED = number("<=", TIGHT, (1, gap("v")), (-1, gap("w")), (2, QuantityTerm("speed")))
 
 RULES = (
     rule("apart", always(implies(near("v"), no(far("w")))), "v: car", "w: car"),

@@ -9,7 +9,7 @@ from hypothesis import given
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Threshold
-from rulec.logic.formula import Atom, Comparison, Count, Quantity
+from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm
 from rulec.report.automata.automaton_model import automaton_of
 from rulec.report.text.guard_text import GuardWording
 from support.generators.random_machines import READS, VOCABULARY, machines
@@ -136,8 +136,8 @@ def test_the_words(cubes, text):
 
 
 GAPS = (
-    (Fraction(1), Quantity("gap", ("v",))),
-    (Fraction(-5, 9), Quantity("speed")),
+    (Fraction(1), QuantityTerm("gap", ("v",))),
+    (Fraction(-5, 9), QuantityTerm("speed")),
 )
 
 
@@ -159,7 +159,7 @@ def test_a_comparison_is_said_as_the_rulebook_says_it(formula, digit, text):
 
 
 def test_a_count_that_holds_a_comparison_is_denied_as_a_whole():
-    body = Comparison(((Fraction(1), Quantity("speed")),), "<", Fraction(3), "speed < 3 km/h")
+    body = Comparison(((Fraction(1), QuantityTerm("speed")),), "<", Fraction(3), "speed < 3 km/h")
     terms = ((Fraction(1), Count("x", "thing", body)),)
     text = "count x: thing (speed < 3 km/h) >= 8"
     read = NumberRead(terms, (Threshold(Fraction(8), inclusive=True),))

@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     BinaryOperator,
     Comparison,
     Constant,
-    Quantity,
+    QuantityTerm,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -217,7 +217,7 @@ def test_comparisons_are_in_one_form(pair, relation):
     formula = formula_of(f"{pair[0][0]} {relation} {pair[1][0]}")
     for one in atoms_of(formula):
         if isinstance(one, Comparison):
-            texts = [term.name for _, term in one.terms if isinstance(term, Quantity)]
+            texts = [term.name for _, term in one.terms if isinstance(term, QuantityTerm)]
             assert texts == sorted(set(texts))
             assert one.terms[0][0] == 1
             assert all(factor for factor, _ in one.terms)
@@ -247,7 +247,9 @@ def test_what_depends_on_the_same_condition_twice_has_no_impossible_cases():
     two = formula_of("gap < react * 2 m/s + react * 3 m/s - react * 1 m/s")
     wet, dry = ((Atom("wet"), 4), (Unary(UnaryOperator.NOT, Atom("wet")), 2))
     sides = [
-        Binary(BinaryOperator.AND, test, Comparison(((Fraction(1), Quantity("gap")),), "<", limit))
+        Binary(
+            BinaryOperator.AND, test, Comparison(((Fraction(1), QuantityTerm("gap")),), "<", limit)
+        )
         for test, limit in (wet, dry)
     ]
     assert two == Binary(BinaryOperator.OR, *sides)

@@ -14,7 +14,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     atoms_of,
@@ -214,7 +214,7 @@ def in_one_form(formula, names=()):
 
 
 def _term(term, known):
-    if isinstance(term, Quantity):
+    if isinstance(term, QuantityTerm):
         return replace(term, arguments=tuple(known.get(one, one) for one in term.arguments))
     own = f"depth {len(known)}"
     body = in_one_form(term.body, {**known, term.variable: own}.items())

@@ -13,58 +13,7 @@ UNEXPLAINED_IMPORTS = frozenset(
 )
 WIDE_FOLDERS: frozenset[str] = frozenset()
 MODULES_TWICE: frozenset[str] = frozenset()
-CLASSES_TWICE = frozenset(
-    {
-        "Quantity",
-    }
-)
+CLASSES_TWICE: frozenset[str] = frozenset()
 ROOMS_WITHOUT_README: frozenset[str] = frozenset()
-TYPES_WITHOUT_TERM = frozenset(
-    {
-        "AlternativeCounts",
-        "Audit",
-        "AuditCounts",
-        "AuditFinding",
-        "BookLineage",
-        "Checked",
-        "Choice",
-        "Code",
-        "CompiledRule",
-        "DriveVerdict",
-        "Example",
-        "ExampleOutcome",
-        "ExampleRun",
-        "Label",
-        "Listed",
-        "NoDrive",
-        "OneSided",
-        "Participant",
-        "PenaltyRank",
-        "PlanningProblem",
-        "RankedManeuver",
-        "RecordingVerdicts",
-        "RequestedDrives",
-        "RuleComparison",
-        "RuleCoverage",
-        "RuleHistory",
-        "RulePair",
-        "RuleProbabilities",
-        "RuleProbability",
-        "RulePruning",
-        "RulebookDiff",
-        "Session",
-        "SettingPair",
-        "SoFar",
-        "Thresholds",
-        "TraceCells",
-        "TraceColumns",
-        "TraceGraph",
-        "TrackState",
-        "UncoveredEdge",
-        "Variable",
-        "Variant",
-        "VerdictChange",
-        "VerdictColumns",
-    }
-)
+TYPES_WITHOUT_TERM: frozenset[str] = frozenset()
 LINES_TOO_MANY = 4_900

@@ -6,10 +6,10 @@ from itertools import product
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.logic.formula import Quantity
+from rulec.logic.formula import QuantityTerm
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
-X, Y, Z = (Quantity(name) for name in "xyz")
+X, Y, Z = (QuantityTerm(name) for name in "xyz")
 
 bounded = st.builds(
     LinearBound,

@@ -15,7 +15,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
 )
@@ -197,7 +197,7 @@ def test_what_counts_read_of_own_objects_is_said():
 
 
 def test_numbers_of_counted_objects():
-    near = Comparison(((Fraction(1), Quantity("gap", ("x",))),), "<", Fraction(5))
+    near = Comparison(((Fraction(1), QuantityTerm("gap", ("x",))),), "<", Fraction(5))
     trace = witnesses_of(how_many(Count("x", "road_user", near), limits=(1,)), []).trace([1])
     (facts,), (one,) = trace.states, trace.objects
     assert facts["gap", (one.name,)] < 5
@@ -220,7 +220,7 @@ def test_nothing_is_counted():
     assert witnesses.trace([1]).states == ({("rain", ()): True},)
 
 
-SPEED, GAP = Quantity("speed"), Quantity("gap", ("v",))
+SPEED, GAP = QuantityTerm("speed"), QuantityTerm("gap", ("v",))
 numbers = st.lists(st.integers(-2, 4), min_size=1, max_size=2, unique=True).map(sorted)
 sums = st.sampled_from(
     [((1, SPEED),), ((1, GAP),), ((1, GAP), (-1, SPEED)), ((1, GAP), (2, SPEED))]

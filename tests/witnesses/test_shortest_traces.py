@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.logic.formula import Atom, Count, Quantity
+from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import run
 from rulec.rulebook.rulebook_model import Example, Variable
@@ -97,7 +97,7 @@ def test_no_trace_is_rejected_or_accepted():
         assert traces.rejected is not none
 
 
-SPEED, LIMIT = Quantity("speed"), Quantity("limit")
+SPEED, LIMIT = QuantityTerm("speed"), QuantityTerm("limit")
 NUMBERS = Vocabulary(
     "numbers",
     {"road_user": ObjectType("road_user"), "bus": ObjectType("bus", "road_user")},

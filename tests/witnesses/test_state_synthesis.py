@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.logic.formula import Atom, Count, Quantity
+from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import (
     are_consistent,
@@ -141,4 +141,4 @@ def test_subjects_are_all_that_a_state_could_say():
         ("speed", ()),
         *(("gap", (name,)) for name in "xy"),
     ]
-    assert Quantity("speed") == SPEED
+    assert QuantityTerm("speed") == SPEED

@@ -9,7 +9,7 @@ from functools import lru_cache
 from math import inf, nextafter
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.logic.formula import Quantity
+from rulec.logic.formula import QuantityTerm
 from rulec.logic.free_names import names_in, variables_of
 from rulec.trace import Value
 
@@ -55,7 +55,7 @@ class ThresholdScale:
     read: NumberRead
     variables: tuple[str, ...]
     names: tuple[str, ...]
-    quantity: Quantity | None
+    quantity: QuantityTerm | None
     floors: tuple[float, ...]
 
     def digit(self, value: Value) -> int:
@@ -74,7 +74,7 @@ def scale(read: NumberRead) -> ThresholdScale:
     quantity = None
     if len(read.terms) == 1:
         ((coefficient, term),) = read.terms
-        if coefficient == 1 and isinstance(term, Quantity):
+        if coefficient == 1 and isinstance(term, QuantityTerm):
             quantity = term
     return ThresholdScale(
         read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))

@@ -19,7 +19,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Relation,
     Same,
     Term,
@@ -73,7 +73,7 @@ def terms_to_data(terms: tuple[tuple[Fraction, Term], ...]) -> list[list[Any]]:
 
 def _term(term: Term) -> dict[str, Any]:
     match term:
-        case Quantity(name, arguments):
+        case QuantityTerm(name, arguments):
             return {"quantity": name, "variables": list(arguments)}
         case Count(variable, type_name, body):
             return {"count": variable, "type": type_name, "body": to_data(body)}
@@ -156,7 +156,7 @@ def _read_term(data: Any, depth: int) -> tuple[Fraction, Term]:
         case [coefficient, {"quantity": str(name), "variables": variables} as term] if (
             len(term) == 2
         ):
-            return number_from_data(coefficient), Quantity(name, _names(variables))
+            return number_from_data(coefficient), QuantityTerm(name, _names(variables))
         case [
             coefficient,
             {"count": str(variable), "type": str(type_name), "body": body} as term,

@@ -60,7 +60,7 @@ class Atom:
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class QuantityTerm:
     """A number in every state: ``name(arguments)``.
 
     It is in the unit of its declaration.
@@ -84,7 +84,7 @@ class Count:
     body: Formula
 
 
-Term = Quantity | Count
+Term = QuantityTerm | Count
 
 Relation = Literal["<", "<=", "=", "!=", ">=", ">"]
 

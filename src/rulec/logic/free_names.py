@@ -11,7 +11,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     Unary,
@@ -21,7 +21,7 @@ from rulec.logic.formula import (
 def variables_of(what: Formula | Term) -> Iterator[str]:
     """The free variables from left to right, with repetitions."""
     match what:
-        case Atom(_, arguments) | Quantity(_, arguments):
+        case Atom(_, arguments) | QuantityTerm(_, arguments):
             yield from arguments
         case Same(left, right):
             yield from (left, right)
@@ -42,7 +42,7 @@ def variables_of(what: Formula | Term) -> Iterator[str]:
 def names_in(what: Formula | Term) -> Iterator[str]:
     """The declarations that are read, from left to right, with repetitions."""
     match what:
-        case Atom(name) | Quantity(name):
+        case Atom(name) | QuantityTerm(name):
             yield name
         case Count(_, _, body):
             yield from names_in(body)

@@ -20,7 +20,7 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Proposition,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
 )
@@ -79,7 +79,7 @@ def weighted_sum(
 def number_of(term: Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
     """A quantity's value, or the number of objects that count."""
     match term:
-        case Quantity(name, arguments):
+        case QuantityTerm(name, arguments):
             return state.number(name, tuple([binding[variable] for variable in arguments]))
         case Count():
             objects = objects_counted(term, binding, state)

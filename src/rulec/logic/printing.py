@@ -14,7 +14,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     Unary,
@@ -111,7 +111,7 @@ def number_in_words(number: Fraction) -> str:
 def term_text(term: Term) -> str:
     """``gap(v)``, ``count v: vehicle (behind(v))``: the text that terms are sorted by."""
     match term:
-        case Quantity(name, arguments):
+        case QuantityTerm(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
         case Count(variable, type_name, body):
             return f"count {variable}: {type_name} ({formula_text(body)})"

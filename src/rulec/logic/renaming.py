@@ -13,7 +13,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     Unary,
@@ -56,8 +56,8 @@ _ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
 
 def _term(term: Term, names: Mapping[str, str]) -> Term:
     match term:
-        case Quantity(name, arguments):
-            return Quantity(name, _each(arguments, names))
+        case QuantityTerm(name, arguments):
+            return QuantityTerm(name, _each(arguments, names))
         case Count(variable, kind, body):
             free = {old: new for old, new in names.items() if old != variable}
             return Count(variable, kind, rename_variables(body, free))

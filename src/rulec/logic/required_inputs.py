@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Term, atoms_of
+from rulec.logic.formula import Atom, Comparison, Formula, QuantityTerm, Term, atoms_of
 from rulec.logic.renaming import rename_variables
 
 
 def required_inputs(
     formula: Formula, objects: Mapping[str, str], fits: Callable[[str, str], bool]
-) -> Iterator[Atom | Quantity]:
+) -> Iterator[Atom | QuantityTerm]:
     """Every atom and quantity that a formula reads, with repetitions.
 
     Those of every object that may count are included.
@@ -28,8 +28,8 @@ def required_inputs(
 
 def _of_term(
     term: Term, objects: Mapping[str, str], fits: Callable[[str, str], bool]
-) -> Iterator[Atom | Quantity]:
-    if isinstance(term, Quantity):
+) -> Iterator[Atom | QuantityTerm]:
+    if isinstance(term, QuantityTerm):
         yield term
         return
     for name, kind in objects.items():

@@ -12,7 +12,7 @@ from itertools import product
 from math import ceil
 
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.logic.formula import Count, Formula, Quantity
+from rulec.logic.formula import Count, Formula, QuantityTerm
 from rulec.logic.free_names import variables_of
 from rulec.witnesses.letter_functions import body_of, counts_read, speaks_of_extra, truths_of
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
@@ -173,7 +173,7 @@ def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse)
         return read.digit(state.value((read.name, read.variables), universe.vocabulary))
     total = Fraction(0)
     for factor, term in read.terms:
-        assert isinstance(term, Quantity), "no count stands inside another one"
+        assert isinstance(term, QuantityTerm), "no count stands inside another one"
         total += factor * state.number(term, universe.vocabulary)
     return read.digit(total)
 
@@ -196,7 +196,7 @@ def _said(
         if numbers is None:
             return None
         for term, number in numbers.items():
-            assert isinstance(term, Quantity)
+            assert isinstance(term, QuantityTerm)
             values[term.name, term.arguments] = float(number)
     return values
 
@@ -209,7 +209,7 @@ def _given(read: NumberRead, state: JointState, universe: ObjectUniverse) -> Num
         if EXTRA in variables_of(term):
             left.append((factor, term))
         else:
-            assert isinstance(term, Quantity)
+            assert isinstance(term, QuantityTerm)
             known += factor * state.number(term, universe.vocabulary)
     thresholds = tuple(
         replace(threshold, limit=threshold.limit - known) for threshold in read.thresholds

@@ -10,7 +10,7 @@ from math import inf
 from rulec.automata.alphabet import letters_with
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.thresholds import scale
-from rulec.logic.formula import Comparison, Formula, Proposition, Quantity, atoms_of
+from rulec.logic.formula import Comparison, Formula, Proposition, QuantityTerm, atoms_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
 from rulec.logic.printing import formula_text
@@ -135,7 +135,7 @@ def coverage_witness(
 
 def _choose(
     numbers: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
-) -> tuple[dict[Quantity, float], list[NumberRead]]:
+) -> tuple[dict[QuantityTerm, float], list[NumberRead]]:
     """Numbers with these digits, and the sums left without any."""
     chosen = numbers_near_thresholds(numbers, vocabulary)
     if chosen is not None:
@@ -153,7 +153,7 @@ def _choose(
     return chosen, left
 
 
-def _quantities(proposition: Proposition) -> Iterator[Quantity]:
+def _quantities(proposition: Proposition) -> Iterator[QuantityTerm]:
     for _, term in proposition.terms if isinstance(proposition, Comparison) else ():
-        if isinstance(term, Quantity):
+        if isinstance(term, QuantityTerm):
             yield term

@@ -18,7 +18,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     Unary,
@@ -68,8 +68,8 @@ def monitor_function(
 
 
 def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
-    if isinstance(term, Quantity):
-        return Quantity(term.name, tuple(names[argument] for argument in term.arguments))
+    if isinstance(term, QuantityTerm):
+        return QuantityTerm(term.name, tuple(names[argument] for argument in term.arguments))
     return Count(term.variable, term.type, rename_variables(term.body, names))
 
 

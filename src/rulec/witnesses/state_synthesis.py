@@ -13,7 +13,7 @@ from itertools import product
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.logic.formula import Count, Quantity, Term
+from rulec.logic.formula import Count, QuantityTerm, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
@@ -45,7 +45,7 @@ class JointState:
         value = self.values.get(subject)
         return default_value(vocabulary.declarations[subject[0]]) if value is None else value
 
-    def number(self, term: Quantity, vocabulary: Vocabulary) -> Fraction:
+    def number(self, term: QuantityTerm, vocabulary: Vocabulary) -> Fraction:
         """The value of a quantity."""
         value = self.value((term.name, term.arguments), vocabulary)
         assert not isinstance(value, str), "a quantity is a number"
@@ -69,7 +69,7 @@ def synthesize_state(
         if isinstance(read, Read)
     }
     for term, number in numbers.items():
-        if isinstance(term, Quantity):
+        if isinstance(term, QuantityTerm):
             values[term.name, term.arguments] = float(number)
     return JointState(values, number_digits, counted)
 
@@ -98,7 +98,7 @@ def solve_numbers(
 
 def numbers_near_thresholds(
     number_digits: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
-) -> dict[Quantity, float] | None:
+) -> dict[QuantityTerm, float] | None:
     """Numbers with these digits, close to the thresholds, for tests.
 
     Of a sum of several quantities one is close, the others have their defaults, or are zero, unless
@@ -106,7 +106,7 @@ def numbers_near_thresholds(
     """
     _, quantities = _terms_of(number_digits)
     preferred: dict[Term, Fraction] = {}
-    listed: list[Quantity] = []
+    listed: list[QuantityTerm] = []
     order: list[Term] = []
     # A quantity that is compared by itself has less of a choice than one in a sum only.
     for read, _ in sorted(number_digits, key=lambda pair: len(pair[0].terms)):
@@ -150,10 +150,10 @@ def are_consistent(number_digits: Sequence[tuple[NumberRead, int]]) -> bool:
 
 def _terms_of(
     number_digits: Sequence[tuple[NumberRead, int]],
-) -> tuple[list[Count], list[Quantity]]:
+) -> tuple[list[Count], list[QuantityTerm]]:
     terms = list(dict.fromkeys(term for read, _ in number_digits for _, term in read.terms))
     counts = [term for term in terms if isinstance(term, Count)]
-    return counts, [term for term in terms if isinstance(term, Quantity)]
+    return counts, [term for term in terms if isinstance(term, QuantityTerm)]
 
 
 def _linear_system(
@@ -208,7 +208,7 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
         return None if default is None else read.digit(default)
     total = Fraction(0)
     for coefficient, term in read.terms:
-        if isinstance(term, Quantity):
+        if isinstance(term, QuantityTerm):
             default = vocabulary.declarations[term.name].default
             if not isinstance(default, int | float):
                 return None

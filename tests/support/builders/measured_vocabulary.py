@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from rulec.logic.formula import Comparison, Count, Quantity, Same
+from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as QuantityItem
 
@@ -18,12 +18,12 @@ MEASURED = Vocabulary(
     },
 )
 
-SPEED = Quantity("speed")
+SPEED = QuantityTerm("speed")
 
 
 def gap(variable):
     """The gap to an object, in m."""
-    return Quantity("gap", (variable,))
+    return QuantityTerm("gap", (variable,))
 
 
 def number(text, relation, limit, *terms):

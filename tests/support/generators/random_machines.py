@@ -6,7 +6,7 @@ from math import prod
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, Threshold
-from rulec.logic.formula import Quantity
+from rulec.logic.formula import QuantityTerm
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
@@ -25,7 +25,7 @@ READS = (
     Read("p", ()),
     Read("place", ("x",), ("near", "far"), others=True),
     NumberRead(
-        ((Fraction(1), Quantity("speed")),),
+        ((Fraction(1), QuantityTerm("speed")),),
         (
             Threshold(Fraction(3), inclusive=True),
             Threshold(Fraction(3), inclusive=False),

@@ -7,7 +7,7 @@ from math import prod
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.logic.formula import Quantity
+from rulec.logic.formula import QuantityTerm
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.letter_functions import LetterFunction
@@ -24,7 +24,7 @@ VOCABULARY = Vocabulary(
     },
 )
 OBJECTS = {"x": "thing"}
-SPEED, GAP = Quantity("speed"), Quantity("gap", ("x",))
+SPEED, GAP = QuantityTerm("speed"), QuantityTerm("gap", ("x",))
 P, Q, PLACE = ("p", ()), ("q", ("x",)), ("place", ("x",))
 
 thresholds = st.lists(

@@ -14,7 +14,7 @@ from rulec.logic.formula import (
     Bound,
     Comparison,
     Count,
-    Quantity,
+    QuantityTerm,
     Unary,
     UnaryOperator,
 )
@@ -41,7 +41,7 @@ ONE = Fraction(1)
 
 
 def compared(coefficients, relation, limit):
-    terms = tuple((Fraction(factor), Quantity(*term)) for factor, term in coefficients)
+    terms = tuple((Fraction(factor), QuantityTerm(*term)) for factor, term in coefficients)
     return Comparison(terms, relation, Fraction(limit), f"{coefficients} {relation} {limit}")
 
 

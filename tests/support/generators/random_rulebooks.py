@@ -12,7 +12,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     UnaryOperator,
@@ -40,7 +40,7 @@ def number(text, *terms):
 
 
 def quantity(name, *variables):
-    return Quantity(name, variables)
+    return QuantityTerm(name, variables)
 
 
 NOT_X = Unary(NO, Same("o", "x"))
@@ -199,7 +199,7 @@ def fact(chance, rules):
     read = [
         one
         for one in atoms_of(about.formula)
-        if isinstance(one, Atom) or isinstance(one.terms[0][1], Quantity)
+        if isinstance(one, Atom) or isinstance(one.terms[0][1], QuantityTerm)
     ]
     leaves = [*read, *read, *WORLD_ATOMS[2:]]
     if chance.random() < 0.2:

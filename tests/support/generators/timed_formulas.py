@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Unary,
     UnaryOperator,
     atoms_of,
@@ -35,7 +35,7 @@ TIMED_VOCABULARY = Vocabulary(
     },
 )
 
-SPEED, GAP = Quantity("speed"), Quantity("gap", ("x",))
+SPEED, GAP = QuantityTerm("speed"), QuantityTerm("gap", ("x",))
 CARS = Count("y", "car", Atom("place", ("y",), "near"))
 SUMS = {
     "speed": ((Fraction(1), SPEED),),

@@ -9,7 +9,7 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     atoms_of,
@@ -88,7 +88,7 @@ class Reading:
 
     def number(self, term, objects, n):
         match term:
-            case Quantity(name, arguments):
+            case QuantityTerm(name, arguments):
                 value = self.value(name, [objects[one] for one in arguments], n)
                 return None if value is None else number(value)
             case Count(variable, kind, body):
@@ -172,7 +172,7 @@ def counts(fact):
 def names_in(part):
     """The names that a formula reads."""
     match part:
-        case Atom(name) | Quantity(name):
+        case Atom(name) | QuantityTerm(name):
             yield name
         case Comparison(terms):
             for _, term in terms:

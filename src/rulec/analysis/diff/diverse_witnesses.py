@@ -15,7 +15,7 @@ from fractions import Fraction
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.thresholds import exact
-from rulec.logic.formula import Atom, Comparison, Formula, Quantity, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Comparison, Formula, QuantityTerm, Unary, UnaryOperator
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
@@ -105,4 +105,4 @@ def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration
             return Unary(UnaryOperator.NOT, Atom(name, arguments))
     assert declaration.default is not None, "only what has a default can be as usual"
     number = exact(float(declaration.default))
-    return Comparison(((Fraction(1), Quantity(name, arguments)),), "=", number)
+    return Comparison(((Fraction(1), QuantityTerm(name, arguments)),), "=", number)

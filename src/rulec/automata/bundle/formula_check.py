@@ -12,7 +12,7 @@ from rulec.logic.formula import (
     Constant,
     Count,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     Unary,
@@ -84,7 +84,7 @@ def _is_normal(comparison: Comparison) -> bool:
 
 def _problems_of_term(term: Term, vocabulary: Vocabulary, variables: Set[str]) -> Iterator[str]:
     match term:
-        case Quantity(name, arguments):
+        case QuantityTerm(name, arguments):
             declaration = vocabulary.declarations.get(name)
             if (
                 not isinstance(declaration, DeclaredQuantity)

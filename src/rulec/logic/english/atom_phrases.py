@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Literal
 
-from rulec.logic.formula import Atom, Bound, Comparison, Count, Quantity, Relation, Term
+from rulec.logic.formula import Atom, Bound, Comparison, Count, QuantityTerm, Relation, Term
 from rulec.logic.printing import formula_text
 
 _VERBS: dict[Relation, tuple[str, str]] = {
@@ -86,7 +86,7 @@ def comparison_in_english(comparison: Comparison, *, holds: bool) -> str:
 def _aloud(text: str, terms: Sequence[Term]) -> str:
     """Arithmetic with the quantities in it named in words."""
     for term in terms:
-        if isinstance(term, Quantity):
+        if isinstance(term, QuantityTerm):
             written = re.compile(rf"(?<![\w.]){re.escape(term_text(term))}(?![\w(])")
             words = of_objects(term.name, term.arguments)
             text = written.sub(lambda _, words=words: words, text)  # type: ignore[misc]
@@ -145,7 +145,7 @@ def terms_text(terms: Sequence[tuple[Fraction, Term]]) -> str:
 def term_text(term: Term) -> str:
     """A quantity or a count as a rulebook would say it."""
     match term:
-        case Quantity(name, arguments):
+        case QuantityTerm(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
         case Count(variable, type_name, body):
             return f"count {variable}: {type_name} ({formula_text(body)})"

@@ -11,7 +11,7 @@ from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics.phrases import any_of
 from rulec.logic.english.atom_phrases import comparison_text, number_text, terms_text
-from rulec.logic.formula import Atom, Comparison, Count, Quantity, Relation, atoms_of
+from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Relation, atoms_of
 from rulec.report.findings.source_excerpt import visible
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -124,7 +124,7 @@ class GuardWording:
 
     def _unit(self, read: NumberRead) -> str:
         match read.terms:
-            case ((_, Quantity(name)),):
+            case ((_, QuantityTerm(name)),):
                 declaration = self._vocabulary.declarations[name]
                 return f" {declaration.unit}" if isinstance(declaration, DeclaredQuantity) else ""
         return ""

@@ -11,7 +11,7 @@ from rulec.logic.formula import (
     BinaryOperator,
     Constant,
     Formula,
-    Quantity,
+    QuantityTerm,
     Same,
     Unary,
     UnaryOperator,
@@ -160,7 +160,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     if kind == "definition":
         return expand_macro(node, scope, elaborate)
     result = scope.reference(node)
-    if isinstance(result, Quantity):
+    if isinstance(result, QuantityTerm):
         unit = scope.symbols.unit_of(result.name)
         if unit is None:
             return None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Label, Span
-from rulec.logic.formula import Atom, Quantity
+from rulec.logic.formula import Atom, QuantityTerm
 from rulec.rulebook.names import atom_messages
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
@@ -131,7 +131,7 @@ class Scope:
         hidden = name in self.variables or name in self.relations
         return item if isinstance(item, Enumeration) and not hidden else None
 
-    def reference(self, use: tree.AtomUse) -> Atom | Quantity | None:
+    def reference(self, use: tree.AtomUse) -> Atom | QuantityTerm | None:
         """The atom or quantity of a use; None after a reported mistake."""
         name = self.absolute(use, use.name.text)
         if name is None:
@@ -164,7 +164,7 @@ class Scope:
 
     def _checked(
         self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
-    ) -> Atom | Quantity | None:
+    ) -> Atom | QuantityTerm | None:
         item = self.behind(name)
         assert item is not None, "only called for known names"
         if len(arguments) != len(item.parameters):
@@ -181,7 +181,7 @@ class Scope:
         if len(names) < len(actual):
             return None
         if isinstance(item, QuantityDeclaration):
-            return Quantity(item.name, names)
+            return QuantityTerm(item.name, names)
         return Atom(item.name, names, name if isinstance(item, Enumeration) else None)
 
     def object(

@@ -9,7 +9,7 @@ from rulec.diagnostics import Span
 from rulec.logic.formula import (
     Atom,
     Formula,
-    Quantity,
+    QuantityTerm,
 )
 from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.number_literals import literal
@@ -39,7 +39,7 @@ def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope)
     kinds = {
         name: variable.type for name, variable in variables.items() if variable.type is not None
     }
-    needed: dict[Key, Atom | Quantity] = {}
+    needed: dict[Key, Atom | QuantityTerm] = {}
     if formula is not None:
         for what in required_inputs(formula, kinds, scope.symbols.fits):
             if scope.symbols.items[what.name].default is None:
@@ -59,7 +59,7 @@ def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope)
 
 
 def _state(
-    state: tree.ExampleState, needed: Mapping[Key, Atom | Quantity], scope: Scope
+    state: tree.ExampleState, needed: Mapping[Key, Atom | QuantityTerm], scope: Scope
 ) -> ExampleState:
     said: dict[Key, bool | str | float] = {}
     places: dict[Key, Span] = {}
@@ -80,7 +80,7 @@ def _state(
     return said
 
 
-def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
+def _named(use: tree.AtomUse, scope: Scope) -> Atom | QuantityTerm | None:
     """Subject of a state literal; None after a reported mistake."""
     kind = scope.constants.overlay.kind_of(use.name.text)
     if kind and scope.behind(use.name.text) is None:
@@ -90,10 +90,10 @@ def _named(use: tree.AtomUse, scope: Scope) -> Atom | Quantity | None:
 
 
 def _value(
-    fact: tree.StateLiteral, atom: Atom | Quantity, scope: Scope
+    fact: tree.StateLiteral, atom: Atom | QuantityTerm, scope: Scope
 ) -> bool | str | float | None:
     """Value of a state literal; None after a reported mistake."""
-    if isinstance(atom, Quantity):
+    if isinstance(atom, QuantityTerm):
         return _number(fact, atom, scope)
     if fact.value is not None:
         scope.report(say.not_a_number(fact, atom, scope.symbols))
@@ -104,7 +104,7 @@ def _value(
     return not fact.negated if atom.value is None else atom.value
 
 
-def _number(fact: tree.StateLiteral, quantity: Quantity, scope: Scope) -> float | None:
+def _number(fact: tree.StateLiteral, quantity: QuantityTerm, scope: Scope) -> float | None:
     """A quantity's value, in the unit of its declaration."""
     unit = scope.symbols.unit_of(quantity.name)
     if fact.value is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.diagnostics.code import Code
-from rulec.logic.formula import Atom, Quantity
+from rulec.logic.formula import Atom, QuantityTerm
 from rulec.logic.printing import term_text
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
@@ -69,7 +69,7 @@ def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnos
     )
 
 
-def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -> Diagnostic:
+def contradiction(fact: tree.StateLiteral, what: Atom | QuantityTerm, first: Span) -> Diagnostic:
     """Two values in one state."""
     if isinstance(what, Atom) and what.value is None:
         message = f"`{what}` cannot be both true and false in one state"
@@ -84,10 +84,12 @@ def contradiction(fact: tree.StateLiteral, what: Atom | Quantity, first: Span) -
     )
 
 
-def left_open(state: tree.ExampleState, what: Atom | Quantity, symbols: SymbolTable) -> Diagnostic:
+def left_open(
+    state: tree.ExampleState, what: Atom | QuantityTerm, symbols: SymbolTable
+) -> Diagnostic:
     """Mistake: a state lacks a needed value that has no default."""
     item = symbols.items[what.name]
-    if isinstance(what, Quantity):
+    if isinstance(what, QuantityTerm):
         ways = [f"`{term_text(what)} = … {symbols.unit_text(what.name)}`"]
     elif isinstance(item, Enumeration):
         ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
@@ -114,7 +116,7 @@ def no_fact(use: tree.AtomUse, kind: str, symbols: tree.Name) -> Diagnostic:
     )
 
 
-def without_number(fact: tree.StateLiteral, what: Quantity, symbols: SymbolTable) -> Diagnostic:
+def without_number(fact: tree.StateLiteral, what: QuantityTerm, symbols: SymbolTable) -> Diagnostic:
     """A quantity without a value."""
     unit = symbols.unit_text(what.name)
     return NUMBER_OR_FORMULA.at(
@@ -138,7 +140,7 @@ def not_a_number(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> D
 
 
 def other_dimension(
-    fact: tree.StateLiteral, what: Quantity, given: NumberByCases, unit: Unit
+    fact: tree.StateLiteral, what: QuantityTerm, given: NumberByCases, unit: Unit
 ) -> Diagnostic:
     """A value in a unit of another dimension."""
     assert fact.value is not None, "only a value has a unit"
@@ -152,7 +154,7 @@ def other_dimension(
     )
 
 
-def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic:
+def too_large(fact: tree.StateLiteral, what: QuantityTerm, unit: Unit) -> Diagnostic:
     """A value beyond all numbers that a trace can have."""
     assert fact.value is not None, "only a value can be too large"
     return NUMBER_TOO_LARGE.at(
@@ -162,5 +164,7 @@ def too_large(fact: tree.StateLiteral, what: Quantity, unit: Unit) -> Diagnostic
     )
 
 
-def _subject(what: Atom | Quantity) -> str:
-    return term_text(what) if isinstance(what, Quantity) else str(Atom(what.name, what.arguments))
+def _subject(what: Atom | QuantityTerm) -> str:
+    return (
+        term_text(what) if isinstance(what, QuantityTerm) else str(Atom(what.name, what.arguments))
+    )

@@ -16,7 +16,7 @@ from rulec.logic.formula import (
     Count,
     Formula,
     Proposition,
-    Quantity,
+    QuantityTerm,
     Same,
     Term,
     atoms_of,
@@ -99,7 +99,7 @@ class ColumnReader:
         """Columns of a sum's terms, with their coefficients. Raises NotGivenError."""
         summands: list[Summand] = []
         for coefficient, term in terms:
-            if isinstance(term, Quantity):
+            if isinstance(term, QuantityTerm):
                 items = tuple([bound[argument] for argument in term.arguments])
                 numbers = self.values(term.name, items)
                 if numbers is None:
@@ -132,7 +132,7 @@ class ColumnReader:
                     return NotGivenError(atom.name, items)
                 continue
             for _, term in atom.terms:
-                if isinstance(term, Quantity):
+                if isinstance(term, QuantityTerm):
                     items = tuple([bound[variable] for variable in term.arguments])
                     if self.values(term.name, items) is None:
                         return NotGivenError(term.name, items)
