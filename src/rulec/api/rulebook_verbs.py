@@ -1,6 +1,6 @@
 """Verbs about rulebooks: read, compile, check, test, compare, show."""
 
-# Every verb imports what it needs when it is called: `import rulec` takes 20 ms, all rooms 700 ms.
+# Imports within functions: what all verbs of this file need takes 340 ms, a session alone 25 ms.
 
 from __future__ import annotations
 

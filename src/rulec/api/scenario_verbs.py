@@ -1,6 +1,6 @@
 """Verbs about scenarios: navigation graph, maneuvers, envelopes, pictures."""
 
-# Every verb imports what it needs when it is called: see ``rulebook_verbs``.
+# Imports within functions: what all verbs of this file need takes 220 ms, a session alone 25 ms.
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Verbs about traces and recorded traffic: read, write, verify."""
 
-# Every verb imports what it needs when it is called: see ``rulebook_verbs``.
+# Imports within functions: what all verbs of this file need takes 150 ms, a session alone 25 ms.
 
 from __future__ import annotations
 

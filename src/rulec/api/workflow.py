@@ -4,8 +4,10 @@
     scenario -> partition -> graph of traces ------------------^
 
 The command line and a session are thin layers over these functions, of which each raises
-RulecError for what is wrong with its input. Nothing is imported before it is used: start-up.
+RulecError for what is wrong with its input.
 """
+
+# Imports within functions: what all of them need takes 330 ms, this module alone 20 ms.
 
 from __future__ import annotations
 

@@ -10,6 +10,8 @@ from typing import IO, Literal, get_args
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.trace.formats import json_lines
+from rulec.trace.formats.arrow.parquet import read_parquet, write_parquet
+from rulec.trace.formats.csv_table import read_csv, write_csv
 from rulec.trace.formats.table_writer import Kinds, columns_for, rows_of
 from rulec.trace.trace_model import Trace
 
@@ -54,12 +56,8 @@ def read_chunks(
         yield from json_lines.read_chunks(stream, file)
         return
     if form == "parquet":
-        from rulec.trace.formats.arrow.parquet import read_parquet
-
         yield from read_parquet(stream, file)
         return
-    from rulec.trace.formats.csv_table import read_csv
-
     yield from read_csv(stream, file)
 
 
@@ -78,12 +76,8 @@ def write_traces(
     columns = columns_for(kinds)
     rows = chain.from_iterable(rows_of(trace, list(kinds)) for trace in traces)
     if form == "csv":
-        from rulec.trace.formats.csv_table import write_csv
-
         write_csv(rows, columns, stream)
         return
-    from rulec.trace.formats.arrow.parquet import write_parquet
-
     own = {"step": int, "step_s": float}
     types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]
     write_parquet(rows, types, stream, file)
