@@ -1,6 +1,4 @@
-"""A compiler for traffic law.
-
-Rulebooks in, automata out, every maneuver judged.
+"""A compiler for traffic law: rulebooks in, automata out, maneuvers judged.
 
 A look at all of it::
 

@@ -125,10 +125,7 @@ def decoded(name: str, data: bytes) -> Source:
 
 
 def without_null(source: Source) -> Source:
-    """The source itself, if it has no null character.
-
-    Raises RulecError R0101.
-    """
+    """The source itself. Raises RulecError R0101 for a null character."""
     null = source.text.find("\0")
     if null >= 0:
         raise NOT_UTF8.error(

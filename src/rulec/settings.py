@@ -1,7 +1,4 @@
-"""A project's settings from ``rulec.toml``.
-
-It is found in the working folder or above it.
-"""
+"""A project's ``rulec.toml``, from the working folder or above it."""
 
 from __future__ import annotations
 

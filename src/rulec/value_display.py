@@ -64,10 +64,7 @@ class Rows:
 
     @abstractmethod
     def rows(self) -> Sequence[dict[str, Any]]:
-        """Rows as dicts with equal keys and plain values.
-
-        The values are texts, numbers, truth values, None, lists and dicts.
-        """
+        """Rows as dicts with equal keys and plain values."""
 
     def to_arrow(self) -> Any:
         """The rows as a ``pyarrow.Table``; ImportError if pyarrow is not installed."""

@@ -28,9 +28,7 @@ def trace_drawing(
     objects: Sequence[str] = (),
     patterns: Sequence[str] = (),
 ) -> Drawing:
-    """Draw over time the inputs of rules in a trace, with violations.
-
-    Raises RulecError.
+    """Draw a trace's rule inputs over time, with violations. Raises RulecError.
 
     ``objects`` are those to show, if not all; ``patterns`` have chosen the rules, for the title.
     """
@@ -47,10 +45,7 @@ def scene_drawing(
     layers: Sequence[int] = (),
     number: int = 1,
 ) -> Drawing:
-    """Draw a scene over time, or some of its layers.
-
-    A maneuver, the ``number``-th cheapest, is shown in it if there are ``maneuvers``.
-    """
+    """Draw a scene over time, or some of its layers."""
     chosen = sorted(set(layers)) or range(len(graph.layers))
     title = scene_title(graph, maneuvers, maneuver, number)
     return Drawing(title, scene_pictures(graph, chosen, maneuver), scene_legend(graph, maneuver))
@@ -75,10 +70,7 @@ def draw_trace(trace: Trace, rules: CompiledRulebook, form: str) -> bytes:
 def draw_maneuvers(
     subject: NavigationGraph | Maneuvers, maneuver: Maneuver | None, form: str, *, as_graph: bool
 ) -> bytes:
-    """Draw a scene or its graph as the content of a file.
-
-    Raises RulecError.
-    """
+    """Draw a scene or its graph as file content. Raises RulecError."""
     maneuvers = subject if isinstance(subject, Maneuvers) else None
     graph = subject.graph if isinstance(subject, Maneuvers) else subject
     if maneuver is None and maneuvers is not None:

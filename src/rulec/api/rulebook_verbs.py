@@ -53,10 +53,7 @@ class RulebookVerbs(SessionSettings):
         return loaded.rulebook
 
     def parse_rulebook(self, text: str, name: str = "<text>") -> Rulebook:
-        """Parse the text of a rulebook.
-
-        Messages call it ``name``. Raises RulecError.
-        """
+        """Parse a rulebook's text, called ``name`` in messages. Raises RulecError."""
         from rulec.rulebook.loader import parse_rulebook
 
         return parse_rulebook(text, name, self._folders(), self.at)
@@ -70,9 +67,7 @@ class RulebookVerbs(SessionSettings):
     def compile_rulebook(
         self, reference: Rules, *, step_s: Fraction | float | None = None
     ) -> CompiledRulebook:
-        """Compile a rulebook.
-
-        It is a name, the path of a source or of a compiled file, or a Rulebook.
+        """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
         Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is
         for this step (s) alone, a float meaning the decimal that is written.
@@ -110,10 +105,7 @@ class RulebookVerbs(SessionSettings):
         return formatted(name, None, text.encode("utf-8", "surrogatepass")).after.decode()
 
     def test(self, reference: str | Path, pattern: str | None = None) -> ExampleRun:
-        """Run a rulebook's examples.
-
-        With a ``pattern`` only those whose RULE or RULE/LABEL it matches.
-        """
+        """Run a rulebook's examples whose RULE or RULE/LABEL matches the pattern."""
         from rulec.api.rulebook_questions import run_examples
 
         return run_examples(reference, self.search_path, pattern, self.at)
@@ -133,9 +125,7 @@ class RulebookVerbs(SessionSettings):
     def explain(
         self, subject: str | Violation, trace: Trace | None = None, rules: Rules | None = None
     ) -> Code | Explanation:
-        """Explain a code such as R0104, or a trace's violation of rules.
-
-        A violation is explained state by state.
+        """Explain a code such as R0104, or a trace's violations by state.
 
         Raises KeyError for a code that there is not.
         """
@@ -188,10 +178,7 @@ class RulebookVerbs(SessionSettings):
         )
 
     def analyze(self, reference: str | Path) -> tuple[Diagnostic, ...]:
-        """Find defects of a rulebook by its rules' automata.
-
-        Raises RulecError.
-        """
+        """Find defects of a rulebook by its rules' automata. Raises RulecError."""
         from rulec.api.rulebook_questions import analyze_rulebook
 
         return analyze_rulebook(reference, self.search_path, self.at)
@@ -228,10 +215,7 @@ class RulebookVerbs(SessionSettings):
         return rule_page.as_text(page, book.name, book.vocabulary, width)
 
     def doc(self, reference: str | Path, form: Literal["html", "markdown"] = "html") -> str:
-        """Write a rulebook as a document for lawyers, in HTML or Markdown.
-
-        Raises RulecError.
-        """
+        """A rulebook as a lawyers' document, HTML or Markdown. Raises RulecError."""
         from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.report.rulebooks.book_document import CONTENTS, as_markdown, title_of
         from rulec.report.text.html_page import as_html
@@ -242,10 +226,7 @@ class RulebookVerbs(SessionSettings):
         return as_html(text, title_of(loaded.rulebook), CONTENTS) if form == "html" else text
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
-        """The text of a rulebook to start from, perhaps extending another.
-
-        Raises RulecError.
-        """
+        """The text of a new rulebook, perhaps extending another. Raises RulecError."""
         from rulec.rulebook import template
 
         today = datetime.now().astimezone().date()

@@ -30,10 +30,7 @@ class ScenarioVerbs(SessionSettings):
     """The verbs of a session that are about scenarios and pictures."""
 
     def load_scenario(self, reference: str | Path, choice: Choice | None = None) -> Scenario:
-        """Load a scenario by its name or path.
-
-        The choice is for recorded scenes.
-        """
+        """Load a scenario by name or path; the choice suits recorded scenes."""
         from rulec.scenario import load_scenario
 
         return load_scenario(reference, choice)
@@ -41,10 +38,7 @@ class ScenarioVerbs(SessionSettings):
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
-        """Build the navigation graph of a scenario: cells and successors over time.
-
-        Raises RulecError.
-        """
+        """A scenario as cells and successors over time. Raises RulecError."""
         from rulec.api.workflow import navigation_graph
 
         return navigation_graph(scenario, **options)
@@ -68,10 +62,7 @@ class ScenarioVerbs(SessionSettings):
         return find_maneuvers(scenario, self._compiled(rules), after=after, **options)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
-        """The bounds of a maneuver, layer by layer.
-
-        Raises RulecError R0609 for no path.
-        """
+        """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""
         from rulec.partition import envelope
 
         return envelope(graph, nodes)
@@ -90,10 +81,7 @@ class ScenarioVerbs(SessionSettings):
         limit: int = 10_000_000,
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
-        """Generate the maneuvers of a scenario lazily as traces.
-
-        They are in the words of the rules if these are given.
-        """
+        """Generate a scenario's maneuvers lazily as traces, in the rules' words."""
         from rulec.trace.graph_paths import all_traces
 
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario

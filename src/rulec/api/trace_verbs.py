@@ -35,10 +35,7 @@ class TraceVerbs(SessionSettings):
         return read_traces(path)
 
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
-        """Write traces to a file, in the format of its name.
-
-        Raises RulecError.
-        """
+        """Write traces in the format of the file's name. Raises RulecError."""
         from rulec.files import written_whole
         from rulec.trace.formats.table_writer import kinds_in
         from rulec.trace.formats.trace_files import format_of, write_traces
@@ -70,10 +67,7 @@ class TraceVerbs(SessionSettings):
         return verify_many(traces, self._compiled(rules))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces given as arrays.
-
-        There is one answer for each rule and binding.
-        """
+        """Judge traces given as arrays, with one answer per rule and binding."""
         from rulec.monitoring.batch.engine import verify_columns
 
         return list(verify_columns(columns, self._compiled(rules).fitted_to(columns.step_s)))
@@ -85,10 +79,7 @@ class TraceVerbs(SessionSettings):
         return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
 
     def read_recording(self, path: str | Path, net: str | Path | None = None) -> Recording:
-        """Read recorded traffic.
-
-        ``net`` is the road network of SUMO's data. Raises RulecError.
-        """
+        """Read recorded traffic, with SUMO's road network ``net``. Raises RulecError."""
         from rulec.scenario.recording_files import read_recording
 
         return read_recording(Path(path), None if net is None else Path(net))

@@ -44,9 +44,7 @@ def compile_rulebook(
     step_s: Fraction | float | None = None,
     at: str = "",
 ) -> CompiledRulebook:
-    """Compile a rulebook.
-
-    It is a name, the path of a source or of a compiled file, or a Rulebook.
+    """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
     Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is for
     this step (s) alone, a float meaning the decimal that is written. ``warn`` is called with what

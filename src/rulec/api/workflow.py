@@ -112,9 +112,7 @@ def find_maneuvers(
     after: Before | None = None,
     **options: Unpack[GraphOptions],
 ) -> Maneuvers:
-    """Count the maneuvers that keep every hard rule.
-
-    Algorithm 1 of the paper.
+    """Count the maneuvers that keep every hard rule (the paper's algorithm 1).
 
     ``after``: what was before, up to one step before the scenario begins: a trace, a ``Monitor``
     that has taken one, or its snapshot. Without a ``partition`` it is the one whose relations the
@@ -133,10 +131,7 @@ def verify_recording(
     wanted: RequestedDrives | None = None,
     net: str | Path | None = None,
 ) -> RecordingVerdicts:
-    """Judge the drives of recorded vehicles.
-
-    ``net`` is for SUMO's data.
-    """
+    """Judge the drives of recorded vehicles; ``net`` is for SUMO's data."""
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives
     from rulec.scenario.recording_files import read_recording

@@ -53,8 +53,6 @@ def _prepare() -> None:
 def _said_version() -> bool:
     """Print the version, without the imports of ``main``, and report success.
 
-    Scripts ask for the version often.
-
     What cannot be written is left to ``main``, which knows what to say of that.
     """
     try:
@@ -66,10 +64,7 @@ def _said_version() -> bool:
 
 
 def _let_go_of(stream: TextIO) -> None:
-    """Flush a stream, or redirect it to the null device.
-
-    Python would try again at exit to write what is left, and end with a status of its own.
-    """
+    """Flush a stream, or redirect it lest Python retry at exit."""
     try:
         stream.flush()
     except OSError:

@@ -25,10 +25,7 @@ class ExitStatus(IntEnum):
 
     @classmethod
     def after(cls, *, answered: bool = True, failed: bool) -> ExitStatus:
-        """The status of a question that was answered in full or not.
-
-        An incomplete answer counts before a failure.
-        """
+        """The status of a question: an incomplete answer comes before a failure."""
         if not answered:
             return cls.NOT_ANSWERED
         return cls.FOUND if failed else cls.OK

@@ -117,10 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _unwritable(problem: OSError) -> int:
-    """Report that standard output cannot be written, and return the status.
-
-    Files have diagnostics of their own.
-    """
+    """Report that standard output cannot be written, and return the status."""
     # What is still buffered must not fail again when Python exits.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):

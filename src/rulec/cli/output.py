@@ -17,9 +17,7 @@ from rulec.report.text.console import print_diagnostics, print_result, wants_col
 
 @contextmanager
 def output_stream(output: Path) -> Iterator[tuple[IO[bytes], str]]:
-    """Open a file that appears whole, or for `-` standard output.
-
-    With it comes its name in messages.
+    """A stream and its name, for a file written whole or `-`.
 
     Raises RulecError R0702.
     """

@@ -23,10 +23,7 @@ def open_session(at: str = "") -> rulec.Session:
 
 
 def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
-    """Compile a rulebook for traces of any step, and print its warnings.
-
-    Raises RulecError.
-    """
+    """Compile a rulebook for any step; print warnings. Raises RulecError."""
     # The tables of automata, 20 ms: not for --help.
     from rulec.api.workflow import machines
 

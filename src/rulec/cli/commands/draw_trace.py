@@ -68,10 +68,7 @@ def trace(
 
 
 def _trace(file: str, wanted: str | None) -> Trace:
-    """The wanted trace of a file.
-
-    Raises RulecError if it, or one before it, cannot be read.
-    """
+    """The wanted trace. Raises RulecError for an unreadable one up to it."""
     names: list[str] = []
     for trace_ in rulec.read_traces(file):
         if isinstance(trace_, RulecError):

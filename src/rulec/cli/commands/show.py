@@ -135,10 +135,7 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
-    """Explain the absence of a rule that was dropped or overridden.
-
-    Empty if there was none, or if nobody knows.
-    """
+    """The reason for a rule's absence, if it once existed."""
     # Only for this message: the printer of rulebooks, 60 ms.
     from rulec.syntax.tree_printer import print_in_force
 

@@ -96,9 +96,7 @@ _scene_options = combined(
 
 
 def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
-    """Load the scenario.
-
-    Choices in a recorded one are taken out of ``graph_options``.
+    """Load the scenario, consuming the options that only recorded ones take.
 
     Raises RulecError.
     """

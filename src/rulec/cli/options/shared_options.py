@@ -109,10 +109,7 @@ def text_output_option(help_text: str = "Write to FILE.") -> Callable[[Decorated
 
 
 def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """The option ``--step S``, read exactly.
-
-    Its meaning differs from verb to verb.
-    """
+    """The option ``--step S``, read exactly, with the verb's own help."""
     return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
 
 

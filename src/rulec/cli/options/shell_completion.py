@@ -74,10 +74,7 @@ def complete_codes(
 
 
 def _folders() -> tuple[Path, ...]:
-    """The project's own folders; empty if its settings are wrong.
-
-    While a command is typed nobody wants to hear of mistakes.
-    """
+    """The project's own folders; none, silently, if its settings are wrong."""
     try:
         return search_path()
     except RulecError:

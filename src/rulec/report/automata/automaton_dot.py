@@ -24,10 +24,7 @@ _STYLES: dict[Fate, str] = {
 
 
 def as_dot(automaton: Automaton, name: str) -> str:
-    """Write the automaton as a digraph in DOT.
-
-    A trace that ends with a dashed edge is rejected, with a solid one accepted.
-    """
+    """A digraph in DOT; accepting edges are solid, rejecting ones dashed."""
     lines = [
         f"// {visible(name)}: a trace that ends with a dashed edge is rejected.",
         f"digraph {_quoted(name)} {{",

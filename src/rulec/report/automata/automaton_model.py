@@ -38,10 +38,7 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class Automaton:
-    """States from 0, the initial one, and transitions from the open ones.
-
-    Each state has its fate.
-    """
+    """States from 0, the initial one, with fates; transitions from open ones."""
 
     fates: tuple[Fate, ...]
     transitions: tuple[Transition, ...]

@@ -21,10 +21,7 @@ _FINAL = {
 
 
 def as_text(automaton: Automaton, width: int) -> str:
-    """Write a paragraph for each state.
-
-    The last column is the verdict on a trace that ends there.
-    """
+    """A paragraph per state; the last column is the verdict at end."""
     number = len(automaton.fates)
     head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
     if automaton.transitions:

@@ -9,10 +9,7 @@ from rulec.report.json_document import JsonDocument, as_indented
 
 
 class CodeData(JsonDocument, frozen=True, kw_only=True):
-    """A message's code with its explanation.
-
-    The examples are empty where there can be none.
-    """
+    """A message's code with its explanation; examples may be empty."""
 
     code: str
     title: str

@@ -12,10 +12,7 @@ from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 
 
 class PlaceData(JsonPart, frozen=True, kw_only=True):
-    """A place in a file, counted from 1 in Unicode code points.
-
-    ``end_column`` is behind it.
-    """
+    """A place, counted from 1 in Unicode code points; ``end_column`` is exclusive."""
 
     file: str
     line: int | None

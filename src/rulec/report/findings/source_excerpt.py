@@ -51,10 +51,7 @@ def _width(shown: str) -> int:
 
 
 def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
-    """The line shared by all marks, then an underline for each.
-
-    With each comes its mark's sign.
-    """
+    """The line shared by all marks, then each mark's underline and sign."""
     excerpt = marks[0].place.excerpt
     primary = next((mark for mark in marks if mark.sign == "^"), marks[0])
     cells, first, cut_before, cut_after = _window(excerpt, primary.place)

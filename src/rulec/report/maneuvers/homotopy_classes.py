@@ -12,10 +12,7 @@ from rulec.report.text.count_text import shown_count
 
 
 def count_lines(maneuvers: Maneuvers, classes: HomotopyClasses) -> list[str]:
-    """Counts of homotopy classes and of satisfying ones.
-
-    Where verdicts differ within a class, the reason.
-    """
+    """Counts of homotopy classes, and reasons for different verdicts within one."""
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
     lines = [f"classes     {satisfying} of {total} satisfying"]
     if classes.divided:

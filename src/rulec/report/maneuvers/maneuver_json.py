@@ -1,7 +1,4 @@
-"""Maneuvers, their violations and probabilities as JSON.
-
-docs/commands.md describes it.
-"""
+"""Maneuvers, their violations and probabilities as JSON (see docs/commands.md)."""
 
 from __future__ import annotations
 
@@ -45,10 +42,7 @@ class SceneData(JsonPart, frozen=True, kw_only=True):
 
 
 class LevelPenalty(JsonPart, frozen=True, kw_only=True):
-    """The summed weight of the violated rules of some levels.
-
-    null is no level.
-    """
+    """The summed weight of violated rules by levels; null is no level."""
 
     strength: Strength
     levels: Sequence[str | None]
@@ -56,10 +50,7 @@ class LevelPenalty(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
-    """A rule that a maneuver violates.
-
-    ``lost_s`` is when that is final, null if at the end.
-    """
+    """A violated rule; ``lost_s`` is null if final only at the end."""
 
     rule: str
     cite: str
@@ -80,10 +71,7 @@ class CellData(JsonPart, frozen=True, kw_only=True):
 
 
 class EnvelopeData(JsonPart, frozen=True, kw_only=True):
-    """The bounds in a layer, in metres.
-
-    The profiles are pairs of s and d.
-    """
+    """The bounds in a layer, in metres; profiles are pairs (s, d)."""
 
     s_min: float
     s_max: float
@@ -142,10 +130,7 @@ class PastViolation(JsonPart, frozen=True, kw_only=True):
 
 
 class WorldData(JsonPart, frozen=True, kw_only=True):
-    """Counts of maneuvers for a less likely prediction of an obstacle.
-
-    Predictions count from 1.
-    """
+    """Counts for an obstacle's less likely prediction, numbered from 1."""
 
     obstacle: str
     prediction: int
@@ -155,10 +140,7 @@ class WorldData(JsonPart, frozen=True, kw_only=True):
 
 
 class PruningData(JsonPart, frozen=True, kw_only=True):
-    """Counts of maneuvers that violate a rule, and it alone.
-
-    ``alone`` counts those that keep every other hard rule.
-    """
+    """Counts of maneuvers violating a rule, and no other hard one (``alone``)."""
 
     rule: str
     strength: Strength

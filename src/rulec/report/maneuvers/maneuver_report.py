@@ -76,10 +76,7 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
-    """A line for each rule already violated by the past.
-
-    No maneuver can mend that.
-    """
+    """A line for each rule already violated by the past."""
     for violation in violations[:MOST_VIOLATIONS]:
         where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
         about = f" for {where}" if where else ""

@@ -1,4 +1,1 @@
-"""Pictures: marks laid out by pure functions, then written as files.
-
-The formats are SVG, PNG and HTML pages.
-"""
+"""Pictures as pure layouts of marks, written as SVG, PNG or HTML."""

@@ -17,10 +17,7 @@ _MEANING: dict[PartitionName, str] = {
 
 
 def in_letters(cell: Cell) -> str:
-    """A cell's signature: a letter for each obstacle, with ``fine`` two.
-
-    They are in the order of the layer's objects.
-    """
+    """A letter per obstacle (two with ``fine``), in the layer's object order."""
     if len(cell.objects) > MOST_SPELLED:
         return ""
     letters = [

@@ -1,7 +1,4 @@
-"""Picture of the navigation graph: a column of cells for every layer.
-
-The steps run between the columns.
-"""
+"""Picture of the navigation graph: cells in layer columns, steps between."""
 
 from __future__ import annotations
 

@@ -39,10 +39,7 @@ def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int)
 
 
 def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
-    """The trace and its verdict.
-
-    ``only``: of these rules and objects, if there are any.
-    """
+    """The trace and its verdict, ``only`` of some rules and objects."""
     number = len(verdict.violations)
     words = "no violation" if not number else "1 violation" if number == 1 else None
     return f"{verdict.trace}: {words or f'{number:,} violations'} by {rules.name}" + (

@@ -38,10 +38,7 @@ _TAKEN = {
 def scene_pictures(
     graph: NavigationGraph, layers: Sequence[int], maneuver: Maneuver | None
 ) -> list[Picture]:
-    """A picture for each layer.
-
-    ``maneuver`` is shown by its cells and its bounds.
-    """
+    """A picture for each layer, with a maneuver's cells and bounds."""
     return [_picture(graph, layer, maneuver) for layer in layers]
 
 

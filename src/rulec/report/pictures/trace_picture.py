@@ -33,10 +33,7 @@ _COLOURS = 7
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Time axis: the left end of each state.
-
-    States are ``step_s`` apart.
-    """
+    """Time axis: the left end of each state, ``step_s`` apart."""
 
     left: float
     states: int
@@ -175,10 +172,7 @@ def _times(axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _title(row: RibbonRow) -> str:
-    """A row's title; for a quantity with its extremes.
-
-    The curve runs between these.
-    """
+    """A row's title; for a quantity with its extremes."""
     text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
     if row.values:
         return text

@@ -50,10 +50,7 @@ class RibbonRow:
 
 @dataclass(frozen=True, slots=True)
 class Ribbon:
-    """The rows of a trace, and its violations.
-
-    ``left_out`` more rows have nothing but defaults.
-    """
+    """A trace's rows and violations; ``left_out`` further rows are all default."""
 
     trace: Trace
     rows: tuple[RibbonRow, ...]
@@ -61,10 +58,7 @@ class Ribbon:
     violations: tuple[Violation, ...]
 
     def decisive(self, violation: Violation) -> int:
-        """The state that decides a violation.
-
-        It lies behind the last one if the end decides.
-        """
+        """The state that decides a violation; beyond the last for the end."""
         return len(self.trace.states) if violation.step is None else violation.step
 
 
@@ -102,10 +96,7 @@ def ribbon(
 
 
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
-    """Pairs of objects mentioned in some state.
-
-    Most of all that there are have defaults alone.
-    """
+    """Pairs of objects mentioned in some state; others have defaults alone."""
     values = (state.get(name) for name in names for state in trace.states)
     result = {
         (one, other): None

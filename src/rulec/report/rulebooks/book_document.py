@@ -1,7 +1,4 @@
-"""A rulebook as a document for lawyers, in Markdown.
-
-``html_page`` makes the page for a browser.
-"""
+"""A rulebook as a Markdown document for lawyers; ``html_page`` makes HTML."""
 
 from __future__ import annotations
 

@@ -29,10 +29,7 @@ class BookData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleSide(JsonPart, frozen=True, kw_only=True):
-    """A rule as one rulebook says it.
-
-    Its weight is an exact number.
-    """
+    """A rule as one rulebook says it, with its weight exactly."""
 
     strength: Strength
     variables: Sequence[Variable]
@@ -55,9 +52,7 @@ class TraceData(JsonPart, frozen=True, kw_only=True):
 
 
 class RulePairData(JsonPart, frozen=True, kw_only=True):
-    """A rule that both rulebooks have.
-
-    The relation is that of the first to the second one.
+    """A rule of both rulebooks; the relation is first to second.
 
     Where they speak of different types of objects, it is compared on those in common.
     """

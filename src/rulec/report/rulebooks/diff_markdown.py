@@ -1,7 +1,4 @@
-"""Differences of two rulebooks in Markdown.
-
-``html_page`` makes a page for a browser of it.
-"""
+"""Differences of two rulebooks in Markdown; ``html_page`` makes HTML of it."""
 
 from __future__ import annotations
 

@@ -58,10 +58,7 @@ def _head(rulebook_diff: RulebookDiff) -> str:
 
 
 def sides(rulebook_diff: RulebookDiff) -> list[str]:
-    """A line on different sides of traffic, if they differ.
-
-    Many rules differ by it.
-    """
+    """A line on different sides of traffic, if they differ."""
     first, second = rulebook_diff.first, rulebook_diff.second
     if {first.traffic, second.traffic} != {"left", "right"}:
         return []

@@ -45,10 +45,7 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleLineageData(JsonPart, frozen=True, kw_only=True):
-    """A rule's history from the rulebook that declares it.
-
-    It may be gone at the end.
-    """
+    """A rule's history from its declaration, perhaps to its removal."""
 
     name: str
     gone: bool
@@ -71,10 +68,7 @@ class ForestDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
-    """The lineage of rules that match a pattern, without provisions.
-
-    Without a pattern it is all of the lineage.
-    """
+    """Lineage of rules that match a pattern; everything without a pattern."""
     if pattern is None:
         return inherited
     rules = tuple(rule for rule in inherited.rules if fnmatchcase(rule.name, pattern))

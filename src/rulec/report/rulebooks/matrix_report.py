@@ -37,10 +37,7 @@ TITLE = "Rulebooks compared"
 
 
 class RuleInBook(JsonPart, frozen=True, kw_only=True):
-    """A rule in one rulebook, with a letter for its law.
-
-    All of it is null where there is no such rule.
-    """
+    """A rule in one rulebook, with its law's letter; null where absent."""
 
     name: str
     law: str | None
@@ -49,10 +46,7 @@ class RuleInBook(JsonPart, frozen=True, kw_only=True):
 
 
 class SharedRuleData(JsonPart, frozen=True, kw_only=True):
-    """A rule in each of the rulebooks.
-
-    Those with the same letter forbid the same traces.
-    """
+    """A rule in each rulebook; equal letters forbid the same traces."""
 
     rule: str
     books: Sequence[RuleInBook]

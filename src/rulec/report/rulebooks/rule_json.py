@@ -1,7 +1,4 @@
-"""Rules as JSON, one with automaton and shortest traces.
-
-See docs/commands.md.
-"""
+"""Rules as JSON, one with automaton and shortest traces (see docs/commands.md)."""
 
 from __future__ import annotations
 
@@ -27,9 +24,7 @@ class StateData(JsonPart, frozen=True, kw_only=True):
 
 
 class TransitionData(JsonPart, frozen=True, kw_only=True):
-    """Steps between two states of the automaton.
-
-    ``accepted`` is the verdict on a trace that ends there.
+    """Steps between two states; ``accepted`` judges a trace that ends there.
 
     ``otherwise``: the condition is easier said as what the other transitions from there are not.
     """
@@ -49,10 +44,7 @@ class AutomatonData(JsonPart, frozen=True, kw_only=True):
 
 
 class ShortestTrace(JsonPart, frozen=True, kw_only=True):
-    """A trace as an example: further objects, states and remarks.
-
-    The remarks are on what an example cannot say.
-    """
+    """A trace as an example: further objects, states, and inexpressible parts."""
 
     objects: Sequence[Variable]
     states: Sequence[str]

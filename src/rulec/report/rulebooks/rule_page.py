@@ -34,10 +34,7 @@ MOST_LISTED = 60
 
 @dataclass(frozen=True, slots=True)
 class ShownTrace:
-    """A trace as an example: further objects, states and ``remarks``.
-
-    The remarks are on what an example cannot say.
-    """
+    """A trace as an example, with ``remarks`` on what that cannot say."""
 
     objects: tuple[Variable, ...]
     states: tuple[str, ...]
@@ -46,9 +43,7 @@ class ShownTrace:
 
 @dataclass(frozen=True, slots=True)
 class RulePage:
-    """A rule with its automaton, an accepted trace and a rejected one.
-
-    A trace is None if there is none.
+    """A rule with its automaton and, if any, accepted and rejected traces.
 
     The automaton is that for traces with steps of ``step_s``; None if it is the same for all.
     """
@@ -81,10 +76,7 @@ def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShownTrace | No
 
 
 def _remarks(trace: WitnessTrace) -> Iterator[str]:
-    """Numbers of counted objects needed in a state.
-
-    Those that the rule names are included.
-    """
+    """Numbers of counted objects needed in a state, named ones included."""
     for number, required in enumerate(trace.required):
         for count, size in required.items():
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
@@ -104,10 +96,7 @@ def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
 
 
 def restrictions_of(rule: Rule) -> list[Phrase]:
-    """The rule's condition and exceptions as sentences.
-
-    There is none for what an option rules out.
-    """
+    """The rule's condition and exceptions as sentences, unless options exclude them."""
     phrases = [
         exemption(formula, exemption_.scope)
         for exemption_ in rule.exemptions

@@ -6,10 +6,7 @@ from rulec.analysis.lineage.rule_lineage import LineageStep, RuleHistory
 
 
 def provenance(rule_history: RuleHistory, book: str) -> str:
-    """Provenance of a rule in ``book``: own, inherited, overriding, or gone.
-
-    With it comes the reason, if there is one.
-    """
+    """Provenance of a rule in ``book`` (own, inherited, overriding, gone), with reason."""
     last = rule_history.last
     because = f", because {last.because}" if last.because else ""
     here = last.book == book

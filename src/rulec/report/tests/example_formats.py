@@ -16,10 +16,7 @@ def render(
     *,
     color: bool,
 ) -> str:
-    """Write the runs as ``full``, ``json`` or ``junit``.
-
-    Their coverage is included unless it is None.
-    """
+    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless None."""
     match output_format:
         case "json":
             # msgspec and its types take 9 ms.

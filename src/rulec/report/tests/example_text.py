@@ -48,10 +48,7 @@ def as_text(
 
 
 def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
-    """The diagnostic of a failing example.
-
-    The rulebook may have inherited it.
-    """
+    """The diagnostic of a failing, perhaps inherited, example."""
     problem = replace(example_warning(example_outcome), severity="error")
     rule = example_outcome.rule
     if (

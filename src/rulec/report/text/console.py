@@ -1,7 +1,4 @@
-"""Output of text: results, messages, and colour for terminals.
-
-Results go to standard output, the rest to standard error.
-"""
+"""Results on standard output, the rest on standard error, colour for terminals."""
 
 from __future__ import annotations
 
@@ -32,10 +29,7 @@ PAGE_WIDTH = 100
 
 
 def wants_color(stream: TextIO) -> bool:
-    """Test for a terminal without a request for plain text.
-
-    See no-color.org.
-    """
+    """Test for a terminal without a request for plain text (no-color.org)."""
     return stream.isatty() and not os.environ.get("NO_COLOR")
 
 
@@ -55,9 +49,7 @@ def print_result(text: str) -> None:
 
 
 def put_result(text: str, output: str | None) -> None:
-    """Write the whole answer to a file or to standard output.
-
-    A file gets no colour.
+    """Write the answer to standard output, or uncoloured to a file.
 
     Raises RulecError R0702.
     """
@@ -70,10 +62,7 @@ def put_result(text: str, output: str | None) -> None:
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
-    """Print errors and warnings on standard error, with their number.
-
-    Nothing if there are none.
-    """
+    """Print errors and warnings on standard error, with their number."""
     if not diagnostics:
         return
     text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
@@ -81,10 +70,7 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
 
 
 class Complaints:
-    """Errors about many inputs, the first of each kind shown.
-
-    Further ones are counted.
-    """
+    """Errors about many inputs: the first of each kind shown, others counted."""
 
     def __init__(self, most: int = 10) -> None:
         self._most = most

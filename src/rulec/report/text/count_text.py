@@ -6,10 +6,7 @@ MOST_DIGITS = 30
 
 
 def shown_count(count: int) -> str:
-    """A count for people: exact if short, else its magnitude.
-
-    JSON has every digit.
-    """
+    """A count for people: exact if short, else its magnitude."""
     digits = str(count)
     if len(digits) <= MOST_DIGITS:
         return f"{count:,}"

@@ -52,10 +52,7 @@ class GuardWording:
                     self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
-        """A condition for exactly the letters of these cubes.
-
-        It is ``true`` for all letters.
-        """
+        """A condition for exactly the letters of these cubes; ``true`` of all."""
         texts = []
         for cube in cubes:
             literals = [
@@ -130,10 +127,7 @@ class GuardWording:
         return ""
 
     def state(self, state: ExampleState) -> str:
-        """A state as an example writes it.
-
-        What it does not mention has its default.
-        """
+        """A state as an example writes it, without defaults."""
         axioms = []
         for (name, variables), value in state.items():
             declaration = self._vocabulary.declarations[name]
@@ -150,10 +144,7 @@ class GuardWording:
 
 
 def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
-    """The comparison, and its equivalent for whole numbers.
-
-    A machine may have made that of it: counts are whole numbers.
-    """
+    """The comparison, and its equivalent for counts, which are whole numbers."""
     yield comparison.relation, comparison.limit
     match comparison.terms:
         case ((_, Count()),) if (

@@ -7,10 +7,7 @@ from collections.abc import Sequence
 
 
 def anchors(headings: Sequence[str]) -> list[str]:
-    """A distinct anchor for each heading.
-
-    Headings are plain text, in the order of the page.
-    """
+    """A distinct anchor for each plain-text heading, in the page's order."""
     taken: set[str] = set()
     names = []
     for heading in headings:

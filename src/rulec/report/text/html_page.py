@@ -1,7 +1,4 @@
-"""Markdown as one HTML page for screen and paper, without scripts.
-
-On a screen it is light or dark.
-"""
+"""Markdown as one HTML page for screen and paper, without scripts."""
 
 from __future__ import annotations
 
@@ -74,10 +71,7 @@ def _name_headings(tokens: Sequence[Token]) -> None:
 
 
 def _scope_cells(tokens: Sequence[Token]) -> None:
-    """Mark each row's first cell as its header.
-
-    That is for who has the table read aloud.
-    """
+    """Mark each row's first cell as header, for reading aloud."""
     first = False
     for token in tokens:
         if token.type == "tr_open":

@@ -25,10 +25,7 @@ class Listed:
 
 
 class ListingDocument(JsonDocument, frozen=True, kw_only=True):
-    """A list for each kind asked for.
-
-    A name that comes from no file has no path.
-    """
+    """A list for each kind asked for; names without file lack paths."""
 
     rulebooks: Sequence[Listed] | UnsetType = UNSET
     vocabularies: Sequence[Listed] | UnsetType = UNSET

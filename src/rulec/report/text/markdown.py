@@ -37,10 +37,7 @@ def linked(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """A name or formula as code, valid in tables as well.
-
-    It may hold any sign.
-    """
+    """A name or formula as code, with any sign, also in tables."""
     shown = visible(text).replace("|", r"\|")
     longest = max((len(run) for run in re.findall("`+", shown)), default=0)
     if not longest:

@@ -20,10 +20,7 @@ _NUMBER_WITH_UNIT: Any = bygroups(  # type: ignore[no-untyped-call]
 
 
 class RulecLexer(RegexLexer):
-    """Lexer of the rulec language.
-
-    Its names are ``rulec`` and ``rules``, its files ``*.rules``.
-    """
+    """Lexer of the rulec language, ``rulec`` or ``rules``, for files ``*.rules``."""
 
     name = "rulec"
     aliases: ClassVar[list[str]] = ["rulec", "rules"]

@@ -26,10 +26,7 @@ def for_terminal(diff: str, *, color: bool) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """Split a text at line feeds only.
-
-    Other line ends are what has to change.
-    """
+    """Split a text at line feeds only, keeping other line ends."""
     return re.findall(r"[^\n]*\n|[^\n]+", text)
 
 

@@ -28,10 +28,7 @@ class FactData(JsonPart, frozen=True, kw_only=True):
 
 
 class FormulaPart(JsonPart, frozen=True, kw_only=True):
-    """A part of the rule's formula, and the states where it holds.
-
-    It is ``depth`` operators inside the formula.
-    """
+    """A part ``depth`` operators inside the rule's formula, with its truth values."""
 
     formula: str
     depth: int
@@ -48,10 +45,7 @@ class RepairData(JsonPart, frozen=True, kw_only=True):
 
 
 class ExplanationData(JsonPart, frozen=True, kw_only=True):
-    """Explanation of a rule's violation.
-
-    ``repair`` is null if no trace of as many states keeps the rule.
-    """
+    """Explanation of a violation; null ``repair``: no equally long trace complies."""
 
     book: str
     cite: str

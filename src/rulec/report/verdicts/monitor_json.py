@@ -1,7 +1,4 @@
-"""Verdicts after each state of a running trace, as JSON.
-
-docs/online.md describes it.
-"""
+"""Verdicts after each state of a running trace, as JSON (see docs/online.md)."""
 
 from __future__ import annotations
 
@@ -28,10 +25,7 @@ class ChangeData(JsonPart, frozen=True, kw_only=True):
 
 
 class StateVerdict(JsonDocument, frozen=True, kw_only=True):
-    """The verdicts after a state, which is counted from 0.
-
-    ``verdict`` is that of hard rules.
-    """
+    """Verdicts after a state, counted from 0; ``verdict`` covers hard rules."""
 
     state: int
     verdict: FourValued

@@ -22,10 +22,7 @@ from rulec.report.verdicts.verdict_json import (
 
 
 class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on a vehicle's drive, with times of the recording.
-
-    ``trace`` is the vehicle's id.
-    """
+    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
 
     recording: str
     mirrored: bool
@@ -59,10 +56,7 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
 def as_json(
     result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
 ) -> str:
-    """Write a vehicle's verdict.
-
-    ``explained`` are explanations of its first violations.
-    """
+    """Write a vehicle's verdict with explanations of its first violations."""
     return as_line(_document(result, verdicts, explained))
 
 

@@ -61,10 +61,7 @@ def _vehicles(egos: Sequence[str]) -> str:
 
 
 def defaulted_names(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
-    """Inputs of rules that a recording's words lack.
-
-    They are in the order of the vocabulary.
-    """
+    """Inputs of rules that a recording's words lack."""
     missing = {name for names in judged.by_default(words).values() for name in names}
     return [name for name in judged.rules.vocabulary.declarations if name in missing]
 
@@ -106,10 +103,7 @@ def drive_details(
     *,
     every_part: bool,
 ) -> str:
-    """The verdict on one drive, with explanations of its first violations.
-
-    Empty without a drive.
-    """
+    """The verdict on one drive, with explanations of its first violations."""
     if not isinstance(drive_verdict.answer, Verdict):
         return ""
     text = verdict_report.as_text(

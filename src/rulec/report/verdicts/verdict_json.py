@@ -1,7 +1,4 @@
-"""Verdicts on traces as JSON, a line for each trace.
-
-docs/traces.md describes it.
-"""
+"""Verdicts on traces as JSON, a line for each (see docs/traces.md)."""
 
 from __future__ import annotations
 
@@ -28,9 +25,7 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
 
 
 class ViolationData(JsonPart, frozen=True, kw_only=True):
-    """A rule violated for a binding.
-
-    ``step`` is null if only the trace's end decides.
+    """A violated rule and binding; ``step`` null if only the end decides.
 
     Of recorded traffic, ``time_s`` is the step's time, and ``by_default`` names what the rule reads
     and nothing supplies.
@@ -56,10 +51,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
-    """A trace that could not be judged.
-
-    ``trace`` is null if it has no id.
-    """
+    """A trace that could not be judged; ``trace`` null without an id."""
 
     trace: str | None
     error: ErrorData

@@ -50,10 +50,7 @@ def as_text(
 
 
 def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
-    """The violated rule, its binding and its time.
-
-    ``rulebook`` is the name of the one that judged.
-    """
+    """The violated rule of ``rulebook``, its binding and its time."""
     where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
     when = (
         "not fulfilled when the trace ends"

@@ -44,9 +44,7 @@ INDENT = "    "
 
 
 def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
-    """Write the rule's sentence and the table.
-
-    ``*`` marks what changed with the decisive state.
+    """The rule's sentence and table, ``*`` marking changes at the decisive state.
 
     A large table is folded, unless ``every_part`` of it is wanted.
     """
@@ -136,10 +134,7 @@ def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
 
 
 def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int) -> _Table:
-    """Rows of the facts and parts shown, with titles of limited width.
-
-    Each has all of its states.
-    """
+    """Rows of the facts and parts shown, with titles of limited width."""
     whole = every_part or len(explanation.parts) <= MOST_PARTS
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)

@@ -6,10 +6,7 @@ from math import ceil, floor, log10
 
 
 def ticks(low: float, high: float, at_most: int) -> list[float]:
-    """Round axis ticks from ``low`` to ``high``, both included.
-
-    They are multiples of 1, 2 or 5 times a power of ten.
-    """
+    """Multiples of 1, 2 or 5 powers of ten within an interval."""
     span = high - low
     power = 10.0 ** floor(log10(span / at_most))
     # The logarithm may be rounded down from a whole number, so that 10 would just not be enough.

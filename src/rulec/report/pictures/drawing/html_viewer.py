@@ -1,7 +1,4 @@
-"""Pictures as one page for a browser.
-
-Nothing is fetched, and without its script all is shown.
-"""
+"""Pictures as one self-contained HTML page, complete without its script."""
 
 from __future__ import annotations
 
@@ -19,10 +16,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inl
 
 
 def as_page(title: str, pictures: Sequence[Picture], legend: Picture | None) -> str:
-    """Write the page, with a slider if there are several pictures.
-
-    The slider shows one of them at a time.
-    """
+    """Write the page, with a slider for several pictures."""
     told = escape(visible(title))
     used = styles_of([*pictures, *([legend] if legend is not None else [])])
     frames = "\n".join(_figure(picture) for picture in pictures)

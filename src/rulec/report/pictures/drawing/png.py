@@ -108,9 +108,6 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
 
 
 def _turning(ring: Sequence[Point], *, left: bool) -> Sequence[Point]:
-    """A ring with its points in the wanted direction of rotation.
-
-    matplotlib leaves out what turns against its surroundings.
-    """
+    """A ring turned left or right, as matplotlib needs to fill it."""
     area = sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairwise([*ring, ring[0]]))
     return ring if (area > 0) == left else ring[::-1]

@@ -105,10 +105,7 @@ DARK: Mapping[str, str] = MappingProxyType(
 
 
 def as_css(used: Collection[str]) -> str:
-    """CSS classes of the styles, light and dark.
-
-    Dark is for a screen whose reader prefers that.
-    """
+    """CSS classes of the styles, light and, where preferred on screen, dark."""
     dark = "\n".join(f"  {rule}" for rule in _rules(used, DARK, shape=False))
     return "\n".join(
         [
