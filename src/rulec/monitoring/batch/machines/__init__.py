@@ -1,1 +1,1 @@
-"""TODO monitoring/batch/machines."""
+"""Runs of Mealy monitors over columns of letters."""
