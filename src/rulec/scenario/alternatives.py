@@ -13,7 +13,10 @@ _ROUNDING = Fraction(1, 1000)
 
 @dataclass(frozen=True, slots=True)
 class Weighted:
-    """The likeliest motion with its weight, and the others; the weights add up to 1."""
+    """The likeliest motion with its weight, and the other motions.
+
+    The weights add up to 1.
+    """
 
     motion: Motion
     weight: Fraction = Fraction(1)
@@ -21,7 +24,7 @@ class Weighted:
 
 
 def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
-    """Motions in order of their weights, which become probabilities; those that are equal as one.
+    """Motions by descending weight, normalised to probabilities, equal ones merged.
 
     Of equally likely ones the first stays first.
     """
@@ -38,5 +41,8 @@ def weighted(motions: Sequence[tuple[Fraction, Motion]]) -> Weighted:
 
 
 def is_distribution(total: Fraction) -> bool:
-    """Whether weights add up to 1, rounding allowed, as in three times 0.333."""
+    """True if weights add up to 1 within rounding.
+
+    Three times 0.333 does.
+    """
     return abs(total - 1) <= _ROUNDING

@@ -1,4 +1,4 @@
-"""The place of an obstacle that is known by footprints at some times."""
+"""The place of an obstacle that footprints describe at some times."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from rulec.scenario.scenario_model import Footprints
 
 
 def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
-    """The bounds of all that is occupied from ``start`` to ``end`` (s); None if nothing is."""
+    """The bounds of the space occupied from ``start`` to ``end`` (s).
+
+    None if nothing is occupied.
+    """
     boxes = list(_boxes(motion, start, end))
     if not boxes:
         return None
@@ -23,7 +26,10 @@ def bounds_within(motion: Footprints, start: float, end: float) -> Box | None:
 
 
 def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float], ...]:
-    """The movements of the middle: first and last time, way along and across the road."""
+    """The movements of the middle along and across the road.
+
+    Each has its first and last time, then its way along and across.
+    """
     steps = []
     for k in range(len(motion.times) - 1):
         before, after = motion.boxes[k : k + 2]
@@ -35,7 +41,10 @@ def displacements(motion: Footprints) -> tuple[tuple[float, float, float, float]
 
 
 def displacement_within(motion: Footprints, start: float, end: float) -> tuple[float, float]:
-    """The way of the middle along and across the road between two times (s)."""
+    """The displacement of the middle between two times (s).
+
+    It is along and across the road.
+    """
     boxes = list(_boxes(motion, start, end))
     return _shift(boxes[0], boxes[-1]) if boxes else (0.0, 0.0)
 

@@ -21,7 +21,7 @@ class Box:
         return f"s {self.s_min:g} to {self.s_max:g}, d {self.d_min:g} to {self.d_max:g}"
 
     def overlaps(self, box: Box) -> bool:
-        """Whether the interiors meet, not only the borders."""
+        """True if the interiors meet, not only the borders."""
         return (
             self.s_min < box.s_max
             and box.s_min < self.s_max
@@ -30,10 +30,13 @@ class Box:
         )
 
     def covers(self, s: float, d: float) -> bool:
-        """Whether the closed rectangle holds the point."""
+        """True if the closed rectangle holds the point."""
         return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max
 
 
 def centred(s: float, d: float, length: float, width: float) -> Box:
-    """The rectangle around a centre, ``length`` along the road and ``width`` across it."""
+    """The rectangle around a centre, with given length and width.
+
+    ``length`` is along the road and ``width`` across it.
+    """
     return Box(s - length / 2, s + length / 2, d - width / 2, d + width / 2)

@@ -1,4 +1,4 @@
-"""The place of an obstacle at an instant, and all that it sweeps in an interval."""
+"""An obstacle's place at an instant, and its swept space."""
 
 from __future__ import annotations
 
@@ -41,7 +41,9 @@ def position_at(motion: ConstantAcceleration | Trajectory, time: float) -> tuple
 
 
 def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
-    """The bounds of all that the obstacle occupies from ``start`` to ``end`` (s), both included.
+    """The bounds of the space occupied from ``start`` to ``end`` (s).
+
+    Both times are included.
 
     Exact: between the times that it looks at, motion along and across the road is monotone. None if
     the obstacle is not there in that interval.
@@ -66,7 +68,9 @@ def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
 
 
 def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
-    """The walking direction from ``start`` to ``end`` (s), rounded to a right angle of the road.
+    """The walking direction from ``start`` to ``end`` (s), by right angles.
+
+    It is rounded to a right angle of the road.
 
     Who stands keeps the direction of the last steps before, failing that takes that of the next
     steps. A direction half-way between two right angles counts as across the road.
@@ -78,7 +82,7 @@ def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
 
 
 def stands_forever(motion: Motion) -> bool:
-    """Whether the obstacle never moves, so that its motion shows no direction."""
+    """True if the obstacle never moves, and so shows no direction."""
     return _heading(motion, 0.0, 0.0) == (0.0, 0.0)
 
 
@@ -104,7 +108,10 @@ def _nearest_step(
     meanwhile: tuple[float, float],
     end: float,
 ) -> tuple[float, float]:
-    """The way within an interval; at rest that of the last step before, else of the next."""
+    """The displacement within an interval, or at rest a neighbouring one.
+
+    At rest it is that of the last step before, else of the next.
+    """
     if meanwhile != (0.0, 0.0) or not steps:
         return meanwhile
     before = [step for step in steps if step[1] <= end]

@@ -1,4 +1,4 @@
-"""Recorded traffic from a file of any format, known by its root element."""
+"""Recorded traffic from files of any format, known by root element."""
 
 # Imports within functions: a reader takes 10 ms and a scene 30 ms, and a command needs few of them.
 
@@ -21,7 +21,9 @@ RECORDING = XmlFormat(
 
 
 def read_recording(path: Path, net: Path | None = None) -> Recording:
-    """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
+    """Read a file of recorded traffic.
+
+    ``net`` is for SUMO's data, which have none.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it seems to be, R0611 without the
@@ -52,7 +54,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
 
 
 def is_recording(file: str) -> bool:
-    """Whether a file holds recorded traffic, by its name or its first bytes."""
+    """True if a file's name or first bytes show recorded traffic."""
     return is_xml(Path(file))
 
 

@@ -1,4 +1,4 @@
-"""XML as a stream, so that no file can do harm or take much memory.
+"""XML as a stream, safe against harmful files and in little memory.
 
 Documents that define entities are refused at the definition, before anything is expanded or
 fetched. Packed files (gzip) are unpacked on the way, up to the same limit.
@@ -29,7 +29,10 @@ _SUFFIXES = (".xml", ".xml.gz")
 
 @dataclass(frozen=True, slots=True)
 class XmlFormat:
-    """A format of XML files: what its files are called, with an article, and their root element."""
+    """A format of XML files: its name and its root element.
+
+    The name in ``words`` has an article.
+    """
 
     words: str
     root: str
@@ -45,7 +48,10 @@ class XmlFormat:
         expected: str = "",
         help_text: str = "",
     ) -> RulecError:
-        """The error (R0610) that a file is not of this format, with its line if known."""
+        """The error (R0610) for a file of another format.
+
+        It has the line if that is known.
+        """
         place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
         message = f"the file cannot be read as {self.words}: {why}"
         return NOT_A_RECORDING.error(place, message, expected=expected, help=help_text or self.help)
@@ -63,7 +69,7 @@ def scan(
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
 ) -> None:
-    """Go through a file of a format once, calling where elements begin and end, and for comments.
+    """Scan an XML file once, with callbacks for elements and comments.
 
     Raises:
         RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
@@ -123,7 +129,9 @@ _ENDS_EARLY = frozenset(
 
 
 def root_of(path: Path, form: XmlFormat) -> str:
-    """The name of a file's root element; ``form`` is what to call a file that has none.
+    """The name of a file's root element.
+
+    ``form`` says what to call a file that has none.
 
     Raises:
         RulecError: R0610 for a file that is no XML, R0701 for one that cannot be read.
@@ -152,7 +160,7 @@ def root_of(path: Path, form: XmlFormat) -> str:
 
 
 def is_xml(path: Path) -> bool:
-    """Whether a file is XML, packed or not, by its name or its first bytes."""
+    """True if a file's name or first bytes show XML, perhaps packed."""
     if path.name.lower().endswith(_SUFFIXES):
         return True
     try:
@@ -167,7 +175,10 @@ def is_xml(path: Path) -> bool:
 
 
 def is_packed(path: Path) -> bool:
-    """Whether it is a gzip file. Raises RulecError R0701."""
+    """True if the file is a gzip file.
+
+    Raises RulecError R0701.
+    """
     with opened(path) as stream:
         return stream.read(len(_PACKED)) == _PACKED
 

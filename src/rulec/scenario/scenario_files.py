@@ -28,7 +28,9 @@ def available_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
-    """A built-in scenario by its name, or one from a file: TOML, or recorded traffic in XML.
+    """A scenario by its built-in name, or from a file.
+
+    The file is TOML, or recorded traffic in XML.
 
     A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
     recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.

@@ -33,7 +33,10 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class MissingLane:
-    """An interval in which a lane, counted from the right from 1, does not exist."""
+    """An interval in which a lane does not exist.
+
+    Lanes are counted from the right from 1.
+    """
 
     lane: int
     s: Interval
@@ -66,7 +69,9 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class ConstantAcceleration:
-    """Motion of a centre from time 0 on, with constant acceleration along the road.
+    """Motion of a centre with constant acceleration along the road.
+
+    It begins at time 0.
 
     A negative ``speed`` is oncoming traffic. Who brakes to standstill stays there and does not
     reverse; that ends the sideways motion too. From standstill only a positive acceleration sets
@@ -116,7 +121,9 @@ class Alternative:
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """Another traffic participant: a rectangle along the road that moves by a prediction.
+    """Another traffic participant: a rectangle that moves by a prediction.
+
+    The rectangle lies along the road.
 
     ``motion`` is the likeliest, of probability ``weight``, that of the ``alternatives`` being the
     rest.
@@ -139,13 +146,19 @@ class Obstacle:
 
     @property
     def walks(self) -> bool:
-        """Whether its regions are those of its own frame (paper, section II-B, for pedestrians)."""
+        """True if its regions are in its own frame, like pedestrians'.
+
+        Source: the paper, section II-B.
+        """
         return self.type == PEDESTRIAN or self.walking_direction is not None
 
 
 @dataclass(frozen=True, slots=True)
 class Ego:
-    """Ego's centre at time 0; its size only tells whether it stands in something."""
+    """Ego's centre at time 0, with its size.
+
+    The size only tells if it stands in something.
+    """
 
     s: float
     d: float
@@ -154,7 +167,10 @@ class Ego:
 
     @property
     def body(self) -> Box:
-        """The rectangle of ego at time 0; a point if its size is not known."""
+        """The rectangle of ego at time 0.
+
+        It is a point if its size is not known.
+        """
         return centred(self.s, self.d, self.length, self.width)
 
 

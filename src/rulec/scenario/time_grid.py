@@ -27,7 +27,9 @@ class Timing:
 
 
 def timing(horizon_s: float, step_s: float) -> Timing:
-    """The layers of a horizon (s) cut into steps (s): ``horizon / step + 1`` of them.
+    """The layers of a horizon (s) cut into steps (s).
+
+    There are ``horizon / step + 1`` of them.
 
     Decimals count as typed, so that 4.0 s is forty steps of 0.1 s.
 

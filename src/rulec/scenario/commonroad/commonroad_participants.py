@@ -69,7 +69,10 @@ def _predicted(obstacle: Any) -> Iterator[tuple[int, Points]]:
 
 
 def _rectangle(shape: Any, state: Any) -> Points | None:
-    """The outline in the usual case, a rectangle in an exact place; None in any other."""
+    """The outline of a rectangle in an exact place, the usual case.
+
+    None in any other case.
+    """
     length, width = getattr(shape, "length", None), getattr(shape, "width", None)
     position, heading = state.position, state.orientation
     if not isinstance(length, (int, float)) or not isinstance(width, (int, float)):
@@ -83,7 +86,7 @@ def _rectangle(shape: Any, state: Any) -> Points | None:
 
 
 def _corners(occupancy: Any) -> Points:
-    """A polygon's corners and the middles of its sides; all of a group's."""
+    """Corners and side middles of a polygon, or of a group's polygons."""
     shape = occupancy.shapely_object
     outline = shape.convex_hull.exterior if shape.geom_type != "Polygon" else shape.exterior
     corners = np.asarray(outline.coords, dtype=float)[:, :2]
@@ -104,7 +107,7 @@ def _state(state: Any, outline: Points) -> TrackState:
 
 
 def _number(value: Any) -> float:
-    """A number, the middle of an interval, or 0 for what is not said."""
+    """A number, an interval's middle, or 0 for a missing value."""
     if value is None:
         return 0.0
     number = float(value) if isinstance(value, (int, float)) else (value.start + value.end) / 2

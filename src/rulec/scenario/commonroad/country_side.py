@@ -1,4 +1,7 @@
-"""On which side a scenario's country drives: its name begins with the country's code, ISO 3166."""
+"""The side of traffic in a scenario's country.
+
+The scenario's name begins with the country's code, ISO 3166.
+"""
 
 from __future__ import annotations
 

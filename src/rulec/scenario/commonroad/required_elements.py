@@ -1,4 +1,4 @@
-"""Check that a CommonRoad file has the elements that the library fails without.
+"""Check a CommonRoad file for elements without which the library fails.
 
 Only what the library fails on without is asked for; what it makes of the rest it says itself.
 """
@@ -43,7 +43,7 @@ _FEWEST_POINTS = {"leftBound": 2, "rightBound": 2}
 
 @dataclass(slots=True)
 class _Open:
-    """An element that has begun: where, and what it has in it so far."""
+    """An element that has begun, with its place and content so far."""
 
     name: str
     line: int
@@ -51,7 +51,7 @@ class _Open:
 
 
 def check_form(path: Path) -> None:
-    """Raise RulecError unless the file is well-formed XML with what CommonRoad has to have.
+    """Raise RulecError unless the file is well-formed XML with CommonRoad's required elements.
 
     Raises:
         RulecError: R0610 for a file that is none, R0701 for one that cannot be read.

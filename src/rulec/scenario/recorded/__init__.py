@@ -1,1 +1,1 @@
-"""Recordings of traffic on a real road, and scenarios along ego's road made of them."""
+"""Recordings of traffic on real roads, and scenarios along ego's road."""

@@ -22,7 +22,7 @@ _KMH = 3.6
 
 
 def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
-    """Whether traffic is congested, and how that was found."""
+    """The decision if traffic is congested, and its reason."""
     speeds = [
         speed * _KMH
         for obstacle in obstacles
@@ -41,7 +41,10 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
 
 
 def _speed(obstacle: Obstacle, road: Box) -> float | None:
-    """The speed along the road (m/s); None off the road, or for oncoming traffic."""
+    """The speed along the road (m/s), or None.
+
+    It is None off the road, or for oncoming traffic.
+    """
     now = swept(obstacle, 0.0, 0.0)
     then = swept(obstacle, _FOR_S, _FOR_S)
     if now is None or then is None or not now.overlaps(road):

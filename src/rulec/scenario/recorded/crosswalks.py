@@ -13,7 +13,10 @@ _EVERY_M = 0.5
 
 
 def road_crossings(view: TrafficView) -> tuple[Stretch, ...]:
-    """The stretches of the road that crosswalks take up; each reaches across the whole road."""
+    """The stretches of the road that crosswalks take up.
+
+    Each reaches across the whole road.
+    """
     stretches = []
     road = view.road
     for lanelet in view.recording.lanelets.values():

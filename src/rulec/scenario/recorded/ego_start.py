@@ -25,7 +25,9 @@ _SAME_PLACE_M = 0.1
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
-    """Ego's state at time 0, a step of the file, and the places that it goes to.
+    """Ego's state at time 0, its step, and its goals.
+
+    Time 0 is a step of the file.
 
     ``participant`` is the one whose part it takes over, if any.
     """
@@ -37,7 +39,10 @@ class EgoStart:
 
 
 def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
-    """The start of the chosen ego. Raises RulecError R0612 if it is not there."""
+    """The start of the chosen ego.
+
+    Raises RulecError R0612 if it is not there.
+    """
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
         participant.id: participant.states
@@ -86,14 +91,20 @@ def _of_problem(
 
 
 def _is_ego(participant: Participant, problem: PlanningProblem) -> bool:
-    """Some files have ego's own recorded drive among the obstacles, starting in its place."""
+    """True if a participant is ego's own recorded drive.
+
+    Some files have it among the obstacles, starting in ego's place.
+    """
     state = participant.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
 def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
-    """Ego's length and width (m): as chosen, and as recorded; 0 where that is not known."""
+    """Ego's length and width (m), as chosen or else as recorded.
+
+    They are 0 where they are not known.
+    """
     length, width = 0.0, 0.0
     for participant in recording.participants:
         if participant.id == start.participant:

@@ -1,4 +1,4 @@
-"""The lanes of ego's road, and places on it between straightened lane bounds.
+"""The lanes of ego's road, and places between their straightened bounds.
 
 Lanes get wider and narrower, begin and end; the road of a scenario has lanes of one width. So
 across the road a place is put in proportion between the bounds of its lane: the middle of a lane
@@ -32,7 +32,9 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """Bounds of lanes from right to left: ``bounds[i]`` at ``s[i]``, ``straight`` in the scenario.
+    """Bounds of lanes from right to left along the road.
+
+    ``bounds[i]`` are at ``s[i]``, and ``straight`` are those in the scenario.
 
     ``there[i][k]``: does lane k (from 0) exist between ``s[i]`` and ``s[i + 1]``?
     """
@@ -43,7 +45,7 @@ class Lanes:
     there: NDArray[np.bool_]
 
     def straightened(self, places: Points) -> Points:
-        """Places, ``s`` and ``d`` in each row, with ``d`` between the lanes' straight bounds."""
+        """Places (rows ``s``, ``d``) relative to the lanes' straight bounds."""
         at = np.nan_to_num(places[:, 0])
         before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
         part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
@@ -130,7 +132,7 @@ def lanes_along(
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """The data that all lanes share: the route, the borders of its lanelets, sample places."""
+    """The shared data of all lanes: route, lanelet borders, sample places."""
 
     recording: Recording
     way: Sequence[Lanelet]
@@ -144,7 +146,7 @@ class _Strip:
 
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
-    """The places along the line at which lanelets begin, and the last one ends."""
+    """The places at which lanelets begin, and the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
     places = np.nan_to_num(line.coordinates(ends)[:, 0])
     borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
@@ -155,7 +157,10 @@ def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
 def _usual_widths(
     grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
 ) -> Iterator[float]:
-    """The width of each lane at ego's place, its median where it does not exist there."""
+    """The width of each lane at ego's place, or its median.
+
+    The median is for lanes that do not exist at ego's place.
+    """
     at = int(np.clip(np.searchsorted(grid, ego_s, "right") - 1, 0, len(there) - 1))
     for width, own in zip(widths.T, there.T, strict=True):
         if own[at]:
@@ -165,7 +170,7 @@ def _usual_widths(
 
 
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    """Width and existence by lanelet of every lane on one side, the nearest first."""
+    """Width and existence of one side's lanes by lanelet, nearest first."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     columns = []
     for k in range(max(map(len, rows))):
@@ -182,7 +187,7 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
 
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
-    """The offset of the lanelets' left or right bound at the places of the grid."""
+    """The offset of the lanelets' left or right bound, by grid place."""
     parts = [np.empty((0, 2))]
     for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:

@@ -36,7 +36,10 @@ def id_order(identifier: str) -> tuple[int, str]:
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """A traffic light's programme: colours, each for so many time steps, from a step on."""
+    """A traffic light's programme: colours with durations, from a step on.
+
+    Durations are in time steps.
+    """
 
     begin: int
     phases: tuple[tuple[str, int], ...]
@@ -53,7 +56,9 @@ class Light:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lanelet:
-    """A piece of a lane. ``left`` and ``right`` are its bounds in the direction of travel.
+    """A piece of a lane.
+
+    ``left`` and ``right`` are its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
     the names of those that hold here; ``lights`` are those that have a programme. Marks are those
@@ -91,7 +96,9 @@ class TrackState:
 
 @dataclass(frozen=True, slots=True)
 class Participant:
-    """An obstacle of the file: by time step what it occupies, as a polygon's corners.
+    """An obstacle of the file, with its outlines by time step.
+
+    An outline is the corners of a polygon.
 
     ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
     are lit; steps that the file says nothing about are missing.
@@ -109,7 +116,7 @@ class Participant:
 
 @dataclass(frozen=True, slots=True)
 class PlanningProblem:
-    """A planning problem: ego's state at a time step, and places that it goes to."""
+    """A planning problem: ego's state at a time step, and its goals."""
 
     id: str
     step: int

@@ -1,4 +1,4 @@
-"""Frenet coordinates: the arc length ``s`` along a reference line, the offset ``d`` from it.
+"""Frenet coordinates: arc length ``s`` along a reference line, offset ``d``.
 
 The foot of a place is where the place is perpendicular to the line. On a line of straight pieces
 that leaves gaps at the outside of every bend and overlaps at the inside; so directions are
@@ -55,14 +55,17 @@ class ReferenceLine:
         return float(np.arctan2(dy, dx))
 
     def coordinates(self, places: Points) -> Points:
-        """``s`` and ``d`` of places, a row each: those of the nearest foot; NaN without one."""
+        """Frenet coordinates ``s`` and ``d`` of places, a row each.
+
+        They are those of the nearest foot, and NaN without one.
+        """
         every = np.arange(len(self.arc))[None, :]
         size = max(1, _AT_ONCE // len(self.arc))
         parts = [self._nearest(places[at : at + size], every) for at in range(0, len(places), size)]
         return np.concatenate(parts) if parts else np.empty((0, 2))
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
-        """The coordinates of feet not farther than ``reach`` from a given ``s`` each.
+        """Frenet coordinates of feet within ``reach`` of a given ``s`` each.
 
         So a body is not torn apart where the road comes near itself.
         """
@@ -82,7 +85,10 @@ class ReferenceLine:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
 
     def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
-        """The nearest feet of places on pieces: a row of these for each place, or one for all."""
+        """The nearest feet of places on pieces of a line.
+
+        There is a row of pieces for each place, or one for all.
+        """
         ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
         dx = places[:, :1] - self.start[pieces, 0]
         dy = places[:, 1:] - self.start[pieces, 1]
@@ -103,7 +109,7 @@ class ReferenceLine:
 
 
 def reference_line(corners: Points) -> ReferenceLine:
-    """The line through corners, of which those too close to the one before are left out.
+    """The line through corners, without those too close together.
 
     Raises:
         ValueError: all of them are in one place.
@@ -140,7 +146,7 @@ def reference_line(corners: Points) -> ReferenceLine:
 
 
 def densified(points: Points, every_m: float) -> Points:
-    """A line of straight pieces with further points, so that no two are farther apart."""
+    """A polyline with further points, none farther apart than a limit."""
     parts = [points[:1]]
     for start, end in pairwise(points):
         count = max(1, int(np.ceil(np.hypot(*(end - start)) / every_m)))

@@ -25,7 +25,7 @@ _Next = Callable[[Lanelet], Iterable[str]]
 
 
 def is_lane(lanelet: Lanelet) -> bool:
-    """Whether a lanelet is a part of the carriageway."""
+    """True if a lanelet is a part of the carriageway."""
     return not lanelet.types & NO_LANES
 
 
@@ -35,7 +35,7 @@ def lanelet_area(lanelet: Lanelet) -> shapely.Polygon:
 
 
 def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[np.float64]:
-    """The direction (rad) of the piece of a lanelet's centre line nearest to each point."""
+    """The direction (rad) of a lanelet's centre line nearest each point."""
     steps = np.diff(lanelet.centre, axis=0)
     reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
     along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
@@ -45,7 +45,7 @@ def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The lanelet under a vehicle; of several the one that leads its way best.
+    """The lanelet under a vehicle, best aligned with its heading.
 
     The nearest one if it is beside all of them by no more than 3 m.
     """
@@ -63,7 +63,10 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
 
 
 def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
-    """The lanes that hold one of the places, and those beside them that lead the same way."""
+    """The lanes at one of the places, and parallel ones beside them.
+
+    Those beside lead the same way.
+    """
     points = shapely.points(places)
     holding = {
         lanelet.id
@@ -82,7 +85,10 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
 
 
 def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
-    """The lanes to the left or right of a lanelet that lead the same way, the nearest first."""
+    """The parallel lanes left or right of a lanelet, nearest first.
+
+    They lead the same way.
+    """
     lanes: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
@@ -96,7 +102,7 @@ def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, 
 
 
 def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[str, ...]:
-    """The lanelets along ego's road, in their order, each followed by one of its successors.
+    """The lanelets along ego's road, each followed by a successor.
 
     Where the road branches: towards a target if one can be reached, else as straight as possible.
     """
@@ -110,7 +116,10 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
 
 
 def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
-    """A way with the road before and after it, as straight as possible where that branches."""
+    """A route with the road before and after it.
+
+    Where the road branches, it is as straight as possible.
+    """
     ahead = _straight_on(
         recording.lanelets,
         [way[-1]],
@@ -129,7 +138,10 @@ def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
 
 
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
-    """The way through the fewest lanelets; only the start if there is none."""
+    """The route through the fewest lanelets.
+
+    It is only the start if there is none.
+    """
     came_from: dict[str, str | None] = {start: None}
     waiting = deque([start])
     while waiting:
@@ -196,7 +208,7 @@ def _end_heading(lanelet: Lanelet, backwards: bool) -> float:
 
 
 def _heading_ahead(lanelet: Lanelet, backwards: bool) -> float:
-    """The direction in which the way leads some 30 m into a lanelet."""
+    """The direction of a route some 30 m into a lanelet."""
     centre = lanelet.centre[::-1] if backwards else lanelet.centre
     line = shapely.LineString(centre)
     end = min(line.length, _LOOK_M)

@@ -1,4 +1,4 @@
-"""The track of a rigid body as one array, a row for each moment.
+"""The track of a rigid body as an array, rows by moment.
 
 A recording of some minutes has a hundred thousand states. Here they take 48 bytes each, and become
 objects only when somebody looks at them.
@@ -22,7 +22,9 @@ _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1
 def rectangles(
     centres: Points, headings: NDArray[float64], length: float, width: float, shift: float = 0.0
 ) -> NDArray[float64]:
-    """Corners and side middles of a rectangle in several places: axes place, point, x and y.
+    """Corners and side middles of a rectangle in several places.
+
+    The axes are place, point, and x and y.
 
     ``shift``: how far the centre lies ahead of the rectangle's middle.
     """
@@ -37,7 +39,10 @@ def rectangles(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
-    """Ascending ``steps``; in ``rows`` x, y, heading, speed and acceleration at each of them."""
+    """The states of a rigid body by ascending time step.
+
+    Each of the ``rows`` has x, y, heading, speed and acceleration at one of the ``steps``.
+    """
 
     steps: NDArray[int64]
     rows: NDArray[float64]
@@ -54,7 +59,7 @@ class Track:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackStates(Mapping[int, TrackState]):
-    """The states of a track by time step, made when they are asked for."""
+    """The states of a track by time step, made on demand."""
 
     track: Track
 
@@ -70,7 +75,10 @@ class TrackStates(Mapping[int, TrackState]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackOutlines(Mapping[int, Points]):
-    """The rectangle on a track by time step; all are computed when the first is asked for."""
+    """The rectangle on a track by time step, computed on demand.
+
+    All are computed when the first is asked for.
+    """
 
     track: Track
     _laid_out: list[NDArray[float64]] = field(default_factory=list, repr=False)

@@ -46,7 +46,10 @@ class TrafficView:
     road: Box
 
     def time(self, step: int) -> float:
-        """The scenario's time (s) of a time step; decimals as typed, so that 3 x 0.1 s is 0.3 s."""
+        """The scenario's time (s) of a time step.
+
+        Decimals count as typed, so that 3 x 0.1 s is 0.3 s.
+        """
         return round(step * self.recording.step_s - self.at_s, 9)
 
     @property
@@ -60,7 +63,7 @@ class TrafficView:
         return self.time(max(steps, default=0))
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
-        """The bounds of outlines in the scenario; None for those that are not near the road."""
+        """The bounds of outlines in the scenario; None far from the road."""
         low, high = outline_bounds(outlines, self.line, self.lanes)
         low, high = low[:, ::2] - (self.ego_s, 0.0), high[:, ::2] - (self.ego_s, 0.0)
         wide = Box(
@@ -79,7 +82,10 @@ class TrafficView:
 def traffic_obstacles(
     view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
 ) -> Iterator[Obstacle]:
-    """The obstacles that are on the road at some time from time 0 on, in the file's order."""
+    """The obstacles on the road after time 0, in the file's order.
+
+    Time 0 is included.
+    """
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [participant for participant in view.recording.participants if participant.id != ego]
     for participant, steps, own in _laid_out(view, others):
@@ -112,7 +118,7 @@ def traffic_obstacles(
 def _laid_out(
     view: TrafficView, others: Sequence[Participant]
 ) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
-    """The steps of participants from time 0 on, and their bounds; computed in batches."""
+    """Participants' steps from time 0 on, and bounds; computed in batches."""
     waiting: list[tuple[Participant, list[int]]] = []
     count = 0
     for number, participant in enumerate(others, 1):
@@ -135,7 +141,10 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: Prediction,
 ) -> Motion | None:
-    """The motion; None off the road, or if a constant one is not there at time 0."""
+    """The motion of a participant, or None off the road.
+
+    It is also None if a constant motion is not there at time 0.
+    """
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
@@ -168,7 +177,7 @@ def _constant(
 
 
 def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
-    """The mean speed along the road in the last half second near it (m/s)."""
+    """The mean speed (m/s) along the road in the last half second."""
     last = boxes[-1]
     first, since = last, times[-1]
     for time, box in zip(reversed(times), reversed(boxes), strict=True):
@@ -185,7 +194,10 @@ def _moved(box: Box, along: float) -> Box:
 
 
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
-    """The direction of a pedestrian that never moves (degrees); None if motion tells."""
+    """The direction (degrees) of a pedestrian that never moves.
+
+    None if motion tells.
+    """
     state = next(iter(participant.states.values()), None)
     if state is None or len({(own.x, own.y) for own in participant.states.values()}) > 1:
         return None
@@ -195,7 +207,10 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
 
 
 def _signals(participant: Participant) -> dict[str, SignalValue]:
-    """The constant signals of a participant; what changes is left to the rulebook."""
+    """The constant signals of a participant.
+
+    Changing ones are left to the rulebook.
+    """
     signals: dict[str, SignalValue] = {"two_wheeled": participant.type in ("motorcycle", "bicycle")}
     if participant.type == "parkedVehicle":
         signals["parked"] = True

@@ -33,7 +33,10 @@ _NOWHERE = -(2.0**30)
 
 @dataclass(slots=True)
 class FcdTrack:
-    """A participant, as its rows come: the number of the moment, x, y, angle, speed."""
+    """The track of a participant in rows of floating-car data.
+
+    A row has the number of the moment, x, y, angle and speed.
+    """
 
     element: str
     type: str
@@ -45,7 +48,10 @@ class FcdTrack:
 
 @dataclass(slots=True)
 class FloatingCarData:
-    """``moments`` are times in microseconds, ``on`` the lanes and edges that are named."""
+    """The content of a floating-car data file.
+
+    ``moments`` are times in microseconds, ``on`` the lanes and edges that are named.
+    """
 
     head: FcdHead = field(default_factory=FcdHead)
     moments: list[int] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""From the rows of floating-car data to participants, on a grid of time steps."""
+"""Participants on a grid of time steps, from floating-car data."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
 
 
 def time_step(path: Path, moments: list[int]) -> float:
-    """The time from one step to the next (s): the shortest between two moments of the file.
+    """The time step (s): the shortest time between two moments.
+
+    The moments are those of the file.
 
     Moments may be missing, as when nobody was there; what lies between two steps may not be. With
     one moment only it is a second, or the part of one that goes into its time.
@@ -65,7 +67,9 @@ def time_step(path: Path, moments: list[int]) -> float:
 def fcd_participants(
     key: str, track_rows: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
 ) -> Iterator[Participant]:
-    """A vehicle, person or container; who vanishes and comes back is another one then.
+    """The vehicles, persons and containers of floating-car data.
+
+    Who vanishes and comes back is another one then.
 
     ``steps``: the time step of every moment of the file.
     """
@@ -101,7 +105,10 @@ def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
 def _accelerations(
     track_rows: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
 ) -> NDArray[float64]:
-    """The stated accelerations; where none is, the change of speed since the step before."""
+    """The accelerations, as stated or else from differences of speed.
+
+    A difference is the one since the step before.
+    """
     stated = np.array(track_rows.accelerations, dtype=float)
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
     return np.where(np.isnan(stated), changes, stated)

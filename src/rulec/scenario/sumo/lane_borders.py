@@ -12,7 +12,7 @@ _SHARPEST = 0.5
 
 
 def without_repeats(points: Points) -> Points:
-    """The points that are not in the place of the one before them."""
+    """The points that differ from the one before them."""
     kept = [points[0]]
     for point in points[1:]:
         if np.hypot(*(point - kept[-1])) > _CLOSEST_M:
@@ -21,7 +21,10 @@ def without_repeats(points: Points) -> Points:
 
 
 def parallel_line(points: Points, offset: float) -> Points:
-    """The parallel line, at a distance to the left, of at least two points, all different."""
+    """The parallel of a line at a distance to the left.
+
+    The line has at least two points, all different.
+    """
     ahead = np.diff(points, axis=0)
     ahead /= np.hypot(*ahead.T)[:, None]
     across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)

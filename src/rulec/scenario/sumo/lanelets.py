@@ -103,7 +103,7 @@ def _resampled(points: Points, count: int) -> Points:
 def _successors(
     connections: list[NetConnection], there: set[str], known: set[str]
 ) -> dict[str, list[str]]:
-    """Lane -> next lanes; a lane that is shorter than anything is passed over."""
+    """Lane -> next lanes, without those of no length."""
     direct: dict[str, list[str]] = defaultdict(list)
     for connection in connections:
         direct[connection.start].append(
@@ -151,7 +151,10 @@ def _unrounded(limit_mps: float) -> float:
 
 
 def _junctions(net: SumoNet) -> set[str]:
-    """The nodes at which roads from several directions meet, rather than one road going on."""
+    """The nodes at which roads from several directions meet.
+
+    A road that only goes on makes none.
+    """
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
         if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:

@@ -1,4 +1,4 @@
-"""A SUMO net: edges with lanes, how these go on, and the programmes of traffic lights."""
+"""A SUMO net: edges with lanes, connections, and traffic light programmes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ WIDEST_M = 100.0
 
 @dataclass(frozen=True, slots=True)
 class NetEdge:
-    """``function`` is empty for a road; ``type`` is what the map's source calls it."""
+    """An edge of a net, with its function and type.
+
+    ``function`` is empty for a road; ``type`` is what the map's source calls it.
+    """
 
     id: str
     function: str
@@ -34,7 +37,10 @@ class NetEdge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetLane:
-    """``index`` counts from the kerb on; ``shape`` is the middle, of a walking area the outline."""
+    """A lane of an edge, with its shape.
+
+    ``index`` counts from the kerb on; ``shape`` is the middle, of a walking area the outline.
+    """
 
     id: str
     edge: NetEdge
@@ -48,7 +54,10 @@ class NetLane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetConnection:
-    """From a lane to the next one, over ``via`` within a junction; ``light`` and link number."""
+    """A connection from a lane to the next one.
+
+    It goes over ``via`` within a junction; ``link`` is its number at its ``light``.
+    """
 
     start: str
     end: str
@@ -60,7 +69,10 @@ class NetConnection:
 
 @dataclass(frozen=True, slots=True)
 class SignalProgramme:
-    """A traffic light's: by phase its duration (s) and a letter for each link, from a time on."""
+    """A traffic light's programme, by phase.
+
+    A phase has its duration (s) and a letter for each link. The programme begins at a given time.
+    """
 
     begin: float
     phases: tuple[tuple[float, str], ...]
@@ -68,7 +80,10 @@ class SignalProgramme:
 
 @dataclass(slots=True)
 class SumoNet:
-    """The content of a net. A light's programme is None if it reacts to traffic."""
+    """The content of a SUMO net.
+
+    A light's programme is None if it reacts to traffic.
+    """
 
     side: Side = "right"
     edges: dict[str, NetEdge] = field(default_factory=dict)

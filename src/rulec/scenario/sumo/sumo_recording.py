@@ -1,4 +1,4 @@
-"""SUMO's floating-car data and the files that belong to them, as one recording."""
+"""SUMO's floating-car data and their companion files as one recording."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ _NAMED = 5
 
 
 def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
-    """Read floating-car data on the roads of a net: the one given, or the one beside them.
+    """Read floating-car data on the roads of a net.
+
+    The net is the one given, or the one beside the data.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it should be, R0614 if there is no
@@ -88,7 +90,10 @@ def _some(names: list[str]) -> str:
 
 
 def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
-    """Check that the net has all lanes and edges of the data. Raises RulecError R0615."""
+    """Check that the net has all lanes and edges of the data.
+
+    Raises RulecError R0615.
+    """
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):
             raise OTHER_NET.error(

@@ -1,4 +1,4 @@
-"""Traffic lights of a SUMO net, as far as their programmes are known."""
+"""Traffic lights of a SUMO net whose programmes are known."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ COLOURS: Mapping[str, str] = {
 
 
 def lane_lights(net: SumoNet, step_s: float) -> dict[str, list[Light]]:
-    """Lane -> the lights at its end, one for each way on that has its own.
+    """Lane -> the lights at its end, one for each way on.
+
+    Only ways on with a light of their own count.
 
     A light that reacts to traffic, or has several programmes, has none that the net could tell.
     """

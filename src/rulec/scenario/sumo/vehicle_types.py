@@ -1,4 +1,4 @@
-"""SUMO's vehicle types and their sizes, from a file or by SUMO's defaults."""
+"""SUMO's vehicle types and sizes, from a file or by default."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROOTS = ("routes", "additional")
 
 @dataclass(frozen=True, slots=True)
 class VehicleType:
-    """A kind of road user, with CommonRoad's word for it, and its size."""
+    """A kind of road user, its CommonRoad type, and its size."""
 
     kind: str
     length: float
@@ -79,7 +79,9 @@ _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "containe
 
 
 def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
-    """The types that files describe; other files than those with types have none.
+    """Read the vehicle types that files describe.
+
+    Other files than those with types have none.
 
     Raises:
         RulecError: R0610 if a file is broken.
@@ -117,7 +119,9 @@ def _described(element: XmlElement) -> VehicleType:
 def vehicle_type(
     name: str, element: str, known: Mapping[str, VehicleType]
 ) -> tuple[VehicleType, bool]:
-    """The type of a participant, and whether it is known rather than assumed.
+    """The type of a participant, with a flag for a known one.
+
+    A type that is not known is assumed.
 
     ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
     """

@@ -1,4 +1,4 @@
-"""The attributes of an XML element, as texts and numbers, with words for what is wrong."""
+"""The attributes of an XML element as texts and numbers, checked."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ class XmlElement:
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Raises RulecError R0610 if it is none, or a huge one, or missing without a default."""
+        """The number in an attribute, or its default.
+
+        Raises RulecError R0610 if it is none, or a huge one, or missing without a default.
+        """
         if default is not None and key not in self.attributes:
             return default
         return self.as_number(key, self.text(key))
@@ -43,7 +46,10 @@ class XmlElement:
         return value
 
     def as_number(self, key: str, text: str) -> float:
-        """Raises RulecError R0610 if the text is no number, or a huge one."""
+        """The number that a text spells.
+
+        Raises RulecError R0610 if the text is no number, or a huge one.
+        """
         try:
             value = float(text)
         except ValueError:

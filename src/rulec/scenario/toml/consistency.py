@@ -88,7 +88,10 @@ def check_collision(ego: Ego, obstacle: Obstacle, table: TomlTable, findings: Fi
 def check_signals(
     raw: dict[str, object], table: TomlTable, findings: Findings
 ) -> dict[str, SignalValue]:
-    """Signals are passed on as they are, so here only their form is looked at."""
+    """Check the form of signals.
+
+    They are passed on as they are, so only their form is looked at here.
+    """
     signals: dict[str, SignalValue] = {}
     for name, value in raw.items():
         if name in RESERVED:

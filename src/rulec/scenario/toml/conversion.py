@@ -30,7 +30,9 @@ _SIGNALS = TomlTable("signals", None, "signals")
 
 
 def to_scenario(raw: Mapping[str, object], name: str, findings: Findings) -> Scenario:
-    """The scenario that the tables describe; ``name`` is used if they give none.
+    """The scenario that the tables describe.
+
+    ``name`` is used if they give none.
 
     Raises:
         RulecError: every mistake that was found.

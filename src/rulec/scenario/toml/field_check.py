@@ -1,4 +1,7 @@
-"""One table of a scenario file against its schema, all of its bad fields reported."""
+"""Check a table of a scenario file against its schema.
+
+All of its bad fields are reported.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ T = TypeVar("T", bound=msgspec.Struct)
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """The file that is being read, and what has been found wrong with it so far."""
+    """The file being read, and the mistakes in it so far."""
 
     text: TomlText
     errors: list[Diagnostic] = field(default_factory=list)
@@ -34,14 +37,20 @@ class Findings:
         expected: str = "",
         way_out: str = "",
     ) -> None:
-        """Note one mistake in a table, or in one of its fields; ``expected`` is a thing."""
+        """Add a mistake in a table, or in one of its fields.
+
+        ``expected`` is a thing.
+        """
         place = self.text.place(table, key)
         expected = expected and f"expected {expected}"
         self.errors.append(code.at(place, message, expected=expected, help=way_out))
 
 
 def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings) -> T | None:
-    """A table as a ``kind``; None if it had mistakes, which are then in ``findings``."""
+    """A table as a ``kind``, or None if it had mistakes.
+
+    The mistakes are then in ``findings``.
+    """
     if not isinstance(raw, Mapping):
         findings.add(
             UNFITTING_FIELD, f"{table.words} is {shown(raw)}", table, expected="a table of fields"
@@ -79,7 +88,10 @@ def read_table(kind: type[T], raw: object, table: TomlTable, findings: Findings)
 
 
 def shown(value: object) -> str:
-    """A value as the file spells it, in backquotes, shortened; tables and lists in words."""
+    """A value in the file's spelling, quoted and shortened.
+
+    Tables and lists are in words.
+    """
     match value:
         case bool():
             return "`true`" if value else "`false`"
@@ -106,7 +118,7 @@ def _short(text: str) -> str:
 
 
 def words_of(kind: object) -> str:
-    """A field's description in words, the one nearest to the outside of its type."""
+    """A field's description in words, the outermost of its type."""
     for part in (*getattr(kind, "__metadata__", ()), *get_args(kind)):
         if isinstance(part, msgspec.Meta):
             if part.description:
@@ -117,7 +129,10 @@ def words_of(kind: object) -> str:
 
 
 def _unknown_field(key: str, known: list[str], table: TomlTable, findings: Findings) -> str | None:
-    """Report a field; the known one that is probably meant, if there is one close by."""
+    """Report an unknown field and the known one probably meant.
+
+    There may be none close by.
+    """
     findings.add(
         MISSING_OR_UNKNOWN_FIELD,
         f"{table.words} has a field {quoted(key)} that does not exist",

@@ -18,7 +18,10 @@ _KEY = re.compile(r"""\s*(["']?)([^"'=\s]+)\1\s*=""")
 
 @dataclass(frozen=True, slots=True)
 class TomlTable:
-    """A table of the file: heading, number (from 1) in an array of tables, and what to call it."""
+    """A table of the file: its heading, number and name.
+
+    The number, from 1, is that in an array of tables.
+    """
 
     heading: str
     number: int | None
@@ -38,7 +41,7 @@ class TomlText:
     source: Source
 
     def place(self, table: TomlTable, key: str | None = None) -> SourceLocation:
-        """The line of a key, else that of its table's heading, else the file."""
+        """The line of a key or its table's heading, else the file."""
         number = table.number or 0
         line = self._lines.get((table.heading, number, key))
         if line is None:

@@ -26,7 +26,7 @@ _PREDICTED = ("s", "d", "speed", "acceleration", "lateral_speed", "until_d")
 
 
 def read_obstacles(raw: object, findings: Findings) -> tuple[LocatedObstacle, ...]:
-    """The sound ones among the obstacles, each with its place in the file."""
+    """The obstacles without mistakes, each with its place in the file."""
     if not isinstance(raw, list) or len(raw) > MOST_OBSTACLES:
         return ()
     listed: list[LocatedObstacle] = []

@@ -1,4 +1,4 @@
-"""The fields of a scenario file: names, types, bounds, and what each is in words.
+"""The fields of a scenario file: names, types, bounds and descriptions.
 
 The words become the "expected" part of messages; ``docs/scenarios.md`` says the same at length.
 The bounds also keep out NaN and infinity.
