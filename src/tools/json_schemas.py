@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from inspect import cleandoc
 from typing import Any
 
 import msgspec
@@ -64,7 +65,22 @@ def schema_text(name: str) -> str:
         **(outputs[0] if len(outputs) == 1 else {"anyOf": outputs}),
         "$defs": {key: _required_version(value) for key, value in sorted(definitions.items())},
     }
-    return json.dumps(schema, ensure_ascii=False, indent=2) + "\n"
+    return json.dumps(_without_indents(schema), ensure_ascii=False, indent=2) + "\n"
+
+
+def _without_indents(part: Any) -> Any:
+    """Descriptions come from docstrings, whose indents Python 3.13 strips and others keep."""
+    match part:
+        case dict():
+            return {
+                key: cleandoc(value)
+                if key == "description" and isinstance(value, str)
+                else _without_indents(value)
+                for key, value in part.items()
+            }
+        case list():
+            return [_without_indents(item) for item in part]
+    return part
 
 
 def _required_version(definition: dict[str, Any]) -> dict[str, Any]:
