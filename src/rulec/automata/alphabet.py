@@ -11,53 +11,41 @@ from itertools import combinations, count, pairwise
 from math import ceil, floor, prod
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    Proposition,
-    Unary,
-    UnaryOperator,
-    atoms_of,
-)
+from rulec.logic import formula as ltl
 from rulec.vocabulary import Enumeration, Vocabulary
 
-NOT, AND, OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+NOT, AND, OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
 
 
-def propositions_of(formula: Formula) -> tuple[Proposition, ...]:
+def propositions_of(formula: ltl.Formula) -> tuple[ltl.Proposition, ...]:
     """Distinct atoms and comparisons of a formula, in order of first mention."""
-    return tuple(dict.fromkeys(atoms_of(formula)))
+    return tuple(dict.fromkeys(ltl.atoms_of(formula)))
 
 
-def reads_of(formula: Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
+def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
     """Reads of a formula, in order of first mention.
 
     Comparisons of the same terms read one number.
     """
-    used: dict[tuple[object, ...], list[Proposition]] = {}
+    used: dict[tuple[object, ...], list[ltl.Proposition]] = {}
     for proposition in propositions_of(formula):
         key = (
             proposition.terms
-            if isinstance(proposition, Comparison)
+            if isinstance(proposition, ltl.Comparison)
             else (proposition.name, proposition.arguments)
         )
         used.setdefault(key, []).append(proposition)
     return tuple(_read(together, vocabulary) for together in used.values())
 
 
-def _read(together: Sequence[Proposition], vocabulary: Vocabulary) -> Read | NumberRead:
+def _read(together: Sequence[ltl.Proposition], vocabulary: Vocabulary) -> Read | NumberRead:
     """The read of propositions about one thing."""
     first = together[0]
-    if isinstance(first, Comparison):
+    if isinstance(first, ltl.Comparison):
         passed = {
             threshold
             for comparison in together
-            if isinstance(comparison, Comparison)
+            if isinstance(comparison, ltl.Comparison)
             for threshold in _sides(comparison)
             if threshold is not None
         }
@@ -65,7 +53,7 @@ def _read(together: Sequence[Proposition], vocabulary: Vocabulary) -> Read | Num
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
         return Read(first.name, first.arguments)
-    mentioned = {atom.value for atom in together if isinstance(atom, Atom)}
+    mentioned = {atom.value for atom in together if isinstance(atom, ltl.Atom)}
     values = tuple(value for value in declaration.values if value in mentioned)
     return Read(first.name, first.arguments, values, others=len(values) < len(declaration.values))
 
@@ -74,7 +62,7 @@ def _position(threshold: Threshold) -> tuple[object, bool]:
     return threshold.limit, not threshold.inclusive
 
 
-def _sides(comparison: Comparison) -> tuple[Threshold | None, ...]:
+def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:
     """Thresholds that decide a comparison: below, then above its limit.
 
     A count is a whole number, 0 or more: its thresholds are whole numbers above 0 that are passed
@@ -83,7 +71,7 @@ def _sides(comparison: Comparison) -> tuple[Threshold | None, ...]:
     limit = comparison.limit
     at, above = Threshold(limit, inclusive=True), Threshold(limit, inclusive=False)
     both: list[Threshold | None] = [at, above]
-    if len(comparison.terms) == 1 and isinstance(comparison.terms[0][1], Count):
+    if len(comparison.terms) == 1 and isinstance(comparison.terms[0][1], ltl.Count):
         whole = (ceil(limit), floor(limit) + 1)
         both = [Threshold(Fraction(n), inclusive=True) if n > 0 else None for n in whole]
     match comparison.relation:
@@ -95,7 +83,7 @@ def _sides(comparison: Comparison) -> tuple[Threshold | None, ...]:
             return tuple(both)
 
 
-def _digits(comparison: Comparison, read: NumberRead) -> Iterator[int]:
+def _digits(comparison: ltl.Comparison, read: NumberRead) -> Iterator[int]:
     """The digits of numbers for which the comparison holds."""
     # A number has passed as many thresholds as its digit says.
     needed = [0 if side is None else read.thresholds.index(side) + 1 for side in _sides(comparison)]
@@ -120,8 +108,8 @@ def count_letters(reads: Iterable[Read | NumberRead]) -> int:
 
 
 def letters_with(
-    reads: Sequence[Read | NumberRead], propositions: Iterable[Proposition]
-) -> dict[Proposition, int]:
+    reads: Sequence[Read | NumberRead], propositions: Iterable[ltl.Proposition]
+) -> dict[ltl.Proposition, int]:
     """For every proposition the bit set of letters that satisfy it.
 
     ``reads`` are what a formula of these propositions reads.
@@ -133,11 +121,11 @@ def letters_with(
         key = read.terms if isinstance(read, NumberRead) else (read.name, read.variables)
         about[key] = read, stride
         stride *= read.size
-    sets: dict[Proposition, int] = {}
+    sets: dict[ltl.Proposition, int] = {}
     for proposition in propositions:
         key = (
             proposition.terms
-            if isinstance(proposition, Comparison)
+            if isinstance(proposition, ltl.Comparison)
             else (proposition.name, proposition.arguments)
         )
         read, stride = about[key]
@@ -148,11 +136,11 @@ def letters_with(
     return sets
 
 
-def _digits_with(proposition: Proposition, read: Read | NumberRead) -> tuple[int, ...]:
+def _digits_with(proposition: ltl.Proposition, read: Read | NumberRead) -> tuple[int, ...]:
     match proposition, read:
-        case Comparison(), NumberRead():
+        case ltl.Comparison(), NumberRead():
             return tuple(_digits(proposition, read))
-        case Atom(value=str(value)), Read():
+        case ltl.Atom(value=str(value)), Read():
             return (read.values.index(value),)
     return (1,)
 
@@ -162,57 +150,65 @@ def _repeat(pattern: int, period: int, total: int) -> int:
     return pattern * (((1 << total) - 1) // ((1 << period) - 1))
 
 
-def knowledge(reads: Iterable[Read | NumberRead], propositions: Sequence[Proposition]) -> Formula:
+def knowledge(
+    reads: Iterable[Read | NumberRead], propositions: Sequence[ltl.Proposition]
+) -> ltl.Formula:
     """Formula that holds of these propositions in every state of every trace.
 
     Of an enumeration's values exactly one is true; of comparisons of one number those that it
     passes.
     """
-    axioms: list[Formula] = []
+    axioms: list[ltl.Formula] = []
     for read in reads:
         if isinstance(read, NumberRead):
             about = [
-                proposition for proposition in propositions if isinstance(proposition, Comparison)
+                proposition
+                for proposition in propositions
+                if isinstance(proposition, ltl.Comparison)
             ]
             axioms += _number_facts(
                 read, [comparison for comparison in about if comparison.terms == read.terms]
             )
             continue
-        atoms: list[Formula] = [Atom(read.name, read.variables, value) for value in read.values]
-        axioms += [Unary(NOT, Binary(AND, one, other)) for one, other in combinations(atoms, 2)]
+        atoms: list[ltl.Formula] = [
+            ltl.Atom(read.name, read.variables, value) for value in read.values
+        ]
+        axioms += [
+            ltl.Unary(NOT, ltl.Binary(AND, one, other)) for one, other in combinations(atoms, 2)
+        ]
         if atoms and not read.others:
             axioms.append(joined(OR, atoms))
-    return joined(AND, axioms) if axioms else Constant(True)
+    return joined(AND, axioms) if axioms else ltl.Constant(True)
 
 
-def _number_facts(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
+def _number_facts(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> Iterator[ltl.Formula]:
     if any(comparison.relation in ("=", "!=") for comparison in comparisons):
         yield from _each_digit(read, comparisons)
         return
     # Comparisons with one threshold form a chain: who passes a later one has passed the earlier.
-    passing: list[tuple[int, Formula]] = []
+    passing: list[tuple[int, ltl.Formula]] = []
     for comparison in comparisons:
         (side,) = _sides(comparison)
-        passed = comparison if comparison.relation in (">=", ">") else Unary(NOT, comparison)
+        passed = comparison if comparison.relation in (">=", ">") else ltl.Unary(NOT, comparison)
         passing.append((-1 if side is None else read.thresholds.index(side), passed))
     passing.sort(key=lambda each: each[0])
     yield from (passed for place, passed in passing if place < 0)
     for (place, earlier), (next_place, later) in pairwise(passing):
         if place >= 0:
-            same = BinaryOperator.IFF if place == next_place else BinaryOperator.IMPLIES
-            yield Binary(same, later, earlier)
+            same = ltl.BinaryOperator.IFF if place == next_place else ltl.BinaryOperator.IMPLIES
+            yield ltl.Binary(same, later, earlier)
 
 
-def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator[Formula]:
+def _each_digit(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> Iterator[ltl.Formula]:
     """One of the digits, with all that holds there."""
     true_at = [set(_digits(comparison, read)) for comparison in comparisons]
-    cases: dict[tuple[bool, ...], Formula] = {}
+    cases: dict[tuple[bool, ...], ltl.Formula] = {}
     for digit in range(read.size):
         values = tuple(digit in digits for digits in true_at)
         cases[values] = joined(
             AND,
             [
-                comparison if value else Unary(NOT, comparison)
+                comparison if value else ltl.Unary(NOT, comparison)
                 for comparison, value in zip(comparisons, values, strict=True)
             ],
         )
@@ -220,18 +216,18 @@ def _each_digit(read: NumberRead, comparisons: Sequence[Comparison]) -> Iterator
         yield joined(OR, list(cases.values()))
 
 
-def joined(operator: BinaryOperator, formulas: Sequence[Formula]) -> Formula:
+def joined(operator: ltl.BinaryOperator, formulas: Sequence[ltl.Formula]) -> ltl.Formula:
     """Join one or more formulas by one operator in a balanced tree."""
     if len(formulas) == 1:
         return formulas[0]
     half = len(formulas) // 2
     left, right = joined(operator, formulas[:half]), joined(operator, formulas[half:])
-    return Binary(operator, left, right)
+    return ltl.Binary(operator, left, right)
 
 
-def names_of(propositions: Iterable[Proposition]) -> dict[Proposition, str]:
+def names_of(propositions: Iterable[ltl.Proposition]) -> dict[ltl.Proposition, str]:
     """A name for each: its text, told apart from earlier ones."""
-    names: dict[Proposition, str] = {}
+    names: dict[ltl.Proposition, str] = {}
     taken: set[str] = set()
     for proposition in dict.fromkeys(propositions):
         names[proposition] = fresh_name(str(proposition) or "comparison", taken)

@@ -21,18 +21,7 @@ from rulec.automata.alphabet import (
     reads_of,
 )
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    Proposition,
-    Unary,
-    UnaryOperator,
-    atoms_of,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.renaming import rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
@@ -45,7 +34,7 @@ class AxiomInstance:
 
     fact: Axiom
     variables: tuple[str, ...]
-    formula: Formula
+    formula: ltl.Formula
 
 
 def axiom_instances(
@@ -67,12 +56,12 @@ def axiom_instances(
     )
 
 
-def counts(formula: Formula) -> bool:
+def counts(formula: ltl.Formula) -> bool:
     """Tell whether a formula contains a count of objects."""
     return any(
-        isinstance(term, Count)
-        for atom in atoms_of(formula)
-        if isinstance(atom, Comparison)
+        isinstance(term, ltl.Count)
+        for atom in ltl.atoms_of(formula)
+        if isinstance(atom, ltl.Comparison)
         for _, term in atom.terms
     )
 
@@ -85,17 +74,19 @@ class AxiomGroup:
     those of a rule.
     """
 
-    natural: Formula
+    natural: ltl.Formula
     instances: tuple[AxiomInstance, ...]
 
     @property
-    def known(self) -> Formula:
+    def known(self) -> ltl.Formula:
         """All of it."""
         return joined(AND, [self.natural, *(instance.formula for instance in self.instances)])
 
 
 def axiom_groups(
-    propositions: Iterable[Proposition], instances: Iterable[AxiomInstance], vocabulary: Vocabulary
+    propositions: Iterable[ltl.Proposition],
+    instances: Iterable[AxiomInstance],
+    vocabulary: Vocabulary,
 ) -> tuple[AxiomGroup, ...]:
     """Independent groups of axioms, for a rule of these propositions."""
     every = tuple(propositions)
@@ -110,10 +101,10 @@ def axiom_groups(
     return tuple(groups)
 
 
-def _natural(formulas: Sequence[Formula], vocabulary: Vocabulary) -> Formula:
+def _natural(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> ltl.Formula:
     """Knowledge about all propositions of some formulas, without any axioms."""
     if not formulas:
-        return Constant(True)
+        return ltl.Constant(True)
     spoken = joined(AND, formulas)
     return knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
 
@@ -132,28 +123,30 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
         yield tuple(members)
 
 
-def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[Formula]) -> int:
+def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[ltl.Formula]) -> int:
     """Bit set of the letters in which all known formulas hold.
 
     ``known`` speaks of what is read and of one state, without temporal operators.
     """
     everything = (1 << count_letters(reads)) - 1
-    sets = letters_with(reads, {atom for one in known for atom in atoms_of(one)})
+    sets = letters_with(reads, {atom for one in known for atom in ltl.atoms_of(one)})
     letters = everything
     for one in known:
         letters &= _letters_where(one, sets, everything)
     return letters
 
 
-def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything: int) -> int:
+def _letters_where(
+    formula: ltl.Formula, sets: Mapping[ltl.Proposition, int], everything: int
+) -> int:
     match formula:
-        case Atom() | Comparison():
+        case ltl.Atom() | ltl.Comparison():
             return sets[formula]
-        case Constant(value):
+        case ltl.Constant(value):
             return everything if value else 0
-        case Unary(UnaryOperator.NOT, operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return everything & ~_letters_where(operand, sets, everything)
-        case Binary(operator, left, right):
+        case ltl.Binary(operator, left, right):
             first = _letters_where(left, sets, everything)
             second = _letters_where(right, sets, everything)
             if operator is AND:
@@ -164,13 +157,13 @@ def _letters_where(formula: Formula, sets: Mapping[Proposition, int], everything
 
 
 def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
-    return {_subject(atom) for instance in instances for atom in atoms_of(instance.formula)}
+    return {_subject(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)}
 
 
-def _subject(proposition: Proposition) -> object:
+def _subject(proposition: ltl.Proposition) -> object:
     """The thing whose value makes a proposition true or false."""
     return (
         proposition.terms
-        if isinstance(proposition, Comparison)
+        if isinstance(proposition, ltl.Comparison)
         else (proposition.name, proposition.arguments)
     )

@@ -9,48 +9,37 @@ from math import gcd, lcm
 from typing import NamedTuple
 
 from rulec.diagnostics import Span
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Bound,
-    Comparison,
-    Constant,
-    Formula,
-    Same,
-    Unary,
-    UnaryOperator,
-)
+from rulec.logic import formula as ltl
 
-PAST: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+PAST: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
-        UnaryOperator.ONCE,
-        UnaryOperator.HISTORICALLY,
-        UnaryOperator.PREVIOUSLY,
-        UnaryOperator.WEAK_PREVIOUSLY,
-        BinaryOperator.SINCE,
+        ltl.UnaryOperator.ONCE,
+        ltl.UnaryOperator.HISTORICALLY,
+        ltl.UnaryOperator.PREVIOUSLY,
+        ltl.UnaryOperator.WEAK_PREVIOUSLY,
+        ltl.BinaryOperator.SINCE,
     )
 )
 """The operators that look back."""
 
-BOOLEAN: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+BOOLEAN: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
-        UnaryOperator.NOT,
-        BinaryOperator.AND,
-        BinaryOperator.OR,
-        BinaryOperator.IMPLIES,
-        BinaryOperator.IFF,
-        BinaryOperator.XOR,
+        ltl.UnaryOperator.NOT,
+        ltl.BinaryOperator.AND,
+        ltl.BinaryOperator.OR,
+        ltl.BinaryOperator.IMPLIES,
+        ltl.BinaryOperator.IFF,
+        ltl.BinaryOperator.XOR,
     )
 )
 """The operators that look at the present alone."""
 
-DISTANCE: frozenset[UnaryOperator | BinaryOperator] = frozenset(
+DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
-        UnaryOperator.NEXT,
-        UnaryOperator.WEAK_NEXT,
-        UnaryOperator.PREVIOUSLY,
-        UnaryOperator.WEAK_PREVIOUSLY,
+        ltl.UnaryOperator.NEXT,
+        ltl.UnaryOperator.WEAK_NEXT,
+        ltl.UnaryOperator.PREVIOUSLY,
+        ltl.UnaryOperator.WEAK_PREVIOUSLY,
     )
 )
 """The operators that look at a single instant: without a bound, at the one beside this."""
@@ -79,14 +68,14 @@ class Range(NamedTuple):
     high: int | None
 
 
-def range_of(formula: Unary | Binary) -> Range:
+def range_of(formula: ltl.Unary | ltl.Binary) -> Range:
     """The range of the formula's operator.
 
     That of ``then`` is the range of its ``until``: the first phase lasts one instant or more.
     ValueError for a bound in seconds, or in parts of a step.
     """
     bound, operator = formula.bound, formula.operator
-    least = int(operator is BinaryOperator.THEN)
+    least = int(operator is ltl.BinaryOperator.THEN)
     if bound is None:
         return Range(1, 1) if operator in DISTANCE else Range(least, None)
     if bound.unit == "s":
@@ -101,7 +90,7 @@ def _whole(steps: Fraction) -> int:
     return steps.numerator
 
 
-def has_seconds(formula: Formula) -> bool:
+def has_seconds(formula: ltl.Formula) -> bool:
     """True if the formula has a bound in seconds.
 
     If not, the step of a trace makes no difference.
@@ -110,7 +99,7 @@ def has_seconds(formula: Formula) -> bool:
     return any(bound is not None and bound.unit == "s" for bound in bounds)
 
 
-def fitting_step(formula: Formula, step_s: Fraction) -> Fraction:
+def fitting_step(formula: ltl.Formula, step_s: Fraction) -> Fraction:
     """The longest divisor (s) of a step and all bounds in seconds."""
     bounds = [operation.bound for operation in operations_of(formula)]
     seconds = [bound for bound in bounds if bound is not None and bound.unit == "s"]
@@ -119,7 +108,7 @@ def fitting_step(formula: Formula, step_s: Fraction) -> Fraction:
     return Fraction(gcd(int(step_s * whole), *(int(end * whole) for end in ends)), whole)
 
 
-def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
+def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
     """The operations in a formula, each before its operands.
 
     Those in bodies of counts are left out.
@@ -127,15 +116,15 @@ def operations_of(formula: Formula) -> Iterator[Unary | Binary]:
     waiting = [formula]
     while waiting:
         match waiting.pop():
-            case Unary(_, operand) as one:
+            case ltl.Unary(_, operand) as one:
                 yield one
                 waiting.append(operand)
-            case Binary(_, left, right) as one:
+            case ltl.Binary(_, left, right) as one:
                 yield one
                 waiting += [right, left]
 
 
-def in_steps(formula: Formula, step_s: Fraction) -> Formula:
+def in_steps(formula: ltl.Formula, step_s: Fraction) -> ltl.Formula:
     """The formula with bounds in steps of ``step_s`` seconds.
 
     It no longer says where its bounds are written.
@@ -147,18 +136,18 @@ def in_steps(formula: Formula, step_s: Fraction) -> Formula:
     if step_s <= 0:
         raise ValueError("a step lasts more than 0 s")
     match formula:
-        case Unary(operator, operand, bound):
+        case ltl.Unary(operator, operand, bound):
             steps = _steps(bound, step_s)
-            return Unary(operator, in_steps(operand, step_s), steps)
-        case Binary(operator, left, right, bound):
+            return ltl.Unary(operator, in_steps(operand, step_s), steps)
+        case ltl.Binary(operator, left, right, bound):
             first = in_steps(left, step_s)
             steps = _steps(bound, step_s)
-            return Binary(operator, first, in_steps(right, step_s), steps)
-        case Atom() | Comparison() | Same() | Constant():
+            return ltl.Binary(operator, first, in_steps(right, step_s), steps)
+        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return formula
 
 
-def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
+def _steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
     if bound is None:
         return None
     if bound.unit == "steps":
@@ -170,7 +159,7 @@ def _steps(bound: Bound | None, step_s: Fraction) -> Bound | None:
     return replace(bound, low=bound.low / step_s, high=high, unit="steps", span=None)
 
 
-def total_bound(formula: Formula) -> int:
+def total_bound(formula: ltl.Formula) -> int:
     """The sum of all bounds of the formula, in steps.
 
     It is 0 if there are none but those of unbounded operators.

@@ -9,23 +9,8 @@ import re
 from fractions import Fraction
 from typing import Any, get_args
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, DISTANCE
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Bound,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Relation,
-    Same,
-    Term,
-    Unary,
-    UnaryOperator,
-)
 
 DEEPEST = 250
 """No rulebook nests deeper, so nothing that reads formulas has to."""
@@ -33,13 +18,15 @@ DEEPEST = 250
 LONGEST = 1000
 """No number of a rulebook is longer."""
 
-_OPERATORS: dict[str, UnaryOperator | BinaryOperator] = {
-    operator.value: operator for kind in (UnaryOperator, BinaryOperator) for operator in kind
+_OPERATORS: dict[str, ltl.UnaryOperator | ltl.BinaryOperator] = {
+    operator.value: operator
+    for kind in (ltl.UnaryOperator, ltl.BinaryOperator)
+    for operator in kind
 }
-_RELATIONS = {relation: relation for relation in get_args(Relation)}
+_RELATIONS = {relation: relation for relation in get_args(ltl.Relation)}
 
 
-def to_data(formula: Formula) -> Any:
+def to_data(formula: ltl.Formula) -> Any:
     """A formula as data: constants, lists for operations, objects otherwise.
 
     A list begins with its operator.
@@ -47,56 +34,56 @@ def to_data(formula: Formula) -> Any:
     The bound of an operator, if it has one, comes last in its list.
     """
     match formula:
-        case Atom(name, arguments, value):
+        case ltl.Atom(name, arguments, value):
             return {"name": name, "variables": list(arguments), "value": value}
-        case Comparison(terms, relation, limit, text):
+        case ltl.Comparison(terms, relation, limit, text):
             return {
                 "terms": terms_to_data(terms),
                 "relation": relation,
                 "limit": str(limit),
                 "text": text,
             }
-        case Same(left, right):
+        case ltl.Same(left, right):
             return {"same": [left, right]}
-        case Constant(value):
+        case ltl.Constant(value):
             return value
-        case Unary(operator, operand, bound):
+        case ltl.Unary(operator, operand, bound):
             return [operator.value, to_data(operand), *_bound(bound)]
-        case Binary(operator, left, right, bound):
+        case ltl.Binary(operator, left, right, bound):
             return [operator.value, to_data(left), to_data(right), *_bound(bound)]
 
 
-def terms_to_data(terms: tuple[tuple[Fraction, Term], ...]) -> list[list[Any]]:
+def terms_to_data(terms: tuple[tuple[Fraction, ltl.Term], ...]) -> list[list[Any]]:
     """The terms of a comparison: pairs of a coefficient and a term."""
     return [[str(coefficient), _term(term)] for coefficient, term in terms]
 
 
-def _term(term: Term) -> dict[str, Any]:
+def _term(term: ltl.Term) -> dict[str, Any]:
     match term:
-        case QuantityTerm(name, arguments):
+        case ltl.QuantityTerm(name, arguments):
             return {"quantity": name, "variables": list(arguments)}
-        case Count(variable, type_name, body):
+        case ltl.Count(variable, type_name, body):
             return {"count": variable, "type": type_name, "body": to_data(body)}
 
 
-def _bound(bound: Bound | None) -> list[dict[str, str | None]]:
+def _bound(bound: ltl.Bound | None) -> list[dict[str, str | None]]:
     if bound is None:
         return []
     high = None if bound.high is None else str(bound.high)
     return [{"from": str(bound.low), "to": high, "unit": bound.unit}]
 
 
-def from_data(data: Any, depth: int = 0) -> Formula:
+def from_data(data: Any, depth: int = 0) -> ltl.Formula:
     """The formula that ``to_data`` made this of. ValueError if there is none."""
     if depth > DEEPEST:
         raise ValueError("a formula is nested too deep")
     match data:
         case bool():
-            return Constant(data)
+            return ltl.Constant(data)
         case {"name": str(name), "variables": variables, "value": None | str() as value} if (
             len(data) == 3
         ):
-            return Atom(name, _names(variables), value)
+            return ltl.Atom(name, _names(variables), value)
         case {
             "terms": terms,
             "relation": str(relation),
@@ -104,29 +91,29 @@ def from_data(data: Any, depth: int = 0) -> Formula:
             "text": str(text),
         } if len(data) == 4 and relation in _RELATIONS:
             read = terms_from_data(terms, depth + 1)
-            return Comparison(read, _RELATIONS[relation], number_from_data(limit), text)
+            return ltl.Comparison(read, _RELATIONS[relation], number_from_data(limit), text)
         case {"same": [str(left), str(right)]} if len(data) == 1:
-            return Same(left, right)
+            return ltl.Same(left, right)
         case [str(operator), *rest] if operator in _OPERATORS:
             return _operation(_OPERATORS[operator], rest, depth + 1)
     raise ValueError("a formula is neither an atom, a comparison, a constant nor an operation")
 
 
 def _operation(
-    operator: UnaryOperator | BinaryOperator, rest: list[Any], depth: int
-) -> Unary | Binary:
-    n_operands = 1 if isinstance(operator, UnaryOperator) else 2
+    operator: ltl.UnaryOperator | ltl.BinaryOperator, rest: list[Any], depth: int
+) -> ltl.Unary | ltl.Binary:
+    n_operands = 1 if isinstance(operator, ltl.UnaryOperator) else 2
     bound = None
     if len(rest) == n_operands + 1:
         bound = _read_bound(operator, rest.pop())
     if len(rest) != n_operands:
         raise ValueError(f"`{operator.value}` has a wrong number of operands")
-    if isinstance(operator, UnaryOperator):
-        return Unary(operator, from_data(rest[0], depth), bound)
-    return Binary(operator, from_data(rest[0], depth), from_data(rest[1], depth), bound)
+    if isinstance(operator, ltl.UnaryOperator):
+        return ltl.Unary(operator, from_data(rest[0], depth), bound)
+    return ltl.Binary(operator, from_data(rest[0], depth), from_data(rest[1], depth), bound)
 
 
-def _read_bound(operator: UnaryOperator | BinaryOperator, data: Any) -> Bound:
+def _read_bound(operator: ltl.UnaryOperator | ltl.BinaryOperator, data: Any) -> ltl.Bound:
     match data:
         case {"from": low_text, "to": high_text, "unit": "s" | "steps" as unit} if len(data) == 3:
             low = number_from_data(low_text)
@@ -137,11 +124,11 @@ def _read_bound(operator: UnaryOperator | BinaryOperator, data: Any) -> Bound:
             if unit == "steps":
                 fits = fits and low.denominator == 1 and (high is None or high.denominator == 1)
             if fits and operator not in BOOLEAN:
-                return Bound(low, high, unit)
+                return ltl.Bound(low, high, unit)
     raise ValueError(f"`{operator.value}` has a bound that is none")
 
 
-def terms_from_data(data: Any, depth: int = 0) -> tuple[tuple[Fraction, Term], ...]:
+def terms_from_data(data: Any, depth: int = 0) -> tuple[tuple[Fraction, ltl.Term], ...]:
     """The terms that ``terms_to_data`` made this of. ValueError if there are none."""
     if not isinstance(data, list):
         raise ValueError("the terms of a comparison are no list")
@@ -151,17 +138,17 @@ def terms_from_data(data: Any, depth: int = 0) -> tuple[tuple[Fraction, Term], .
     return tuple(read)
 
 
-def _read_term(data: Any, depth: int) -> tuple[Fraction, Term]:
+def _read_term(data: Any, depth: int) -> tuple[Fraction, ltl.Term]:
     match data:
         case [coefficient, {"quantity": str(name), "variables": variables} as term] if (
             len(term) == 2
         ):
-            return number_from_data(coefficient), QuantityTerm(name, _names(variables))
+            return number_from_data(coefficient), ltl.QuantityTerm(name, _names(variables))
         case [
             coefficient,
             {"count": str(variable), "type": str(type_name), "body": body} as term,
         ] if len(term) == 3:
-            return number_from_data(coefficient), Count(
+            return number_from_data(coefficient), ltl.Count(
                 variable, type_name, from_data(body, depth + 1)
             )
     raise ValueError("a term of a comparison is neither a quantity nor a count")

@@ -5,62 +5,58 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Constant,
-    Formula,
-    Unary,
-    UnaryOperator,
-    with_operands,
-)
 
 
-def fold_constants(formula: Formula) -> Formula:
+def fold_constants(formula: ltl.Formula) -> ltl.Formula:
     """An equivalent formula in which ``and``, ``or``, ``implies``, ``not`` join no constants."""
     return fold(formula, _FOLDED)
 
 
-def _unchanged(formula: Formula) -> Formula:
+def _unchanged(formula: ltl.Formula) -> ltl.Formula:
     return formula
 
 
-def _negation(operand: Formula) -> Formula:
-    if isinstance(operand, Constant):
-        return Constant(not operand.value)
-    return Unary(UnaryOperator.NOT, operand)
+def _negation(operand: ltl.Formula) -> ltl.Formula:
+    if isinstance(operand, ltl.Constant):
+        return ltl.Constant(not operand.value)
+    return ltl.Unary(ltl.UnaryOperator.NOT, operand)
 
 
-def _joined(operator: BinaryOperator, neutral: bool, left: Formula, right: Formula) -> Formula:
+def _joined(
+    operator: ltl.BinaryOperator, neutral: bool, left: ltl.Formula, right: ltl.Formula
+) -> ltl.Formula:
     """The conjunction or disjunction, which its neutral constant does not change."""
     for operand, other in ((left, right), (right, left)):
-        if isinstance(operand, Constant):
+        if isinstance(operand, ltl.Constant):
             return other if operand.value == neutral else operand
-    return Binary(operator, left, right)
+    return ltl.Binary(operator, left, right)
 
 
-def _implication(left: Formula, right: Formula) -> Formula:
-    if isinstance(left, Constant):
-        return right if left.value else Constant(True)
-    if isinstance(right, Constant):
+def _implication(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
+    if isinstance(left, ltl.Constant):
+        return right if left.value else ltl.Constant(True)
+    if isinstance(right, ltl.Constant):
         return right if right.value else _negation(left)
-    return Binary(BinaryOperator.IMPLIES, left, right)
+    return ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right)
 
 
-def _operation(formula: Unary | Binary, value_of: Callable[[Formula], Formula]) -> Formula:
-    return with_operands(formula, value_of)
+def _operation(
+    formula: ltl.Unary | ltl.Binary, value_of: Callable[[ltl.Formula], ltl.Formula]
+) -> ltl.Formula:
+    return ltl.with_operands(formula, value_of)
 
 
-_FOLDED: Algebra[Formula] = Algebra(
+_FOLDED: Algebra[ltl.Formula] = Algebra(
     proposition=_unchanged,
     identity=_unchanged,
-    constant=Constant,
+    constant=ltl.Constant,
     negation=_negation,
-    conjunction=partial(_joined, BinaryOperator.AND, True),
-    disjunction=partial(_joined, BinaryOperator.OR, False),
+    conjunction=partial(_joined, ltl.BinaryOperator.AND, True),
+    disjunction=partial(_joined, ltl.BinaryOperator.OR, False),
     implication=_implication,
-    equivalence=partial(Binary, BinaryOperator.IFF),
-    difference=partial(Binary, BinaryOperator.XOR),
+    equivalence=partial(ltl.Binary, ltl.BinaryOperator.IFF),
+    difference=partial(ltl.Binary, ltl.BinaryOperator.XOR),
     operation=_operation,
 )

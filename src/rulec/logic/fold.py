@@ -15,19 +15,8 @@ from functools import partial
 from operator import and_, or_, xor
 from typing import Generic, TypeAlias, TypeVar
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import Range, range_of
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Constant,
-    Formula,
-    Proposition,
-    Same,
-    Unary,
-    UnaryOperator,
-)
 
 Value = TypeVar("Value")
 
@@ -43,7 +32,7 @@ class Algebra(Generic[Value]):
     which is given the operation and the fold of its operands, none may have a temporal operator.
     """
 
-    proposition: Callable[[Proposition], Value]
+    proposition: Callable[[ltl.Proposition], Value]
     constant: Callable[[bool], Value]
     negation: Callable[[Value], Value]
     conjunction: Join[Value]
@@ -51,12 +40,16 @@ class Algebra(Generic[Value]):
     equivalence: Join[Value]
     implication: Join[Value] | None = None
     difference: Join[Value] | None = None
-    identity: Callable[[Same], Value] | None = None
-    operation: Callable[[Unary | Binary, Callable[[Formula], Value]], Value] | None = None
+    identity: Callable[[ltl.Same], Value] | None = None
+    operation: Callable[[ltl.Unary | ltl.Binary, Callable[[ltl.Formula], Value]], Value] | None = (
+        None
+    )
 
 
 def fold(
-    formula: Formula, algebra: Algebra[Value], known: MutableMapping[Formula, Value] | None = None
+    formula: ltl.Formula,
+    algebra: Algebra[Value],
+    known: MutableMapping[ltl.Formula, Value] | None = None,
 ) -> Value:
     """The formula's value in an algebra.
 
@@ -76,23 +69,23 @@ def fold(
 
 
 def _value(
-    formula: Formula, algebra: Algebra[Value], known: MutableMapping[Formula, Value] | None
+    formula: ltl.Formula, algebra: Algebra[Value], known: MutableMapping[ltl.Formula, Value] | None
 ) -> Value:
     match formula:
-        case Atom() | Comparison():
+        case ltl.Atom() | ltl.Comparison():
             return algebra.proposition(formula)
-        case Same():
+        case ltl.Same():
             if algebra.identity is None:
                 raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
             return algebra.identity(formula)
-        case Constant(value):
+        case ltl.Constant(value):
             return algebra.constant(value)
-        case Unary(UnaryOperator.NOT, operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return algebra.negation(fold(operand, algebra, known))
-        case Binary(operator, left, right) if operator in _CONNECTIVES:
+        case ltl.Binary(operator, left, right) if operator in _CONNECTIVES:
             first, second = fold(left, algebra, known), fold(right, algebra, known)
             return _joined(operator, first, second, algebra)
-        case Unary() | Binary():
+        case ltl.Unary() | ltl.Binary():
             if algebra.operation is None:
                 raise TypeError("this formula does not speak of one state alone")
             return algebra.operation(formula, partial(fold, algebra=algebra, known=known))
@@ -100,24 +93,26 @@ def _value(
 
 _CONNECTIVES = frozenset(
     {
-        BinaryOperator.AND,
-        BinaryOperator.OR,
-        BinaryOperator.IMPLIES,
-        BinaryOperator.IFF,
-        BinaryOperator.XOR,
+        ltl.BinaryOperator.AND,
+        ltl.BinaryOperator.OR,
+        ltl.BinaryOperator.IMPLIES,
+        ltl.BinaryOperator.IFF,
+        ltl.BinaryOperator.XOR,
     }
 )
 
 
-def _joined(operator: BinaryOperator, left: Value, right: Value, algebra: Algebra[Value]) -> Value:
+def _joined(
+    operator: ltl.BinaryOperator, left: Value, right: Value, algebra: Algebra[Value]
+) -> Value:
     match operator:
-        case BinaryOperator.AND:
+        case ltl.BinaryOperator.AND:
             return algebra.conjunction(left, right)
-        case BinaryOperator.OR:
+        case ltl.BinaryOperator.OR:
             return algebra.disjunction(left, right)
-        case BinaryOperator.IFF:
+        case ltl.BinaryOperator.IFF:
             return algebra.equivalence(left, right)
-        case BinaryOperator.IMPLIES:
+        case ltl.BinaryOperator.IMPLIES:
             if algebra.implication is None:
                 return algebra.disjunction(algebra.negation(left), right)
             return algebra.implication(left, right)
@@ -127,7 +122,7 @@ def _joined(operator: BinaryOperator, left: Value, right: Value, algebra: Algebr
             return algebra.difference(left, right)
 
 
-def bit_sets(sets: Mapping[Proposition, int], everything: int) -> Algebra[int]:
+def bit_sets(sets: Mapping[ltl.Proposition, int], everything: int) -> Algebra[int]:
     """The algebra of sets as bits of integers.
 
     ``sets`` has one for each proposition, and ``everything`` is the set of all.
@@ -154,7 +149,7 @@ def temporal_operation(
     release: WordJoin[Value],
     weak_until: Callable[[Value, Value, Range], Value],
     strong_release: Callable[[Value, Value, Range], Value],
-) -> Callable[[Unary | Binary, Callable[[Formula], Value]], Value]:
+) -> Callable[[ltl.Unary | ltl.Binary, Callable[[ltl.Formula], Value]], Value]:
     """The temporal operators of the future, derived from four of them.
 
     They are the operation of an algebra of words without a past.
@@ -163,22 +158,24 @@ def temporal_operation(
     in steps. The operation raises ValueError for an operator of the past.
     """
 
-    def operation(formula: Unary | Binary, value_of: Callable[[Formula], Value]) -> Value:
+    def operation(
+        formula: ltl.Unary | ltl.Binary, value_of: Callable[[ltl.Formula], Value]
+    ) -> Value:
         span = range_of(formula)
         match formula:
-            case Unary(UnaryOperator.NEXT | UnaryOperator.EVENTUALLY, operand):
+            case ltl.Unary(ltl.UnaryOperator.NEXT | ltl.UnaryOperator.EVENTUALLY, operand):
                 return until(None, value_of(operand), span)
-            case Unary(UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS, operand):
+            case ltl.Unary(ltl.UnaryOperator.WEAK_NEXT | ltl.UnaryOperator.ALWAYS, operand):
                 return release(None, value_of(operand), span)
-            case Unary(UnaryOperator.NEVER, operand):
+            case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
                 return release(None, negation(value_of(operand)), span)
-            case Binary(BinaryOperator.UNTIL | BinaryOperator.THEN, left, right):
+            case ltl.Binary(ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN, left, right):
                 return until(value_of(left), value_of(right), span)
-            case Binary(BinaryOperator.RELEASE, left, right):
+            case ltl.Binary(ltl.BinaryOperator.RELEASE, left, right):
                 return release(value_of(left), value_of(right), span)
-            case Binary(BinaryOperator.WEAK_UNTIL, left, right):
+            case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right):
                 return weak_until(value_of(left), value_of(right), span)
-            case Binary(BinaryOperator.STRONG_RELEASE, left, right):
+            case ltl.Binary(ltl.BinaryOperator.STRONG_RELEASE, left, right):
                 return strong_release(value_of(left), value_of(right), span)
         raise ValueError(f"`{formula.operator.value}` is an operator of the past")
 

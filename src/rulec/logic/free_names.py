@@ -4,55 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Same,
-    Term,
-    Unary,
-)
+from rulec.logic import formula as ltl
 
 
-def variables_of(what: Formula | Term) -> Iterator[str]:
+def variables_of(what: ltl.Formula | ltl.Term) -> Iterator[str]:
     """The free variables from left to right, with repetitions."""
     match what:
-        case Atom(_, arguments) | QuantityTerm(_, arguments):
+        case ltl.Atom(_, arguments) | ltl.QuantityTerm(_, arguments):
             yield from arguments
-        case Same(left, right):
+        case ltl.Same(left, right):
             yield from (left, right)
-        case Count(variable, _, body):
+        case ltl.Count(variable, _, body):
             yield from (name for name in variables_of(body) if name != variable)
-        case Comparison(terms):
+        case ltl.Comparison(terms):
             for _, term in terms:
                 yield from variables_of(term)
-        case Unary(_, operand):
+        case ltl.Unary(_, operand):
             yield from variables_of(operand)
-        case Binary(_, left, right):
+        case ltl.Binary(_, left, right):
             yield from variables_of(left)
             yield from variables_of(right)
-        case Constant():
+        case ltl.Constant():
             return
 
 
-def names_in(what: Formula | Term) -> Iterator[str]:
+def names_in(what: ltl.Formula | ltl.Term) -> Iterator[str]:
     """The declarations that are read, from left to right, with repetitions."""
     match what:
-        case Atom(name) | QuantityTerm(name):
+        case ltl.Atom(name) | ltl.QuantityTerm(name):
             yield name
-        case Count(_, _, body):
+        case ltl.Count(_, _, body):
             yield from names_in(body)
-        case Comparison(terms):
+        case ltl.Comparison(terms):
             for _, term in terms:
                 yield from names_in(term)
-        case Unary(_, operand):
+        case ltl.Unary(_, operand):
             yield from names_in(operand)
-        case Binary(_, left, right):
+        case ltl.Binary(_, left, right):
             yield from names_in(left)
             yield from names_in(right)
-        case Constant() | Same():
+        case ltl.Constant() | ltl.Same():
             return

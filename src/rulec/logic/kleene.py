@@ -12,18 +12,8 @@ from fractions import Fraction
 from functools import lru_cache, partial
 from typing import Protocol, TypeAlias
 
+from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Count,
-    Formula,
-    Proposition,
-    QuantityTerm,
-    Same,
-    Term,
-)
 from rulec.logic.linear_comparison import stands
 from rulec.vocabulary import Vocabulary
 
@@ -64,7 +54,7 @@ _Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
 
 
 def weighted_sum(
-    terms: Sequence[tuple[Fraction, Term]], binding: ObjectBinding, state: PartialState
+    terms: Sequence[tuple[Fraction, ltl.Term]], binding: ObjectBinding, state: PartialState
 ) -> Fraction | Unknown:
     """The sum of coefficient times term: exact."""
     weighted_sum = Fraction(0)
@@ -76,18 +66,18 @@ def weighted_sum(
     return weighted_sum
 
 
-def number_of(term: Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
+def number_of(term: ltl.Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
     """A quantity's value, or the number of objects that count."""
     match term:
-        case QuantityTerm(name, arguments):
+        case ltl.QuantityTerm(name, arguments):
             return state.number(name, tuple([binding[variable] for variable in arguments]))
-        case Count():
+        case ltl.Count():
             objects = objects_counted(term, binding, state)
             return objects if isinstance(objects, Unknown) else Fraction(len(objects))
 
 
 def objects_counted(
-    count: Count, binding: ObjectBinding, state: PartialState
+    count: ltl.Count, binding: ObjectBinding, state: PartialState
 ) -> tuple[str, ...] | Unknown:
     """The objects that count."""
     result = []
@@ -110,17 +100,17 @@ def objects_counted(
     return tuple(result)
 
 
-def _alias_of(variable: str, formula: Formula) -> str | None:
+def _alias_of(variable: str, formula: ltl.Formula) -> str | None:
     """Another variable for the same object wherever the formula holds, or None."""
     match formula:
-        case Same(left, right) if variable in (left, right) and left != right:
+        case ltl.Same(left, right) if variable in (left, right) and left != right:
             return right if left == variable else left
-        case Binary(BinaryOperator.AND, left, right):
+        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
             return _alias_of(variable, left) or _alias_of(variable, right)
     return None
 
 
-def holds(formula: Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
+def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
     """The value of a formula in a state, perhaps ``Unknown``.
 
     Raises TypeError if it has a temporal operator.
@@ -129,7 +119,7 @@ def holds(formula: Formula, binding: ObjectBinding, state: PartialState) -> bool
 
 
 @lru_cache(maxsize=_MOST)
-def _evaluator_of(formula: Formula) -> _Evaluator:
+def _evaluator_of(formula: ltl.Formula) -> _Evaluator:
     """The formula as a function of binding and state.
 
     It is cached because it is asked of every object in every state.
@@ -137,8 +127,8 @@ def _evaluator_of(formula: Formula) -> _Evaluator:
     return fold(formula, _KLEENE)
 
 
-def _proposition(proposition: Proposition) -> _Evaluator:
-    if isinstance(proposition, Comparison):
+def _proposition(proposition: ltl.Proposition) -> _Evaluator:
+    if isinstance(proposition, ltl.Comparison):
         return _comparison(proposition)
     return _atom(proposition.name, proposition.arguments, proposition.value or True)
 
@@ -162,7 +152,7 @@ def _atom_of_one(name: str, argument: str, expected: bool | str) -> _Evaluator:
     return evaluate
 
 
-def _comparison(comparison: Comparison) -> _Evaluator:
+def _comparison(comparison: ltl.Comparison) -> _Evaluator:
     terms, relation, limit = comparison.terms, comparison.relation, comparison.limit
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
@@ -190,7 +180,7 @@ def _constant(value: bool) -> _Evaluator:
     return lambda _, __: value
 
 
-def _identity(same: Same) -> _Evaluator:
+def _identity(same: ltl.Same) -> _Evaluator:
     left, right = same.left, same.right
     return lambda binding, _: binding[left] == binding[right]
 

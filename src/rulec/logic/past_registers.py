@@ -12,21 +12,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, Range, range_of
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Constant,
-    Formula,
-    Same,
-    Unary,
-    UnaryOperator,
-    atoms_of,
-)
 
-NOT, AND, OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+NOT, AND, OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +28,9 @@ class Register:
     0 has bits without end.
     """
 
-    atom: Atom
-    left: Formula
-    right: Formula
+    atom: ltl.Atom
+    left: ltl.Formula
+    right: ltl.Formula
     span: Range
 
     at_first = 0
@@ -69,8 +58,8 @@ class Memory:
     too. The future has a say in it.
     """
 
-    atom: Atom
-    formula: Formula
+    atom: ltl.Atom
+    formula: ltl.Formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +70,12 @@ class WithoutPast:
     to; with them ``present`` holds at the first instant if the original formula does.
     """
 
-    present: Formula
+    present: ltl.Formula
     registers: tuple[Register, ...]
     memories: tuple[Memory, ...]
 
 
-def eliminate_past(formula: Formula) -> WithoutPast:
+def eliminate_past(formula: ltl.Formula) -> WithoutPast:
     """Eliminate operators of the past from a formula.
 
     Its bounds are in steps. Raises ValueError if not.
@@ -95,13 +84,13 @@ def eliminate_past(formula: Formula) -> WithoutPast:
     present = _present(formula, result)
     fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
     needed: list[Register | Memory] = []
-    spoken_of = set(atoms_of(present))
+    spoken_of = set(ltl.atoms_of(present))
     # None of them speaks of a later one.
     for one in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
         if one.atom in spoken_of:
             needed.insert(0, one)
             for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):
-                spoken_of.update(atoms_of(part))
+                spoken_of.update(ltl.atoms_of(part))
     return WithoutPast(
         present,
         tuple(register for register in needed if isinstance(register, Register)),
@@ -109,60 +98,64 @@ def eliminate_past(formula: Formula) -> WithoutPast:
     )
 
 
-def definition(memory: Memory) -> Formula:
+def definition(memory: Memory) -> ltl.Formula:
     """The defining formula of a memory.
 
     It is false at the first instant, then what the formula was an instant before.
     """
-    first = Unary(NOT, memory.atom)
-    then = Unary(UnaryOperator.WEAK_NEXT, memory.atom)
-    then_not = Unary(UnaryOperator.WEAK_NEXT, first)
-    was = Binary(BinaryOperator.IMPLIES, memory.formula, then)
-    was_not = Binary(OR, memory.formula, then_not)
-    return Binary(AND, first, Unary(UnaryOperator.ALWAYS, Binary(AND, was, was_not)))
+    first = ltl.Unary(NOT, memory.atom)
+    then = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, memory.atom)
+    then_not = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, first)
+    was = ltl.Binary(ltl.BinaryOperator.IMPLIES, memory.formula, then)
+    was_not = ltl.Binary(OR, memory.formula, then_not)
+    return ltl.Binary(
+        AND, first, ltl.Unary(ltl.UnaryOperator.ALWAYS, ltl.Binary(AND, was, was_not))
+    )
 
 
 @dataclass(slots=True)
 class _Found:
     """The registers and memories of a formula so far, by content."""
 
-    registers: dict[tuple[Formula, Formula, Range], Register] = field(default_factory=dict)
-    memories: dict[Formula, Memory] = field(default_factory=dict)
-    sinces: dict[tuple[Formula, Formula, Range], Formula] = field(default_factory=dict)
-    order: dict[Formula, int] = field(default_factory=dict)
+    registers: dict[tuple[ltl.Formula, ltl.Formula, Range], Register] = field(default_factory=dict)
+    memories: dict[ltl.Formula, Memory] = field(default_factory=dict)
+    sinces: dict[tuple[ltl.Formula, ltl.Formula, Range], ltl.Formula] = field(default_factory=dict)
+    order: dict[ltl.Formula, int] = field(default_factory=dict)
 
-    def fresh(self, kind: str) -> Atom:
+    def fresh(self, kind: str) -> ltl.Atom:
         # No atom of a rulebook has a space there.
-        atom = Atom(f"{kind} {len(self.order)}")
+        atom = ltl.Atom(f"{kind} {len(self.order)}")
         self.order[atom] = len(self.order)
         return atom
 
-    def is_settled(self, formula: Formula) -> bool:
+    def is_settled(self, formula: ltl.Formula) -> bool:
         """True if the word up to an instant decides the formula."""
         unsettled = {memory.atom for memory in self.memories.values()}
-        return _is_present(formula) and unsettled.isdisjoint(atoms_of(formula))
+        return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 
 
-def _present(formula: Formula, _found: _Found) -> Formula:
+def _present(formula: ltl.Formula, _found: _Found) -> ltl.Formula:
     match formula:
-        case Atom() | Comparison() | Same() | Constant():
+        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return formula
-        case Unary(operator, operand, bound):
+        case ltl.Unary(operator, operand, bound):
             inner = _present(operand, _found)
             if operator not in PAST:
-                return Unary(operator, inner, bound)
+                return ltl.Unary(operator, inner, bound)
             span = range_of(formula)
-            if operator in (UnaryOperator.WEAK_PREVIOUSLY, UnaryOperator.HISTORICALLY):
-                return Unary(NOT, _since(Constant(True), Unary(NOT, inner), span, _found))
-            return _since(Constant(True), inner, span, _found)
-        case Binary(operator, left, right, bound):
+            if operator in (ltl.UnaryOperator.WEAK_PREVIOUSLY, ltl.UnaryOperator.HISTORICALLY):
+                return ltl.Unary(
+                    NOT, _since(ltl.Constant(True), ltl.Unary(NOT, inner), span, _found)
+                )
+            return _since(ltl.Constant(True), inner, span, _found)
+        case ltl.Binary(operator, left, right, bound):
             first, second = _present(left, _found), _present(right, _found)
             if operator not in PAST:
-                return Binary(operator, first, second, bound)
+                return ltl.Binary(operator, first, second, bound)
             return _since(first, second, range_of(formula), _found)
 
 
-def _since(left: Formula, right: Formula, span: Range, _found: _Found) -> Formula:
+def _since(left: ltl.Formula, right: ltl.Formula, span: Range, _found: _Found) -> ltl.Formula:
     if _found.is_settled(left) and _found.is_settled(right):
         # The same operator on the same operands needs no second register.
         key = (left, right, span)
@@ -172,7 +165,7 @@ def _since(left: Formula, right: Formula, span: Range, _found: _Found) -> Formul
     return _unfolded(left, right, span, _found)
 
 
-def _unfolded(left: Formula, right: Formula, span: Range, _found: _Found) -> Formula:
+def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, _found: _Found) -> ltl.Formula:
     """``left since right`` in terms of the present and one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
@@ -184,32 +177,32 @@ def _unfolded(left: Formula, right: Formula, span: Range, _found: _Found) -> For
     low, high = span
     if high is None:
         before = _found.fresh("memory")
-        now: Formula = Binary(OR, right, Binary(AND, left, before))
+        now: ltl.Formula = ltl.Binary(OR, right, ltl.Binary(AND, left, before))
         _found.memories[now] = Memory(before, now)
     else:
         now = right
         for _ in range(high - low):
-            now = Binary(OR, right, Binary(AND, left, _one_ago(now, _found)))
+            now = ltl.Binary(OR, right, ltl.Binary(AND, left, _one_ago(now, _found)))
     for _ in range(low):
-        now = Binary(AND, left, _one_ago(now, _found))
+        now = ltl.Binary(AND, left, _one_ago(now, _found))
     _found.sinces[key] = now
     return now
 
 
-def _one_ago(formula: Formula, _found: _Found) -> Formula:
+def _one_ago(formula: ltl.Formula, _found: _Found) -> ltl.Formula:
     if _found.is_settled(formula):
-        return _since(Constant(True), formula, Range(1, 1), _found)
+        return _since(ltl.Constant(True), formula, Range(1, 1), _found)
     if formula not in _found.memories:
         _found.memories[formula] = Memory(_found.fresh("memory"), formula)
     return _found.memories[formula].atom
 
 
-def _is_present(formula: Formula) -> bool:
+def _is_present(formula: ltl.Formula) -> bool:
     """True if the formula speaks of the present alone."""
     match formula:
-        case Atom() | Comparison() | Same() | Constant():
+        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return True
-        case Unary(operator, operand):
+        case ltl.Unary(operator, operand):
             return operator in BOOLEAN and _is_present(operand)
-        case Binary(between, left, right):
+        case ltl.Binary(between, left, right):
             return between in BOOLEAN and _is_present(left) and _is_present(right)

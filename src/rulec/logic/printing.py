@@ -4,68 +4,54 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import DISTANCE
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Bound,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Same,
-    Term,
-    Unary,
-    UnaryOperator,
-)
 
 # As in the grammar: a larger number binds tighter.
 _BINDING = {
-    BinaryOperator.IFF: 1,
-    BinaryOperator.IMPLIES: 2,
-    BinaryOperator.THEN: 3,
-    BinaryOperator.XOR: 4,
-    BinaryOperator.OR: 5,
-    BinaryOperator.AND: 6,
-    BinaryOperator.UNTIL: 7,
-    BinaryOperator.RELEASE: 7,
-    BinaryOperator.WEAK_UNTIL: 7,
-    BinaryOperator.STRONG_RELEASE: 7,
-    BinaryOperator.SINCE: 7,
+    ltl.BinaryOperator.IFF: 1,
+    ltl.BinaryOperator.IMPLIES: 2,
+    ltl.BinaryOperator.THEN: 3,
+    ltl.BinaryOperator.XOR: 4,
+    ltl.BinaryOperator.OR: 5,
+    ltl.BinaryOperator.AND: 6,
+    ltl.BinaryOperator.UNTIL: 7,
+    ltl.BinaryOperator.RELEASE: 7,
+    ltl.BinaryOperator.WEAK_UNTIL: 7,
+    ltl.BinaryOperator.STRONG_RELEASE: 7,
+    ltl.BinaryOperator.SINCE: 7,
 }
 
 
-def formula_text(formula: Formula) -> str:
+def formula_text(formula: ltl.Formula) -> str:
     """The formula in a rulebook's notation, with the fewest readable parentheses."""
     match formula:
-        case Atom() | Comparison() | Same():
+        case ltl.Atom() | ltl.Comparison() | ltl.Same():
             # A comparison binds tighter than any operator on formulas.
             return str(formula)
-        case Constant(value):
+        case ltl.Constant(value):
             return "true" if value else "false"
-        case Unary(operator, operand, bound):
+        case ltl.Unary(operator, operand, bound):
             inner = formula_text(operand)
             said = _operator(operator, bound)
-            return f"{said} {f'({inner})' if isinstance(operand, Binary) else inner}"
-        case Binary(operator, left, right, bound):
+            return f"{said} {f'({inner})' if isinstance(operand, ltl.Binary) else inner}"
+        case ltl.Binary(operator, left, right, bound):
             # Printed as it is read: chains of `and` and `or` to the left, phases to the right.
-            to_the_left = operator in (BinaryOperator.AND, BinaryOperator.OR)
+            to_the_left = operator in (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
             first = _side(operator, left, chain=to_the_left)
-            second = _side(operator, right, chain=operator is BinaryOperator.THEN)
+            second = _side(operator, right, chain=operator is ltl.BinaryOperator.THEN)
             return f"{first} {_operator(operator, bound)} {second}"
 
 
-def _side(operator: BinaryOperator, formula: Formula, *, chain: bool) -> str:
+def _side(operator: ltl.BinaryOperator, formula: ltl.Formula, *, chain: bool) -> str:
     text = formula_text(formula)
-    if not isinstance(formula, Binary):
+    if not isinstance(formula, ltl.Binary):
         return text
     tighter = _BINDING[formula.operator] > _BINDING[operator]
     return text if tighter or (chain and formula.operator is operator) else f"({text})"
 
 
-def _operator(operator: UnaryOperator | BinaryOperator, bound: Bound | None) -> str:
+def _operator(operator: ltl.UnaryOperator | ltl.BinaryOperator, bound: ltl.Bound | None) -> str:
     if bound is None:
         return str(operator.value)
     if operator in DISTANCE:
@@ -73,7 +59,7 @@ def _operator(operator: UnaryOperator | BinaryOperator, bound: Bound | None) -> 
     return f"{operator.value}[{_span(bound)}]"
 
 
-def _span(bound: Bound) -> str:
+def _span(bound: ltl.Bound) -> str:
     low = time_in_words(bound.low, bound.unit)
     if bound.high is None:
         return f">= {low}"
@@ -108,10 +94,10 @@ def number_in_words(number: Fraction) -> str:
     return f"-{digits}" if number < 0 else digits
 
 
-def term_text(term: Term) -> str:
+def term_text(term: ltl.Term) -> str:
     """``gap(v)``, ``count v: vehicle (behind(v))``: the text that terms are sorted by."""
     match term:
-        case QuantityTerm(name, arguments):
+        case ltl.QuantityTerm(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
-        case Count(variable, type_name, body):
+        case ltl.Count(variable, type_name, body):
             return f"count {variable}: {type_name} ({formula_text(body)})"

@@ -6,22 +6,11 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Same,
-    Term,
-    Unary,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
 
 
-def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
+def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:
     """Rename all free variables of a formula at once.
 
     Those not in ``names`` stay.
@@ -29,9 +18,9 @@ def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
     Different variables keep different names, and no count inside has a new name for its variable.
     """
     match formula:
-        case Atom():
+        case ltl.Atom():
             return replace(formula, arguments=_each(formula.arguments, names))
-        case Comparison(terms, relation, limit, text):
+        case ltl.Comparison(terms, relation, limit, text):
             # Other names may come in another order.
             return comparison(
                 {_term(term, names): factor for factor, term in terms},
@@ -39,13 +28,13 @@ def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
                 limit,
                 _ARGUMENT.sub(lambda found: found[1] + names.get(found[2], found[2]), text),
             )
-        case Same(left, right):
-            return Same(*_each((left, right), names))
-        case Constant():
+        case ltl.Same(left, right):
+            return ltl.Same(*_each((left, right), names))
+        case ltl.Constant():
             return formula
-        case Unary(_, operand):
+        case ltl.Unary(_, operand):
             return replace(formula, operand=rename_variables(operand, names))
-        case Binary(_, left, right):
+        case ltl.Binary(_, left, right):
             return replace(
                 formula, left=rename_variables(left, names), right=rename_variables(right, names)
             )
@@ -54,13 +43,13 @@ def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
 _ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
 
 
-def _term(term: Term, names: Mapping[str, str]) -> Term:
+def _term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
     match term:
-        case QuantityTerm(name, arguments):
-            return QuantityTerm(name, _each(arguments, names))
-        case Count(variable, kind, body):
+        case ltl.QuantityTerm(name, arguments):
+            return ltl.QuantityTerm(name, _each(arguments, names))
+        case ltl.Count(variable, kind, body):
             free = {old: new for old, new in names.items() if old != variable}
-            return Count(variable, kind, rename_variables(body, free))
+            return ltl.Count(variable, kind, rename_variables(body, free))
 
 
 def _each(arguments: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:

@@ -14,28 +14,17 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 from typing import Literal
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, Range, range_of
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Constant,
-    Formula,
-    Proposition,
-    Same,
-    Unary,
-    UnaryOperator,
-)
 
 Semantics = Literal["stutter", "finite"]
 """How a word ends: its last letter goes on for ever, or nothing comes after it."""
 
-Letter = Set[Proposition]
+Letter = Set[ltl.Proposition]
 """The atoms and comparisons that are true at one instant; all others are false."""
 
 
-def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
+def holds(formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
     """True if ``formula`` holds for ``word`` at its first instant.
 
     Its bounds are in steps. ValueError for an empty word, or for a bound in seconds.
@@ -44,7 +33,7 @@ def holds(formula: Formula, word: Sequence[Letter], semantics: Semantics = "stut
 
 
 def truth_values(
-    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
+    formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
     """The formula's truth value at each of the word's instants.
 
@@ -55,8 +44,8 @@ def truth_values(
 
 
 def values_of_parts(
-    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
-) -> dict[Formula, list[bool]]:
+    formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
+) -> dict[ltl.Formula, list[bool]]:
     """Truth values of the formula and of every part.
 
     Raises ValueError as ``holds`` does.
@@ -66,8 +55,8 @@ def values_of_parts(
 
 
 def extended_values(
-    formula: Formula, word: Sequence[Letter], semantics: Semantics
-) -> dict[Formula, list[bool]]:
+    formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics
+) -> dict[ltl.Formula, list[bool]]:
     """Truth values of all parts, extended beyond the word until they settle.
 
     Operands come before what they are operands of.
@@ -76,12 +65,12 @@ def extended_values(
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"
     settling = [] if ends else [word[-1]] * steps_to_settle(formula)
-    known: dict[Formula, list[bool]] = {}
+    known: dict[ltl.Formula, list[bool]] = {}
     _evaluate(formula, [*word, *settling], ends, known)
     return known
 
 
-def steps_to_settle(formula: Formula) -> int:
+def steps_to_settle(formula: ltl.Formula) -> int:
     """The longest time until values settle under a repeated last letter.
 
     Only the past carries a change on to later instants: where its operands are the same for ever
@@ -89,13 +78,13 @@ def steps_to_settle(formula: Formula) -> int:
     that has no end, once they are in reach. The future is the same for ever where its operands are.
     """
     match formula:
-        case Unary(operator, operand):
+        case ltl.Unary(operator, operand):
             carried = _carried(range_of(formula)) if operator in PAST else 0
             return carried + steps_to_settle(operand)
-        case Binary(operator, left, right):
+        case ltl.Binary(operator, left, right):
             carried = _carried(range_of(formula)) if operator in PAST else 0
             return carried + max(steps_to_settle(left), steps_to_settle(right))
-        case Atom() | Comparison() | Constant() | Same():
+        case ltl.Atom() | ltl.Comparison() | ltl.Constant() | ltl.Same():
             return 0
 
 
@@ -104,7 +93,7 @@ def _carried(span: Range) -> int:
 
 
 def _evaluate(
-    formula: Formula, word: Sequence[Letter], ends: bool, known: dict[Formula, list[bool]]
+    formula: ltl.Formula, word: Sequence[Letter], ends: bool, known: dict[ltl.Formula, list[bool]]
 ) -> list[bool]:
     """Truth values on a word that ends, or repeats its last letter.
 
@@ -114,16 +103,16 @@ def _evaluate(
     if result is not None:
         return result
     match formula:
-        case Atom() | Comparison():
+        case ltl.Atom() | ltl.Comparison():
             values = [formula in letter for letter in word]
-        case Same():
+        case ltl.Same():
             raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
-        case Constant(value):
+        case ltl.Constant(value):
             values = [value] * len(word)
-        case Unary(operator, operand):
+        case ltl.Unary(operator, operand):
             inner = _evaluate(operand, word, ends, known)
             values = _unary(operator, inner, range_of(formula), ends)
-        case Binary(operator, left, right):
+        case ltl.Binary(operator, left, right):
             first = _evaluate(left, word, ends, known)
             second = _evaluate(right, word, ends, known)
             values = _binary(operator, first, second, range_of(formula), ends)
@@ -131,47 +120,47 @@ def _evaluate(
     return values
 
 
-def _unary(operator: UnaryOperator, values: list[bool], span: Range, ends: bool) -> list[bool]:
+def _unary(operator: ltl.UnaryOperator, values: list[bool], span: Range, ends: bool) -> list[bool]:
     true = [True] * len(values)
     match operator:
-        case UnaryOperator.NOT:
+        case ltl.UnaryOperator.NOT:
             return _not(values)
-        case UnaryOperator.NEXT | UnaryOperator.EVENTUALLY:
+        case ltl.UnaryOperator.NEXT | ltl.UnaryOperator.EVENTUALLY:
             return _until(true, values, span, ends)
-        case UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS:
+        case ltl.UnaryOperator.WEAK_NEXT | ltl.UnaryOperator.ALWAYS:
             return _not(_until(true, _not(values), span, ends))
-        case UnaryOperator.NEVER:
+        case ltl.UnaryOperator.NEVER:
             return _not(_until(true, values, span, ends))
-        case UnaryOperator.PREVIOUSLY | UnaryOperator.ONCE:
+        case ltl.UnaryOperator.PREVIOUSLY | ltl.UnaryOperator.ONCE:
             return _since(true, values, span)
-        case UnaryOperator.WEAK_PREVIOUSLY | UnaryOperator.HISTORICALLY:
+        case ltl.UnaryOperator.WEAK_PREVIOUSLY | ltl.UnaryOperator.HISTORICALLY:
             return _not(_since(true, _not(values), span))
 
 
 def _binary(
-    operator: BinaryOperator, left: list[bool], right: list[bool], span: Range, ends: bool
+    operator: ltl.BinaryOperator, left: list[bool], right: list[bool], span: Range, ends: bool
 ) -> list[bool]:
     pairs = zip(left, right, strict=True)
     match operator:
-        case BinaryOperator.AND:
+        case ltl.BinaryOperator.AND:
             return [a and b for a, b in pairs]
-        case BinaryOperator.OR:
+        case ltl.BinaryOperator.OR:
             return [a or b for a, b in pairs]
-        case BinaryOperator.IMPLIES:
+        case ltl.BinaryOperator.IMPLIES:
             return [not a or b for a, b in pairs]
-        case BinaryOperator.IFF:
+        case ltl.BinaryOperator.IFF:
             return [a == b for a, b in pairs]
-        case BinaryOperator.XOR:
+        case ltl.BinaryOperator.XOR:
             return [a != b for a, b in pairs]
-        case BinaryOperator.UNTIL | BinaryOperator.THEN:
+        case ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN:
             return _until(left, right, span, ends)
-        case BinaryOperator.WEAK_UNTIL:
+        case ltl.BinaryOperator.WEAK_UNTIL:
             return _weak_until(left, right, span, ends)
-        case BinaryOperator.RELEASE:
+        case ltl.BinaryOperator.RELEASE:
             return _not(_until(_not(left), _not(right), span, ends))
-        case BinaryOperator.STRONG_RELEASE:
+        case ltl.BinaryOperator.STRONG_RELEASE:
             return _not(_weak_until(_not(left), _not(right), span, ends))
-        case BinaryOperator.SINCE:
+        case ltl.BinaryOperator.SINCE:
             return _since(left, right, span)
 
 

@@ -11,18 +11,8 @@ from itertools import product
 
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of, reads_of
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
+from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Same,
-    Term,
-    Unary,
-)
 from rulec.logic.free_names import variables_of
 from rulec.logic.renaming import rename_variables
 from rulec.vocabulary import Vocabulary
@@ -67,13 +57,13 @@ def monitor_function(
     return LetterFunction(tuple(reads), machine.letters)
 
 
-def _renamed_term(term: Term, names: Mapping[str, str]) -> Term:
-    if isinstance(term, QuantityTerm):
-        return QuantityTerm(term.name, tuple(names[argument] for argument in term.arguments))
-    return Count(term.variable, term.type, rename_variables(term.body, names))
+def _renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
+    if isinstance(term, ltl.QuantityTerm):
+        return ltl.QuantityTerm(term.name, tuple(names[argument] for argument in term.arguments))
+    return ltl.Count(term.variable, term.type, rename_variables(term.body, names))
 
 
-def axiom_function(formula: Formula, vocabulary: Vocabulary) -> LetterFunction:
+def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFunction:
     """Letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
     return LetterFunction(
@@ -88,7 +78,7 @@ class CountFunction:
     Its class also tells apart all else that the count depends on, besides further objects.
     """
 
-    count: Count
+    count: ltl.Count
     function: LetterFunction
     counted: tuple[int, ...]
 
@@ -97,7 +87,7 @@ class CountFunction:
         return self.counted[self.function.value(digits)]
 
 
-def count_function(count: Count, universe: ObjectUniverse) -> CountFunction:
+def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
     """A count as a function of what it reads of its universe.
 
     Raises UndecidedError for a count in which others stand.
@@ -130,14 +120,14 @@ def count_function(count: Count, universe: ObjectUniverse) -> CountFunction:
     )
 
 
-def counts_read(reads: Iterable[Read | NumberRead]) -> list[Count]:
+def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
     """The counts in the sums that are read, each once."""
     sums = [read for read in reads if isinstance(read, NumberRead)]
     terms = dict.fromkeys(term for read in sums for _, term in read.terms)
-    return [term for term in terms if isinstance(term, Count)]
+    return [term for term in terms if isinstance(term, ltl.Count)]
 
 
-def body_of(count: Count, name: str) -> Formula:
+def body_of(count: ltl.Count, name: str) -> ltl.Formula:
     """Condition that an object must satisfy to be counted."""
     return _settled(rename_variables(count.body, {count.variable: name}))
 
@@ -153,27 +143,27 @@ def _key(read: Read | NumberRead) -> object:
     return read.terms if isinstance(read, NumberRead) else (read.name, read.variables)
 
 
-def _all_of(formulas: Sequence[Formula]) -> Formula:
-    whole: Formula = Constant(True)
+def _all_of(formulas: Sequence[ltl.Formula]) -> ltl.Formula:
+    whole: ltl.Formula = ltl.Constant(True)
     for formula in formulas:
-        whole = Binary(BinaryOperator.AND, whole, formula)
+        whole = ltl.Binary(ltl.BinaryOperator.AND, whole, formula)
     return whole
 
 
-def _settled(formula: Formula) -> Formula:
+def _settled(formula: ltl.Formula) -> ltl.Formula:
     """Replace each equality of two names by its truth value."""
     match formula:
-        case Same(left, right):
-            return Constant(left == right)
-        case Unary(operator, operand, bound):
-            return Unary(operator, _settled(operand), bound)
-        case Binary(operator, left, right, bound):
-            return Binary(operator, _settled(left), _settled(right), bound)
+        case ltl.Same(left, right):
+            return ltl.Constant(left == right)
+        case ltl.Unary(operator, operand, bound):
+            return ltl.Unary(operator, _settled(operand), bound)
+        case ltl.Binary(operator, left, right, bound):
+            return ltl.Binary(operator, _settled(left), _settled(right), bound)
     return formula
 
 
 def truths_of(
-    formulas: Sequence[Formula], vocabulary: Vocabulary
+    formulas: Sequence[ltl.Formula], vocabulary: Vocabulary
 ) -> tuple[tuple[Read | NumberRead, ...], list[int]]:
     """Joint reads of non-temporal formulas, and the letters that satisfy each.
 
@@ -183,7 +173,7 @@ def truths_of(
     return reads, _truths(formulas, reads)
 
 
-def _truths(formulas: Sequence[Formula], reads: tuple[Read | NumberRead, ...]) -> list[int]:
+def _truths(formulas: Sequence[ltl.Formula], reads: tuple[Read | NumberRead, ...]) -> list[int]:
     total = count_letters(reads)
     if total > MOST_LETTERS:
         raise UndecidedError("a fact or a count reads too much at once")

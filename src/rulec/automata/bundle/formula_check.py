@@ -4,60 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Set
 
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    Comparison,
-    Constant,
-    Count,
-    Formula,
-    QuantityTerm,
-    Same,
-    Term,
-    Unary,
-)
 from rulec.logic.printing import term_text
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
 
-def problem_in(formula: Formula, vocabulary: Vocabulary, variables: Set[str]) -> str | None:
+def problem_in(formula: ltl.Formula, vocabulary: Vocabulary, variables: Set[str]) -> str | None:
     """First problem of a formula as a clause; None if sound."""
     return next(_problems(formula, vocabulary, variables, counted=False), None)
 
 
 def _problems(
-    formula: Formula, vocabulary: Vocabulary, variables: Set[str], *, counted: bool
+    formula: ltl.Formula, vocabulary: Vocabulary, variables: Set[str], *, counted: bool
 ) -> Iterator[str]:
     """Problems of a formula; ``counted`` says that it is a count's body."""
     waiting = [formula]
     while waiting:
         match waiting.pop():
-            case Atom() as atom:
+            case ltl.Atom() as atom:
                 if not _is_known(atom, vocabulary, variables):
                     yield f"speaks of `{atom}`, which its vocabulary lacks"
-            case Comparison(terms) as comparison:
+            case ltl.Comparison(terms) as comparison:
                 if not _is_normal(comparison):
                     yield "compares numbers that are not in their normal form"
                 for _, term in terms:
                     yield from _problems_of_term(term, vocabulary, variables)
-            case Same(left, right):
+            case ltl.Same(left, right):
                 if not counted or not {left, right} <= variables:
                     yield "asks for the same object where there is none to compare"
-            case Unary(operator, operand):
+            case ltl.Unary(operator, operand):
                 if counted and operator not in BOOLEAN:
                     yield "counts objects by what they do at other instants"
                 waiting.append(operand)
-            case Binary(operator, left, right):
+            case ltl.Binary(operator, left, right):
                 if counted and operator not in BOOLEAN:
                     yield "counts objects by what they do at other instants"
                 waiting += [right, left]
-            case Constant():
+            case ltl.Constant():
                 pass
 
 
-def _is_known(atom: Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
+def _is_known(atom: ltl.Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
     declaration = vocabulary.declarations.get(atom.name)
     match declaration:
         case Enumeration(values=values):
@@ -70,7 +59,7 @@ def _is_known(atom: Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
     return known and about and set(atom.arguments) <= variables
 
 
-def _is_normal(comparison: Comparison) -> bool:
+def _is_normal(comparison: ltl.Comparison) -> bool:
     coefficients = [coefficient for coefficient, _ in comparison.terms]
     texts = [term_text(term) for _, term in comparison.terms]
     return (
@@ -82,9 +71,9 @@ def _is_normal(comparison: Comparison) -> bool:
     )
 
 
-def _problems_of_term(term: Term, vocabulary: Vocabulary, variables: Set[str]) -> Iterator[str]:
+def _problems_of_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str]) -> Iterator[str]:
     match term:
-        case QuantityTerm(name, arguments):
+        case ltl.QuantityTerm(name, arguments):
             declaration = vocabulary.declarations.get(name)
             if (
                 not isinstance(declaration, DeclaredQuantity)
@@ -92,7 +81,7 @@ def _problems_of_term(term: Term, vocabulary: Vocabulary, variables: Set[str]) -
                 or not set(arguments) <= variables
             ):
                 yield f"speaks of the quantity `{term_text(term)}`, which its vocabulary lacks"
-        case Count(variable, type_name, body):
+        case ltl.Count(variable, type_name, body):
             if type_name not in vocabulary.types:
                 yield f"counts objects of the unknown type `{type_name}`"
             yield from _problems(body, vocabulary, variables | {variable}, counted=True)

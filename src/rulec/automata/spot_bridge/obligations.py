@@ -18,30 +18,20 @@ import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import fresh_name
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import Range, range_of
 from rulec.logic.fold import Algebra, fold
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Bound,
-    Constant,
-    Formula,
-    Proposition,
-    Unary,
-    UnaryOperator,
-    atoms_of,
-)
 
-_NOT, _OR, _AND = UnaryOperator.NOT, BinaryOperator.OR, BinaryOperator.AND
-_FALSE, _TRUE = Constant(False), Constant(True)
+_NOT, _OR, _AND = ltl.UnaryOperator.NOT, ltl.BinaryOperator.OR, ltl.BinaryOperator.AND
+_FALSE, _TRUE = ltl.Constant(False), ltl.Constant(True)
 
 
 class _Obligation(NamedTuple):
     """Pending until (``strong``) or release, with the rest of its range."""
 
     strong: bool
-    left: Formula
-    right: Formula
+    left: ltl.Formula
+    right: ltl.Formula
     span: Range
 
 
@@ -75,9 +65,9 @@ class Obligations:
     but by one. Judged by the formula's operators, so that it may be one although neither is true.
     """
 
-    def __init__(self, formula: Formula, spot_formulas: SpotFormulas) -> None:
+    def __init__(self, formula: ltl.Formula, spot_formulas: SpotFormulas) -> None:
         self.propositions = spot.make_twa_graph(spot_formulas.dictionary)
-        self.names = {atom: spot_formulas.names[atom] for atom in atoms_of(formula)}
+        self.names = {atom: spot_formulas.names[atom] for atom in ltl.atoms_of(formula)}
         self._letters = {
             one: buddy.bdd_ithvar(self.propositions.register_ap(name))
             for one, name in self.names.items()
@@ -107,7 +97,7 @@ class Obligations:
             self._variables[_obligation] = buddy.bdd_ithvar(self.propositions.register_ap(name))
         return self._variables[_obligation]
 
-    def _now(self, formula: Formula, wanted: bool) -> Any:
+    def _now(self, formula: ltl.Formula, wanted: bool) -> Any:
         """Demand of a formula, or its negation, on letter and rest."""
         # Not kept: that would be a reference circle, and BDDs would outlive their use.
         algebra: Algebra[_Signed] = Algebra(
@@ -123,37 +113,41 @@ class Obligations:
         )
         return fold(formula, algebra)(wanted)
 
-    def _proposition(self, proposition: Proposition) -> _Signed:
+    def _proposition(self, proposition: ltl.Proposition) -> _Signed:
         letters = self._letters[proposition]
         return lambda wanted: letters if wanted else -letters
 
-    def _operation(self, formula: Unary | Binary, _: Callable[[Formula], _Signed]) -> _Signed:
+    def _operation(
+        self, formula: ltl.Unary | ltl.Binary, _: Callable[[ltl.Formula], _Signed]
+    ) -> _Signed:
         span = range_of(formula)
         return lambda wanted: self._temporal(formula, span, wanted)
 
-    def _temporal(self, formula: Unary | Binary, span: Range, wanted: bool) -> Any:
+    def _temporal(self, formula: ltl.Unary | ltl.Binary, span: Range, wanted: bool) -> Any:
         match formula:
-            case Unary(UnaryOperator.NEXT | UnaryOperator.EVENTUALLY, operand):
+            case ltl.Unary(ltl.UnaryOperator.NEXT | ltl.UnaryOperator.EVENTUALLY, operand):
                 one = _Obligation(True, _TRUE, operand, span)
-            case Unary(UnaryOperator.WEAK_NEXT | UnaryOperator.ALWAYS, operand):
+            case ltl.Unary(ltl.UnaryOperator.WEAK_NEXT | ltl.UnaryOperator.ALWAYS, operand):
                 one = _Obligation(False, _FALSE, operand, span)
-            case Unary(UnaryOperator.NEVER, operand):
-                one = _Obligation(False, _FALSE, Unary(_NOT, operand), span)
-            case Binary(BinaryOperator.UNTIL | BinaryOperator.THEN, left, right):
+            case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
+                one = _Obligation(False, _FALSE, ltl.Unary(_NOT, operand), span)
+            case ltl.Binary(ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN, left, right):
                 one = _Obligation(True, left, right, span)
-            case Binary(BinaryOperator.RELEASE, left, right):
+            case ltl.Binary(ltl.BinaryOperator.RELEASE, left, right):
                 one = _Obligation(False, left, right, span)
-            case Binary(BinaryOperator.STRONG_RELEASE, left, right, bound):
-                turned = Unary(_NOT, left), Unary(_NOT, right)
-                return self._now(Binary(BinaryOperator.WEAK_UNTIL, *turned, bound), not wanted)
-            case Binary(BinaryOperator.WEAK_UNTIL, left, right) if span == Range(0, None):
-                one = _Obligation(False, right, Binary(_OR, left, right), Range(0, None))
-            case Binary(BinaryOperator.WEAK_UNTIL, left, right):
+            case ltl.Binary(ltl.BinaryOperator.STRONG_RELEASE, left, right, bound):
+                turned = ltl.Unary(_NOT, left), ltl.Unary(_NOT, right)
+                return self._now(
+                    ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, *turned, bound), not wanted
+                )
+            case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right) if span == Range(0, None):
+                one = _Obligation(False, right, ltl.Binary(_OR, left, right), Range(0, None))
+            case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right):
                 return self._now(_weak_until(left, right, span), wanted)
             case _:
                 raise ValueError("operators of the past have no future")
         if not wanted:
-            turned = Unary(_NOT, one.left), Unary(_NOT, one.right)
+            turned = ltl.Unary(_NOT, one.left), ltl.Unary(_NOT, one.right)
             one = _Obligation(not one.strong, *turned, span)
         return self._unfolded(one)
 
@@ -181,7 +175,7 @@ class Obligations:
 
     def _implications(self) -> Any:
         """Implications between obligations: a shorter until implies a longer one."""
-        families: dict[tuple[bool, Formula, Formula], list[tuple[float, Any]]] = {}
+        families: dict[tuple[bool, ltl.Formula, ltl.Formula], list[tuple[float, Any]]] = {}
         for one, variable in self._variables.items():
             if one.span.low == 0:
                 reach = float("inf") if one.span.high is None else one.span.high
@@ -200,18 +194,20 @@ class Obligations:
         return bool(state == buddy.bddtrue)
 
 
-def _weak_until(left: Formula, right: Formula, span: Range) -> Formula:
+def _weak_until(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
     """A bounded ``weak until`` by other operators and the unbounded one."""
     low, high = span
     if high is not None:
-        bound = Bound(Fraction(low), Fraction(high), "steps")
-        lasting = Unary(UnaryOperator.ALWAYS, left, Bound(Fraction(0), Fraction(high), "steps"))
-        return Binary(_OR, Binary(BinaryOperator.UNTIL, left, right, bound), lasting)
-    first = Bound(Fraction(0), Fraction(low - 1), "steps")
-    then = Bound(Fraction(low), Fraction(low), "steps")
-    weak = Binary(BinaryOperator.WEAK_UNTIL, left, right)
-    return Binary(
+        bound = ltl.Bound(Fraction(low), Fraction(high), "steps")
+        lasting = ltl.Unary(
+            ltl.UnaryOperator.ALWAYS, left, ltl.Bound(Fraction(0), Fraction(high), "steps")
+        )
+        return ltl.Binary(_OR, ltl.Binary(ltl.BinaryOperator.UNTIL, left, right, bound), lasting)
+    first = ltl.Bound(Fraction(0), Fraction(low - 1), "steps")
+    then = ltl.Bound(Fraction(low), Fraction(low), "steps")
+    weak = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right)
+    return ltl.Binary(
         _AND,
-        Unary(UnaryOperator.ALWAYS, left, first),
-        Unary(UnaryOperator.WEAK_NEXT, weak, then),
+        ltl.Unary(ltl.UnaryOperator.ALWAYS, left, first),
+        ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, weak, then),
     )

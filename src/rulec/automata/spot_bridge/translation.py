@@ -14,21 +14,13 @@ from rulec.automata.spot_bridge.equivalence_check import check, tried
 from rulec.automata.spot_bridge.progression import Progression
 from rulec.automata.spot_bridge.registers import with_registers
 from rulec.automata.spot_bridge.spot_formulas import F, SpotFormulas
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import total_bound
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Constant,
-    Formula,
-    Proposition,
-    Unary,
-    UnaryOperator,
-)
 from rulec.logic.past_registers import Memory, definition, eliminate_past
 from rulec.logic.semantics import Semantics
 
 _SHAPE = ("parity", "det", "complete")
-_NOT, _AND, _OR = UnaryOperator.NOT, BinaryOperator.AND, BinaryOperator.OR
+_NOT, _AND, _OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
 
 _SMALL = 6
 """Bounds of so many steps together leave a formula that Spot can translate without its bounds."""
@@ -47,16 +39,16 @@ class Translation:
     """
 
     automaton: Any
-    names: dict[Proposition, str]
+    names: dict[ltl.Proposition, str]
     alive: str | None
     is_checked: bool
 
 
 def translate(
-    formula: Formula,
+    formula: ltl.Formula,
     reads: Sequence[Read | NumberRead],
     semantics: Semantics = "stutter",
-    axioms: Sequence[Formula] = (),
+    axioms: Sequence[ltl.Formula] = (),
 ) -> Translation:
     """Automaton of ``formula``, with bounds in steps, over its possible letters.
 
@@ -75,10 +67,10 @@ def translate(
     spot_formulas = SpotFormulas(names, alive)
     known = knowledge(reads, propositions)
     for fact in axioms:
-        known = fact if known == Constant(True) else Binary(_AND, known, fact)
+        known = fact if known == ltl.Constant(True) else ltl.Binary(_AND, known, fact)
     meant = past.present
-    if known != Constant(True):
-        meant = Binary(_AND, meant, Unary(UnaryOperator.ALWAYS, known))
+    if known != ltl.Constant(True):
+        meant = ltl.Binary(_AND, meant, ltl.Unary(ltl.UnaryOperator.ALWAYS, known))
     steps = total_bound(meant)
     if past.memories:
         automaton = _guessed(meant, past.memories, spot_formulas)
@@ -103,7 +95,7 @@ def _shaped(automaton: Any) -> Any:
     return spot.postprocess(automaton, *_SHAPE)
 
 
-def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFormulas) -> Any:
+def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: SpotFormulas) -> Any:
     """Automaton of a formula, its future-dependent memories projected away.
 
     What they are is guessed and projected away, which takes a determinisation.
@@ -118,31 +110,31 @@ def _guessed(formula: Formula, memories: Sequence[Memory], spot_formulas: SpotFo
     return spot.postprocess(projection.strip(guessing), *_SHAPE)
 
 
-def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+def _combined(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     """Automaton of a formula or its negation; bounded ones by parts."""
     if total_bound(formula) == 0:
         return _by_spot(formula, wanted, spot_formulas)
     match formula:
-        case Unary(UnaryOperator.NOT, operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return _combined(operand, not wanted, spot_formulas)
-        case Binary(BinaryOperator.AND | BinaryOperator.OR as operator, left, right):
+        case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR as operator, left, right):
             one, other = (
                 _combined(left, wanted, spot_formulas),
                 _combined(right, wanted, spot_formulas),
             )
             join = spot.product if (operator is _AND) is wanted else spot.product_or
             return _shaped(join(one, other))
-        case Binary(BinaryOperator.IMPLIES, left, right):
-            return _combined(Binary(_OR, Unary(_NOT, left), right), wanted, spot_formulas)
-        case Binary(BinaryOperator.IFF | BinaryOperator.XOR as operator, left, right):
+        case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
+            return _combined(ltl.Binary(_OR, ltl.Unary(_NOT, left), right), wanted, spot_formulas)
+        case ltl.Binary(ltl.BinaryOperator.IFF | ltl.BinaryOperator.XOR as operator, left, right):
             whole = _by_progression(formula, wanted, spot_formulas)
             if whole is not None:
                 return whole
-            same = (operator is BinaryOperator.IFF) is wanted
-            other = right if same else Unary(_NOT, right)
-            yes = Binary(_AND, left, other)
-            no = Binary(_AND, Unary(_NOT, left), Unary(_NOT, other))
-            return _combined(Binary(_OR, yes, no), True, spot_formulas)
+            same = (operator is ltl.BinaryOperator.IFF) is wanted
+            other = right if same else ltl.Unary(_NOT, right)
+            yes = ltl.Binary(_AND, left, other)
+            no = ltl.Binary(_AND, ltl.Unary(_NOT, left), ltl.Unary(_NOT, other))
+            return _combined(ltl.Binary(_OR, yes, no), True, spot_formulas)
     whole = _by_progression(formula, wanted, spot_formulas)
     return (
         _by_trial(_language(formula, wanted, spot_formulas), spot_formulas)
@@ -151,9 +143,9 @@ def _combined(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> An
     )
 
 
-def _by_progression(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
+def _by_progression(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
     """Automaton by formula progression; None if prefixes decide nothing."""
-    progression = Progression(formula if wanted else Unary(_NOT, formula), spot_formulas)
+    progression = Progression(formula if wanted else ltl.Unary(_NOT, formula), spot_formulas)
     if spot_formulas.alive is not None:
         return _shaped(progression.finite(spot_formulas.alive))
     if progression.is_decided:
@@ -161,11 +153,11 @@ def _by_progression(formula: Formula, wanted: bool, spot_formulas: SpotFormulas)
     return None
 
 
-def _by_spot(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+def _by_spot(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     return spot_formulas.translate(_language(formula, wanted, spot_formulas), *_SHAPE)
 
 
-def _language(formula: Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+def _language(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     said = spot_formulas.formula_of(formula)
     return spot_formulas.language([said if wanted else F.Not(said)])
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
+from rulec.logic import formula as ltl
 from rulec.logic.english.atom_phrases import (
     atom_in_english,
     comparison_in_english,
@@ -21,17 +22,6 @@ from rulec.logic.english.atom_phrases import (
     spoken,
 )
 from rulec.logic.english.temporal_phrases import adverb, pattern_of
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Comparison,
-    Constant,
-    Formula,
-    Same,
-    Unary,
-    UnaryOperator,
-)
 
 MOST_IN_A_LINE = 3
 """Longer chains of ``and``, ``or`` and ``then`` become lists."""
@@ -73,7 +63,9 @@ def label(index: int) -> str:
     return chr(0xE000 + index)
 
 
-def sentence(formula: Formula, variables: Sequence[tuple[str, str]], related: Related) -> Phrase:
+def sentence(
+    formula: ltl.Formula, variables: Sequence[tuple[str, str]], related: Related
+) -> Phrase:
     """A rule's formula as a sentence, without its full stop.
 
     Args:
@@ -94,7 +86,7 @@ _WHEN = {
 }
 
 
-def exemption(formula: Formula, scope: str) -> Phrase:
+def exemption(formula: ltl.Formula, scope: str) -> Phrase:
     """An exception of a rule as a sentence, without its full stop.
 
     ``scope`` is as in a rulebook.
@@ -102,7 +94,7 @@ def exemption(formula: Formula, scope: str) -> Phrase:
     return _after(f"it does not count if, {_WHEN[scope]},", phrase(formula, inside=True))
 
 
-def condition(formula: Formula, *, guards: bool) -> Phrase:
+def condition(formula: ltl.Formula, *, guards: bool) -> Phrase:
     """The condition of a rule as a phrase.
 
     ``guards``: it guards a stretch of the trace.
@@ -122,35 +114,35 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
     return f"for {listed(named)}: "
 
 
-def phrase(formula: Formula, *, inside: bool) -> Phrase:
+def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
     """A formula as a phrase.
 
     ``inside``: it speaks of another time than the start of the trace.
     """
     at_start = "" if inside else " at the start"
     match formula:
-        case Unary(UnaryOperator.NOT, operand) if not _counts(operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand) if not _counts(operand):
             denied = _clause(operand, holds=False)
             if denied is not None:
                 return Phrase(f"{denied}{at_start}", Shape.CLAUSE)
             return _after("it is not the case that", phrase(operand, inside=inside))
-        case Unary(UnaryOperator.NOT, operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return _after("it is not the case that", phrase(operand, inside=inside))
-        case Unary(operator, operand, bound):
+        case ltl.Unary(operator, operand, bound):
             return _after(adverb(operator, bound, inside=inside), phrase(operand, inside=True))
-        case Binary(BinaryOperator.AND | BinaryOperator.OR):
+        case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR):
             return _chain(formula, inside=inside)
-        case Binary(BinaryOperator.THEN):
+        case ltl.Binary(ltl.BinaryOperator.THEN):
             return _phases(formula)
-        case Binary(BinaryOperator.IMPLIES, left, right):
+        case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
             return _condition(phrase(left, inside=inside), phrase(right, inside=inside))
-        case Binary(BinaryOperator.IFF, left, right):
+        case ltl.Binary(ltl.BinaryOperator.IFF, left, right):
             return _between("{} if and only if {}", left, right, inside=inside)
-        case Binary(BinaryOperator.XOR, left, right):
+        case ltl.Binary(ltl.BinaryOperator.XOR, left, right):
             return _between("either {} or {}, but not both", left, right, inside=inside)
-        case Binary(operator, left, right, bound):
+        case ltl.Binary(operator, left, right, bound):
             return _between(pattern_of(operator, bound, inside=inside), left, right, inside=True)
-        case Comparison() if (count := single_count(formula)) is not None:
+        case ltl.Comparison() if (count := single_count(formula)) is not None:
             there_are = counted(formula, count)
             lead = there_are if inside else f"at the start {there_are}"
             return _after(lead, phrase(count.body, inside=True))
@@ -159,20 +151,20 @@ def phrase(formula: Formula, *, inside: bool) -> Phrase:
     return Phrase(f"{clause}{at_start}", Shape.CLAUSE)
 
 
-def _counts(formula: Formula) -> bool:
-    return isinstance(formula, Comparison) and single_count(formula) is not None
+def _counts(formula: ltl.Formula) -> bool:
+    return isinstance(formula, ltl.Comparison) and single_count(formula) is not None
 
 
-def _clause(formula: Formula, *, holds: bool) -> str | None:
+def _clause(formula: ltl.Formula, *, holds: bool) -> str | None:
     match formula:
-        case Atom():
+        case ltl.Atom():
             return atom_in_english(formula, holds=holds)
-        case Comparison():
+        case ltl.Comparison():
             return comparison_in_english(formula, holds=holds)
-        case Constant(value):
+        case ltl.Constant(value):
             verb = "holds" if holds else "does not hold"
             return f"“{'true' if value else 'false'}” {verb}"
-        case Same(left, right):
+        case ltl.Same(left, right):
             return f"{left} {'is' if holds else 'is not'} the same as {right}"
     return None
 
@@ -199,7 +191,7 @@ def _together(joined: Phrase) -> str:
     return f"both {joined.text}" if pair else f"all of this is so: {joined.text}"
 
 
-def _between(pattern: str, left: Formula, right: Formula, *, inside: bool) -> Phrase:
+def _between(pattern: str, left: ltl.Formula, right: ltl.Formula, *, inside: bool) -> Phrase:
     """Clauses in the places of a pattern, longer ones in a list."""
     first, last = phrase(left, inside=inside), phrase(right, inside=inside)
     if last.shape is Shape.JOINED and pattern.endswith("{}"):
@@ -226,11 +218,11 @@ def _condition(left: Phrase, right: Phrase) -> Phrase:
     return replace(right, text=f"if {left.text}, then {right.text}", shape=shape)
 
 
-def _chain(formula: Binary, *, inside: bool) -> Phrase:
+def _chain(formula: ltl.Binary, *, inside: bool) -> Phrase:
     """``and`` and ``or``, which are read from the left."""
-    operands: list[Formula] = []
-    rest: Formula = formula
-    while isinstance(rest, Binary) and rest.operator is formula.operator:
+    operands: list[ltl.Formula] = []
+    rest: ltl.Formula = formula
+    while isinstance(rest, ltl.Binary) and rest.operator is formula.operator:
         operands.append(rest.right)
         rest = rest.left
     parts = tuple(phrase(part, inside=inside) for part in (rest, *reversed(operands)))
@@ -250,14 +242,14 @@ def _chain(formula: Binary, *, inside: bool) -> Phrase:
     return Phrase(head, Shape.LIST, parts, joint)
 
 
-def _phases(formula: Binary) -> Phrase:
+def _phases(formula: ltl.Binary) -> Phrase:
     """The phases of ``then``, with bounds as their durations.
 
     It is read from the right; a bound says how long the phase before it lasts.
     """
     phases: list[tuple[Phrase, str]] = []
-    rest: Formula = formula
-    while isinstance(rest, Binary) and rest.operator is BinaryOperator.THEN:
+    rest: ltl.Formula = formula
+    while isinstance(rest, ltl.Binary) and rest.operator is ltl.BinaryOperator.THEN:
         lasts = "" if rest.bound is None else f" {lasting(rest.bound)}"
         phases.append((phrase(rest.left, inside=True), lasts))
         rest = rest.right

@@ -8,19 +8,9 @@ from dataclasses import dataclass, replace
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
 from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import deciding_instants
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    Comparison,
-    Count,
-    Formula,
-    Proposition,
-    Term,
-    Unary,
-    atoms_of,
-)
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
@@ -61,7 +51,7 @@ class Part:
     it one of those that, at some instant, make the formula come out as it does?
     """
 
-    formula: Formula
+    formula: ltl.Formula
     text: str
     depth: int
     values: tuple[bool, ...]
@@ -106,7 +96,7 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
         [number - binding.first for number in states],
         decisive - binding.first,
     )
-    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(atoms_of(rule.formula))}
+    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
     word = [
         frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
     ]
@@ -171,7 +161,7 @@ class _ObservedStates:
     shown: Sequence[int]
     decisive: int
 
-    def truths(self, proposition: Proposition) -> list[bool]:
+    def truths(self, proposition: ltl.Proposition) -> list[bool]:
         """Truth of a proposition in each state."""
         return [holds(proposition, self.bound, view) is True for view in self.views]
 
@@ -196,7 +186,7 @@ class _ObservedStates:
                 digits.append(read.digit(value))
         return tuple(digits)
 
-    def counted(self, term: Count) -> list[tuple[str, ...]]:
+    def counted(self, term: ltl.Count) -> list[tuple[str, ...]]:
         """The objects that count in each state."""
         result = [objects_counted(term, self.bound, view) for view in self.views]
         return [objects for objects in result if not isinstance(objects, Unknown)]
@@ -207,20 +197,22 @@ class _ObservedStates:
 
 
 def _facts(
-    truths: Mapping[Proposition, list[bool]], deciding: Set[Formula], observed: _ObservedStates
+    truths: Mapping[ltl.Proposition, list[bool]],
+    deciding: Set[ltl.Formula],
+    observed: _ObservedStates,
 ) -> Iterator[Observation]:
     """Observations of all reads, in order of first mention."""
-    readers: dict[Atom | Term, list[Proposition]] = {}
+    readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
         for read in _read_by(proposition):
             readers.setdefault(read, []).append(proposition)
     for read, propositions in readers.items():
         # A number always changes a little; what counts is whether it passes a limit.
-        passes = isinstance(read, Atom) or any(
+        passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )
         decides = not deciding.isdisjoint(propositions)
-        if isinstance(read, Count):
+        if isinstance(read, ltl.Count):
             objects = observed.counted(read)
             yield Observation(
                 term_text(read),
@@ -234,7 +226,7 @@ def _facts(
             items = tuple(observed.bound[variable] for variable in read.arguments)
             declaration = observed.views[0].vocabulary.declarations[read.name]
             yield Observation(
-                str(Atom(read.name, items)),
+                str(ltl.Atom(read.name, items)),
                 tuple(values[n] for n in observed.shown),
                 passes and observed.changes(values),
                 decides,
@@ -242,17 +234,17 @@ def _facts(
             )
 
 
-def _read_by(proposition: Proposition) -> list[Atom | Term]:
-    if isinstance(proposition, Comparison):
+def _read_by(proposition: ltl.Proposition) -> list[ltl.Atom | ltl.Term]:
+    if isinstance(proposition, ltl.Comparison):
         return [term for _, term in proposition.terms]
-    return [Atom(proposition.name, proposition.arguments)]
+    return [ltl.Atom(proposition.name, proposition.arguments)]
 
 
 def _parts(
-    written: Formula,
-    stepped: Formula,
-    truths: Mapping[Formula, list[bool]],
-    deciding: Set[Formula],
+    written: ltl.Formula,
+    stepped: ltl.Formula,
+    truths: Mapping[ltl.Formula, list[bool]],
+    deciding: Set[ltl.Formula],
     observed: _ObservedStates,
     depth: int,
 ) -> Iterator[Part]:
@@ -269,7 +261,7 @@ def _parts(
         decides=decides,
     )
     match written, stepped:
-        case Unary(_, operand), Unary(_, same):
+        case ltl.Unary(_, operand), ltl.Unary(_, same):
             yield from _parts(
                 written=operand,
                 stepped=same,
@@ -278,7 +270,7 @@ def _parts(
                 observed=observed,
                 depth=depth + 1,
             )
-        case Binary(_, left, right), Binary(_, same_left, same_right):
+        case ltl.Binary(_, left, right), ltl.Binary(_, same_left, same_right):
             yield from _parts(
                 written=left,
                 stepped=same_left,

@@ -11,16 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
 
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Constant,
-    Formula,
-    Relation,
-    Term,
-    Unary,
-    UnaryOperator,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
 from rulec.vocabulary.units import Dimension
 
@@ -43,7 +34,7 @@ class Linear:
     ``binding`` how tightly its outermost operator binds.
     """
 
-    coefficients: Mapping[Term, Fraction]
+    coefficients: Mapping[ltl.Term, Fraction]
     constant: Fraction
     dimension: Dimension | None
     text: str
@@ -60,7 +51,7 @@ class Linear:
         return self.text if self.binding >= binding else f"({self.text})"
 
 
-Conditions = tuple[Formula, ...]
+Conditions = tuple[ltl.Formula, ...]
 
 Case = tuple[Conditions, Linear]
 """The conditions under which a number is this one; none for a number without cases."""
@@ -100,7 +91,7 @@ def constant(value: Fraction, dimension: Dimension | None, text: str) -> NumberB
     return NumberByCases((((), Linear({}, value, dimension, text)),))
 
 
-def measured(term: Term, factor: Fraction, dimension: Dimension, text: str) -> NumberByCases:
+def measured(term: ltl.Term, factor: Fraction, dimension: Dimension, text: str) -> NumberByCases:
     """A number that a state gives, in units of ``factor`` base units."""
     return NumberByCases((((), Linear({term: factor}, Fraction(0), dimension, text)),))
 
@@ -131,9 +122,9 @@ def _in_cases(cases: Iterable[Case]) -> NumberByCases:
     return number
 
 
-def either(condition: Formula, value: NumberByCases, otherwise: NumberByCases) -> NumberByCases:
+def either(condition: ltl.Formula, value: NumberByCases, otherwise: NumberByCases) -> NumberByCases:
     """``value if condition else otherwise``. Raises TooManyCasesError."""
-    if isinstance(condition, Constant):
+    if isinstance(condition, ltl.Constant):
         return value if condition.value else otherwise
     sides = ((condition, value), (negated(condition), otherwise))
     return _in_cases(
@@ -144,13 +135,13 @@ def either(condition: Formula, value: NumberByCases, otherwise: NumberByCases) -
     )
 
 
-def negated(formula: Formula) -> Formula:
+def negated(formula: ltl.Formula) -> ltl.Formula:
     """The negation of a formula, without a double one."""
-    if isinstance(formula, Unary) and formula.operator is UnaryOperator.NOT:
+    if isinstance(formula, ltl.Unary) and formula.operator is ltl.UnaryOperator.NOT:
         return formula.operand
-    if isinstance(formula, Constant):
-        return Constant(not formula.value)
-    return Unary(UnaryOperator.NOT, formula)
+    if isinstance(formula, ltl.Constant):
+        return ltl.Constant(not formula.value)
+    return ltl.Unary(ltl.UnaryOperator.NOT, formula)
 
 
 def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
@@ -205,7 +196,7 @@ def opposite(linear: Linear) -> Linear:
     )
 
 
-def compared(left: NumberByCases, relation: Relation, right: NumberByCases) -> Formula:
+def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) -> ltl.Formula:
     """``left relation right`` as a formula. Raises TooManyCasesError."""
     cases = [
         (both, added(one, other, -1), f"{one.text} {relation} {other.text}")
@@ -219,21 +210,23 @@ def compared(left: NumberByCases, relation: Relation, right: NumberByCases) -> F
     )
 
 
-def all_of(formulas: Sequence[Formula]) -> Formula:
+def all_of(formulas: Sequence[ltl.Formula]) -> ltl.Formula:
     """The conjunction of formulas; true if there are none."""
-    return _joined(BinaryOperator.AND, True, iter(formulas))
+    return _joined(ltl.BinaryOperator.AND, True, iter(formulas))
 
 
-def any_of(formulas: Iterator[Formula]) -> Formula:
+def any_of(formulas: Iterator[ltl.Formula]) -> ltl.Formula:
     """The disjunction of formulas; false if there are none."""
-    return _joined(BinaryOperator.OR, False, formulas)
+    return _joined(ltl.BinaryOperator.OR, False, formulas)
 
 
-def _joined(operator: BinaryOperator, neutral: bool, formulas: Iterator[Formula]) -> Formula:
-    whole: Formula | None = None
+def _joined(
+    operator: ltl.BinaryOperator, neutral: bool, formulas: Iterator[ltl.Formula]
+) -> ltl.Formula:
+    whole: ltl.Formula | None = None
     for formula in formulas:
-        if formula == Constant(not neutral):
+        if formula == ltl.Constant(not neutral):
             return formula
-        if formula != Constant(neutral):
-            whole = formula if whole is None else Binary(operator, whole, formula)
-    return Constant(neutral) if whole is None else whole
+        if formula != ltl.Constant(neutral):
+            whole = formula if whole is None else ltl.Binary(operator, whole, formula)
+    return ltl.Constant(neutral) if whole is None else whole

@@ -6,16 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from rulec.diagnostics import Diagnostic
-from rulec.logic.formula import (
-    Binary,
-    BinaryOperator,
-    Constant,
-    Formula,
-    QuantityTerm,
-    Same,
-    Unary,
-    UnaryOperator,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.printing import term_text
 from rulec.rulebook.arithmetic.linear_arithmetic import (
     Linear,
@@ -58,17 +49,17 @@ class Object:
     name: str
 
 
-Meaning = Formula | NumberByCases | Object | AnyArgument
+Meaning = ltl.Formula | NumberByCases | Object | AnyArgument
 
 
-def truth(node: tree.Formula, scope: Scope) -> Formula | None:
+def truth(node: tree.Formula, scope: Scope) -> ltl.Formula | None:
     """The formula; None if it has a mistake, which is then reported."""
     result = elaborate(node, scope)
     match result:
         case None:
             return None
         case AnyArgument():
-            return Constant(True)
+            return ltl.Constant(True)
         case NumberByCases():
             scope.report(say.number_for_truth(node, result, scope))
             return None
@@ -104,7 +95,7 @@ def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
                 case tree.AtomUse():
                     return _name(node, scope)
                 case tree.TruthLiteral(value):
-                    return Constant(value)
+                    return ltl.Constant(value)
                 case tree.NumberLiteral():
                     return literal(node, scope)
                 case tree.Prefix():
@@ -154,13 +145,13 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         scope.report(constant_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
-        return Constant(scope.constants.options[name])
+        return ltl.Constant(scope.constants.options[name])
     if kind == "parameter":
         return parameter(node, scope, number)
     if kind == "definition":
         return expand_macro(node, scope, elaborate)
     result = scope.reference(node)
-    if isinstance(result, QuantityTerm):
+    if isinstance(result, ltl.QuantityTerm):
         unit = scope.symbols.unit_of(result.name)
         if unit is None:
             return None
@@ -168,18 +159,18 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     return result
 
 
-def _prefix(node: tree.Prefix, scope: Scope) -> Formula | None:
+def _prefix(node: tree.Prefix, scope: Scope) -> ltl.Formula | None:
     operand = truth(node.operand, scope)
     bound = bound_of(node, node.bound, scope, number)
     if _out_of_place(node, node.operator, scope) or operand is None or bound is False:
         return None
     written = isinstance(node.operand, tree.TruthLiteral)
-    if node.operator == "not" and isinstance(operand, Constant) and not written:
+    if node.operator == "not" and isinstance(operand, ltl.Constant) and not written:
         return negated(operand)
-    return Unary(UnaryOperator(node.operator), operand, bound)
+    return ltl.Unary(ltl.UnaryOperator(node.operator), operand, bound)
 
 
-def _infix(node: tree.Infix, scope: Scope) -> Formula | None:
+def _infix(node: tree.Infix, scope: Scope) -> ltl.Formula | None:
     left, right = truth(node.left, scope), truth(node.right, scope)
     bound = bound_of(node, node.bound, scope, number)
     if node.operator == "then" and isinstance(node.left, tree.Prefix):
@@ -188,7 +179,7 @@ def _infix(node: tree.Infix, scope: Scope) -> Formula | None:
     misplaced = _out_of_place(node, node.operator, scope)
     if misplaced or left is None or right is None or bound is False:
         return None
-    return Binary(BinaryOperator(node.operator), left, right, bound)
+    return ltl.Binary(ltl.BinaryOperator(node.operator), left, right, bound)
 
 
 def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -> bool:
@@ -207,7 +198,7 @@ def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
         yield say.endless_phase(phase)
 
 
-def _compare(node: tree.Compare, scope: Scope) -> Formula | AnyArgument | None:
+def _compare(node: tree.Compare, scope: Scope) -> ltl.Formula | AnyArgument | None:
     for side, other in ((node.left, node.right), (node.right, node.left)):
         if isinstance(side, tree.AtomUse) and (item := scope.enumeration(side)) is not None:
             scope.used |= {argument.text for argument in side.arguments}
@@ -218,7 +209,7 @@ def _compare(node: tree.Compare, scope: Scope) -> Formula | AnyArgument | None:
         return _same(node, left, right, scope)
     if isinstance(left, AnyArgument) or isinstance(right, AnyArgument):
         return AnyArgument()
-    if isinstance(left, Formula) and isinstance(right, Formula):
+    if isinstance(left, ltl.Formula) and isinstance(right, ltl.Formula):
         scope.report(say.truths_compared(node, scope))
         return None
     first = _as_number(node.left, left, node, scope)
@@ -230,7 +221,7 @@ def _compare(node: tree.Compare, scope: Scope) -> Formula | AnyArgument | None:
     return _checked(compared(first, node.relation, second))
 
 
-def _checked(formula: Formula) -> Formula:
+def _checked(formula: ltl.Formula) -> ltl.Formula:
     """The formula. Raises TooManyCasesError: conditions have doubled its parts too often."""
     if exceeded_limit(formula):
         raise TooManyCasesError
@@ -246,17 +237,17 @@ def _as_number(
     return None
 
 
-def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> Formula | None:
+def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> ltl.Formula | None:
     if node.relation not in ("=", "!="):
         scope.report(say.objects_have_no_order(node))
         return None
     if left.name == right.name:
-        same: Formula = Constant(True)
+        same: ltl.Formula = ltl.Constant(True)
     elif {left.name, right.name} & scope.counted:
-        same = Same(*sorted((left.name, right.name)))
+        same = ltl.Same(*sorted((left.name, right.name)))
     else:
         # The variables of a rule stand for distinct objects.
-        same = Constant(False)
+        same = ltl.Constant(False)
     return same if node.relation == "=" else negated(same)
 
 
@@ -307,7 +298,7 @@ def _product(left: Linear, right: Linear) -> Linear:
 def _either(
     node: tree.Conditional,
     value: Meaning | None,
-    condition: Formula | None,
+    condition: ltl.Formula | None,
     otherwise: Meaning | None,
     scope: Scope,
 ) -> Meaning | None:
@@ -320,6 +311,6 @@ def _either(
     if isinstance(value, Object | NumberByCases) or isinstance(otherwise, Object | NumberByCases):
         scope.report(say.two_kinds(node, value, otherwise, scope))
         return None
-    chosen = Binary(BinaryOperator.AND, condition, value)
-    other = Binary(BinaryOperator.AND, negated(condition), otherwise)
-    return _checked(Binary(BinaryOperator.OR, chosen, other))
+    chosen = ltl.Binary(ltl.BinaryOperator.AND, condition, value)
+    other = ltl.Binary(ltl.BinaryOperator.AND, negated(condition), otherwise)
+    return _checked(ltl.Binary(ltl.BinaryOperator.OR, chosen, other))

@@ -6,11 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rulec.diagnostics import Span
-from rulec.logic.formula import (
-    Atom,
-    Formula,
-    QuantityTerm,
-)
+from rulec.logic import formula as ltl
 from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.number_literals import literal
 from rulec.rulebook.elaborate.scope import BoundVariable, Scope
@@ -23,7 +19,7 @@ Key = tuple[str, tuple[str, ...]]
 """A declaration, and the objects that it is asked about."""
 
 
-def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope) -> Example:
+def example_of(example: tree.ExampleItem, formula: ltl.Formula | None, scope: Scope) -> Example:
     """The example; what is wrong with it is reported."""
     variables = dict(scope.variables)
     for object_ in example.objects:
@@ -39,7 +35,7 @@ def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope)
     kinds = {
         name: variable.type for name, variable in variables.items() if variable.type is not None
     }
-    needed: dict[Key, Atom | QuantityTerm] = {}
+    needed: dict[Key, ltl.Atom | ltl.QuantityTerm] = {}
     if formula is not None:
         for what in required_inputs(formula, kinds, scope.symbols.fits):
             if scope.symbols.items[what.name].default is None:
@@ -59,7 +55,7 @@ def example_of(example: tree.ExampleItem, formula: Formula | None, scope: Scope)
 
 
 def _state(
-    state: tree.ExampleState, needed: Mapping[Key, Atom | QuantityTerm], scope: Scope
+    state: tree.ExampleState, needed: Mapping[Key, ltl.Atom | ltl.QuantityTerm], scope: Scope
 ) -> ExampleState:
     said: dict[Key, bool | str | float] = {}
     places: dict[Key, Span] = {}
@@ -80,7 +76,7 @@ def _state(
     return said
 
 
-def _named(use: tree.AtomUse, scope: Scope) -> Atom | QuantityTerm | None:
+def _named(use: tree.AtomUse, scope: Scope) -> ltl.Atom | ltl.QuantityTerm | None:
     """Subject of a state literal; None after a reported mistake."""
     kind = scope.constants.overlay.kind_of(use.name.text)
     if kind and scope.behind(use.name.text) is None:
@@ -90,10 +86,10 @@ def _named(use: tree.AtomUse, scope: Scope) -> Atom | QuantityTerm | None:
 
 
 def _value(
-    fact: tree.StateLiteral, atom: Atom | QuantityTerm, scope: Scope
+    fact: tree.StateLiteral, atom: ltl.Atom | ltl.QuantityTerm, scope: Scope
 ) -> bool | str | float | None:
     """Value of a state literal; None after a reported mistake."""
-    if isinstance(atom, QuantityTerm):
+    if isinstance(atom, ltl.QuantityTerm):
         return _number(fact, atom, scope)
     if fact.value is not None:
         scope.report(say.not_a_number(fact, atom, scope.symbols))
@@ -104,7 +100,7 @@ def _value(
     return not fact.negated if atom.value is None else atom.value
 
 
-def _number(fact: tree.StateLiteral, quantity: QuantityTerm, scope: Scope) -> float | None:
+def _number(fact: tree.StateLiteral, quantity: ltl.QuantityTerm, scope: Scope) -> float | None:
     """A quantity's value, in the unit of its declaration."""
     unit = scope.symbols.unit_of(quantity.name)
     if fact.value is None:

@@ -9,18 +9,8 @@ import numpy as np
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import scale
+from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
-from rulec.logic.formula import (
-    Atom,
-    Comparison,
-    Count,
-    Formula,
-    Proposition,
-    QuantityTerm,
-    Same,
-    Term,
-    atoms_of,
-)
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.kleene_columns import (
@@ -94,12 +84,12 @@ class ColumnReader:
         return digits
 
     def _summands(
-        self, terms: tuple[tuple[Fraction, Term], ...], bound: ObjectBinding
+        self, terms: tuple[tuple[Fraction, ltl.Term], ...], bound: ObjectBinding
     ) -> list[Summand]:
         """Columns of a sum's terms, with their coefficients. Raises NotGivenError."""
         summands: list[Summand] = []
         for coefficient, term in terms:
-            if isinstance(term, QuantityTerm):
+            if isinstance(term, ltl.QuantityTerm):
                 items = tuple([bound[argument] for argument in term.arguments])
                 numbers = self.values(term.name, items)
                 if numbers is None:
@@ -109,7 +99,7 @@ class ColumnReader:
                 summands.append((coefficient, self._counted(term, bound)))
         return summands
 
-    def _counted(self, count: Count, bound: ObjectBinding) -> Array:
+    def _counted(self, count: ltl.Count, bound: ObjectBinding) -> Array:
         """Value of a count in each state. Raises NotGivenError if not known."""
         n_states = self.columns.layout.n_states
         total: Array = np.zeros(n_states, dtype=np.int64)
@@ -123,16 +113,16 @@ class ColumnReader:
                 raise self._missing(count, {**bound, count.variable: name})
         return total
 
-    def _missing(self, count: Count, bound: ObjectBinding) -> NotGivenError:
+    def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
         """Error for the first missing value that a count's body reads."""
-        for atom in atoms_of(count.body):
-            if isinstance(atom, Atom):
+        for atom in ltl.atoms_of(count.body):
+            if isinstance(atom, ltl.Atom):
                 items = tuple([bound[variable] for variable in atom.arguments])
                 if self.values(atom.name, items) is None:
                     return NotGivenError(atom.name, items)
                 continue
             for _, term in atom.terms:
-                if isinstance(term, QuantityTerm):
+                if isinstance(term, ltl.QuantityTerm):
                     items = tuple([bound[variable] for variable in term.arguments])
                     if self.values(term.name, items) is None:
                         return NotGivenError(term.name, items)
@@ -148,27 +138,27 @@ class ColumnReader:
         there[layout.starts[first] : layout.starts[last + 1]] = True
         return there
 
-    def _truth(self, formula: Formula, bound: ObjectBinding) -> Truth:
+    def _truth(self, formula: ltl.Formula, bound: ObjectBinding) -> Truth:
         """Three-valued truth of a non-temporal formula in each state."""
 
-        def proposition(part: Proposition) -> Truth:
-            if isinstance(part, Comparison):
+        def proposition(part: ltl.Proposition) -> Truth:
+            if isinstance(part, ltl.Comparison):
                 return self._compared(part, bound)
             items = tuple([bound[variable] for variable in part.arguments])
             return self.atom(part.name, items, part.value)
 
-        def identity(same: Same) -> Truth:
+        def identity(same: ltl.Same) -> Truth:
             return known(np.bool_(bound[same.left] == bound[same.right]))
 
         return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
-    def _compared(self, comparison: Comparison, bound: ObjectBinding) -> Truth:
+    def _compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Truth:
         try:
             return known(self.compared(comparison, bound))
         except NotGivenError:
             return UNKNOWN
 
-    def compared(self, comparison: Comparison, bound: ObjectBinding) -> Mask:
+    def compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Mask:
         """Truth of a comparison in each state. Raises NotGivenError."""
         at = Threshold(comparison.limit, inclusive=True)
         above = Threshold(comparison.limit, inclusive=False)
