@@ -35,44 +35,7 @@ if TYPE_CHECKING:
     from rulec.analysis.lineage.rule_lineage import BookLineage as BookLineage
     from rulec.analysis.lineage.rule_lineage import RuleHistory as RuleHistory
     from rulec.api.session import Session as Session
-    from rulec.api.verbs import alternative_counts as alternative_counts
-    from rulec.api.verbs import analyze as analyze
-    from rulec.api.verbs import audit as audit
-    from rulec.api.verbs import check as check
-    from rulec.api.verbs import compile as compile
-    from rulec.api.verbs import compile_rulebook as compile_rulebook
-    from rulec.api.verbs import coverage as coverage
-    from rulec.api.verbs import diff as diff
-    from rulec.api.verbs import doc as doc
-    from rulec.api.verbs import draw as draw
-    from rulec.api.verbs import envelope as envelope
-    from rulec.api.verbs import envelopes as envelopes
-    from rulec.api.verbs import explain as explain
-    from rulec.api.verbs import find_maneuvers as find_maneuvers
-    from rulec.api.verbs import format as format
-    from rulec.api.verbs import judge_recording as judge_recording
-    from rulec.api.verbs import lineage as lineage
-    from rulec.api.verbs import list as list
-    from rulec.api.verbs import load_rulebook as load_rulebook
-    from rulec.api.verbs import load_scenario as load_scenario
-    from rulec.api.verbs import load_vocabulary as load_vocabulary
-    from rulec.api.verbs import navigation_graph as navigation_graph
-    from rulec.api.verbs import new_rulebook as new_rulebook
-    from rulec.api.verbs import parse_rulebook as parse_rulebook
-    from rulec.api.verbs import read_recording as read_recording
-    from rulec.api.verbs import read_traces as read_traces
-    from rulec.api.verbs import rule_probabilities as rule_probabilities
-    from rulec.api.verbs import show as show
-    from rulec.api.verbs import test as test
-    from rulec.api.verbs import traces as traces
-    from rulec.api.verbs import tree as tree
-    from rulec.api.verbs import verify as verify
-    from rulec.api.verbs import verify_cells as verify_cells
-    from rulec.api.verbs import verify_columns as verify_columns
-    from rulec.api.verbs import verify_many as verify_many
-    from rulec.api.verbs import verify_recording as verify_recording
-    from rulec.api.verbs import write_compiled as write_compiled
-    from rulec.api.verbs import write_traces as write_traces
+    from rulec.api.verbs import *  # noqa: F403 - every verb; each name is in the table below
     from rulec.automata.bundle.compiled_rulebook import CompiledRule as CompiledRule
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor

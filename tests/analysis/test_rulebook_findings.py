@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rulec import analyze
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.conflict_search import are_related, conflict
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
-from rulec.api.rulebook_questions import analyze_rulebook
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.trace import Trace
 from support.generators.random_rule_pairs import ALONE, COUNTED, X, allows, formulas, sides, states
@@ -180,7 +180,7 @@ quantity speed in km/h
 def test_findings(rules, expected, tmp_path):
     path = tmp_path / "example.rules"
     path.write_text(HEAD + rules)
-    found = analyze_rulebook(path)
+    found = analyze(path)
     assert len(found) == len(expected), found
     for one, words in zip(found, expected, strict=True):
         text = " ".join([one.code, one.message, *one.notes])
@@ -198,7 +198,7 @@ def test_weaker_than_what_is_extended(tmp_path):
         "rulebook example\nextends base\noverride rule r { unless fog }\n"
         'soften rule s\ndrop rule t because "so"\noverride rule u { require never (red or wet) }\n'
     )
-    found = analyze_rulebook(path)
+    found = analyze(path)
     assert [(one.code, one.message.split(" than ")[0]) for one in found] == [
         ("R0803", "rule `r` adds nothing: `u` forbids all that it forbids"),
         ("R0806", "rule `r` is laxer"),
@@ -224,6 +224,6 @@ def test_what_is_extended_is_for_the_same_side_of_traffic(tmp_path):
         "rulebook example\nextends base\ntraffic left\n"
         "override rule s (v: vehicle) { unless congested }\n"
     )
-    (only,) = analyze_rulebook(path)
+    (only,) = analyze(path)
     assert only.message.startswith("rule `s` is laxer")
     assert only.notes == ("`base` forbids: { behind(v) and left_of(v) and congested }",)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import rulec
+import rulec.api.verbs
 
 SOURCE = Path(rulec.__file__)
 
@@ -17,12 +18,21 @@ def checked_imports():
     """What type checkers see: name -> module, from the block under TYPE_CHECKING."""
     tree = ast.parse(SOURCE.read_text(encoding="utf-8"))
     (block,) = [node for node in tree.body if isinstance(node, ast.If)]
+    imports = [node for node in block.body if isinstance(node, ast.ImportFrom)]
     return {
-        alias.asname: node.module
-        for node in block.body
-        if isinstance(node, ast.ImportFrom)
+        name: node.module
+        for node in imports
         for alias in node.names
+        for name in (exported(node.module) if alias.name == "*" else [alias.asname])
     }
+
+
+def exported(module):
+    """The names that ``import *`` takes from a module: its own, not what it imports itself."""
+    statements = ast.parse(Path(sys.modules[module].__file__).read_text(encoding="utf-8")).body
+    named = [node.targets[0].id for node in statements if isinstance(node, ast.Assign)]
+    named += [node.name for node in statements if isinstance(node, ast.FunctionDef)]
+    return [name for name in named if not name.startswith("_")]
 
 
 def test_type_checkers_and_python_see_the_same():
@@ -104,8 +114,8 @@ def test_what_verbs_return_is_public():
                 node.id for node in ast.walk(ast.parse(annotation)) if isinstance(node, ast.Name)
             }
     names = {word for word in words if word[0].isupper()}
-    helpers = {"Before", "Fraction", "GraphOptions", "Iterable", "Iterator", "Kind", "Literal"}
-    helpers |= {"Path", "PictureFormat", "Rules", "Sequence", "Unpack"}
+    helpers = {"Before", "Callable", "Fraction", "GraphOptions", "Iterable", "Iterator", "Kind"}
+    helpers |= {"Literal", "Path", "PictureFormat", "Rules", "Sequence", "Unpack"}
     assert names - helpers <= set(rulec.__all__)
 
 

@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook, find_maneuvers, machines
+from rulec import compile_rulebook, find_maneuvers
+from rulec.api.rulebook_compilation import machines
 from rulec.automata import step_compilation
 from rulec.automata.step_compilation import StepCompiler
 from rulec.diagnostics import RulecError, SourceLocation

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.book_tests.example_runs import (
     example_trace,
     example_warning,

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.book_tests.verdict_coverage import uncovered_verdicts, verdicts
 from rulec.rulebook.loader import parse_rulebook

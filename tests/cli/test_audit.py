@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rulec.api.rulebook_questions import audit_rulebook
+import rulec
 from rulec.cli.main import main
 from rulec.report.rulebooks.audit_report import render
 from support.builders import rulebook_family as island
@@ -171,7 +171,7 @@ def test_a_compiled_rulebook_is_not_enough(folder, capsys):
 
 
 def test_a_narrow_page():
-    text = render([audit_rulebook("at")], {}, "text", 80)
+    text = render([rulec.audit("at")], {}, "text", 80)
     assert all(len(line) <= 80 for line in text.splitlines())
     assert (
         """

@@ -61,7 +61,7 @@ def test_a_bug_is_status_70_with_a_line_to_report(monkeypatch, capsys):
     def broken(*_, **__):
         raise KeyError("oops")
 
-    monkeypatch.setattr("rulec.api.workflow.machines", broken)
+    monkeypatch.setattr("rulec.api.rulebook_compilation.machines", broken)
     assert main(["verify", "x", "-r", "esterle2019"]) == 70
     err = capsys.readouterr().err
     assert "bug in rulec" in err

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook, find_maneuvers
+from rulec import compile_rulebook, find_maneuvers
 from rulec.cli.main import main
 from rulec.monitoring.online.running_monitor import Monitor
 

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.cli.main import main
 from rulec.rulebook.loader import parse_rulebook

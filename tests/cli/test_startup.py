@@ -15,7 +15,7 @@ HEAVY = {
     "rich",
     "shapely",
     "rulec.api.session",
-    "rulec.api.workflow",
+    "rulec.api.rulebook_compilation",
     "rulec.monitoring.verdict",
     "rulec.partition",
     "rulec.rulebook.loader",

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-from rulec.api.rulebook_questions import analyze_rulebook, run_examples
-from rulec.api.workflow import compile_rulebook, find_maneuvers
+import rulec
+from rulec import compile_rulebook, find_maneuvers
 from rulec.book_tests.verdict_coverage import uncovered_verdicts
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify_or_reason
@@ -37,7 +37,7 @@ def compiled(text, folder):
 def run_on_examples(text, folder):
     path = folder / "example.rules"
     path.write_text(text, encoding="utf-8")
-    run = run_examples(path)
+    run = rulec.test(path)
     assert all(one.passed for one in run.outcomes)
     return [*run.warnings, *uncovered_verdicts(run)]
 
@@ -45,7 +45,7 @@ def run_on_examples(text, folder):
 def analyzed(text, folder):
     path = folder / "example.rules"
     path.write_text(text, encoding="utf-8")
-    return analyze_rulebook(path)
+    return rulec.analyze(path)
 
 
 def judged_on_a_graph(text, folder):

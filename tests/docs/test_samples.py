@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.monitoring.verify import run

@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from rulec.api.workflow import find_maneuvers
+from rulec import find_maneuvers
 from rulec.partition import navigation_graph
 from rulec.scenario import available_scenarios, load_scenario
 from rulec.scenario.scenario_model import SURFACES

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from rulec.api.workflow import machines
+from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection.requested import RequestedDrives

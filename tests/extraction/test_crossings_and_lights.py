@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rulec.api.workflow import machines
+from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import Drives
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from rulec.api.workflow import machines
+from rulec.api.rulebook_compilation import machines
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, straight, vehicle
 

@@ -7,7 +7,7 @@ are those of the simulation, in s: of the first state by which a rule is violate
 
 import pytest
 
-from rulec.api.workflow import machines
+from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection.requested import RequestedDrives as Wanted
 from rulec.scenario.recording_files import read_recording

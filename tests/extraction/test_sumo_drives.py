@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from rulec.api.workflow import machines
+from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection.requested import RequestedDrives as Wanted
 from rulec.scenario.recording_files import read_recording

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.book_tests.example_runs import example_trace
 from rulec.cli.main import main
 from rulec.monitoring.verify import verify

@@ -3,7 +3,7 @@
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.api.workflow import compile_rulebook, navigation_graph
+from rulec import compile_rulebook, navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances

@@ -11,7 +11,7 @@ from itertools import islice, product
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify
 from rulec.partition import navigation_graph

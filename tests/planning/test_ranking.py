@@ -10,7 +10,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 
-from rulec.api.workflow import compile_rulebook, navigation_graph
+from rulec import compile_rulebook, navigation_graph
 from rulec.monitoring.verify import verify
 from rulec.planning import evaluate, partition_for
 from rulec.planning.ranking.penalties import PenaltyRank, ranks_of

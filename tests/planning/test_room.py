@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.api.workflow import navigation_graph
+from rulec import navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_instances import HARD, SOFT, instances
 from rulec.planning.product.graph_product import explore

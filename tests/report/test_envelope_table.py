@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import assume, given
 
-from rulec.api.workflow import find_maneuvers
+from rulec import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import envelope, navigation_graph
 from rulec.report.maneuvers.envelope_table import COLUMNS, stretches, write_envelopes

@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
-from rulec.api.session_settings import SessionSettings
+from rulec.api.session_settings import SessionSettings, ignore
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -76,7 +76,7 @@ class RulebookVerbs(SessionSettings):
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
                 bound that is no multiple of the step, R0507 if it was compiled for another one.
         """
-        from rulec.api.workflow import compile_rulebook
+        from rulec.api.rulebook_compilation import compile_rulebook
 
         return compile_rulebook(reference, self.search_path, self._warn, step_s, self.at)
 
@@ -106,9 +106,13 @@ class RulebookVerbs(SessionSettings):
 
     def test(self, reference: str | Path, pattern: str | None = None) -> ExampleRun:
         """Run a rulebook's examples whose RULE or RULE/LABEL matches the pattern."""
-        from rulec.api.rulebook_questions import run_examples
+        from rulec.automata.step_compilation import StepCompiler
+        from rulec.book_tests.example_runs import run_rulebook_examples
+        from rulec.rulebook.loader import read_rulebook
 
-        return run_examples(reference, self.search_path, pattern, self.at)
+        loaded = read_rulebook(reference, self.search_path, self.at)
+        compiled = StepCompiler(loaded.rulebook).at_own_steps()
+        return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, pattern)
 
     def coverage(self, run: ExampleRun) -> tuple[RuleCoverage, ...]:
         """Measure what the examples of a run cover, rule by rule."""
@@ -150,6 +154,7 @@ class RulebookVerbs(SessionSettings):
         patterns: Sequence[str] = (),
         step_s: Fraction | float | None = None,
         witnesses: int = 1,
+        on_progress: Callable[[float], object] = ignore,
     ) -> RulebookDiff:
         """Compare the rules of two rulebooks, with witnesses for each difference.
 
@@ -159,35 +164,63 @@ class RulebookVerbs(SessionSettings):
             patterns: compare only rules whose name one of these matches; ``*`` and ``?`` are wild.
             step_s: the step of the traces that rules with bounds in seconds are compared on.
             witnesses: traces to find for each difference.
+            on_progress: is called with the number of rules that have been compared.
 
         Raises:
             RulecError: for what is wrong in one of them.
         """
-        from rulec.api.rulebook_questions import compare_rulebooks
+        from dataclasses import replace
+
+        from rulec.analysis.diff.rulebook_comparison import diff_rulebooks, setting_pairs
+        from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.automata.thresholds import exact
 
-        return compare_rulebooks(
-            first=first,
-            second=second,
-            search_path=self.search_path,
-            at=self.at,
+        book, lineage = read_with_lineage(first, self.search_path, self.at)
+        second_book, second_lineage = read_with_lineage(second, self.search_path, self.at)
+        self._warn(list(dict.fromkeys((*book.warnings, *second_book.warnings))))
+        diff = diff_rulebooks(
+            first=book.rulebook,
+            second=second_book.rulebook,
             patterns=patterns,
             step_s=None if step_s is None else exact(step_s),
-            warn=self._warn,
+            tell=on_progress,
             most=witnesses,
         )
+        # What rules that were not asked for depend on is not asked for either.
+        return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))
 
-    def analyze(self, reference: str | Path) -> tuple[Diagnostic, ...]:
-        """Find defects of a rulebook by its rules' automata. Raises RulecError."""
-        from rulec.api.rulebook_questions import analyze_rulebook
+    def analyze(
+        self, reference: str | Path, *, on_progress: Callable[[float], object] = ignore
+    ) -> tuple[Diagnostic, ...]:
+        """Find defects of a rulebook by its rules' automata. Raises RulecError.
 
-        return analyze_rulebook(reference, self.search_path, self.at)
+        ``on_progress`` is called with the number of rules that have been looked at.
+        """
+        from rulec.analysis.lint.rulebook_findings import rulebook_findings
+        from rulec.rulebook.loader import read_rulebook
+
+        loaded = read_rulebook(reference, self.search_path, self.at)
+        book, extends = loaded.rulebook, loaded.books[-1].extends
+        above = [Path(file.span.source.name) for file in loaded.books[-2:-1]]
+        # On the same side of the road: a treaty's near side is that of the party's traffic.
+        bases = [read_rulebook(name, self.search_path, book.at, book.traffic) for name in above]
+        return rulebook_findings(
+            book, [base.rulebook for base in bases], on_progress, extends.span if extends else None
+        )
 
     def audit(self, reference: str | Path, *, run_examples: bool = False) -> Audit:
-        """Say what a rulebook rests on: citations, examples, certainty. Raises RulecError."""
-        from rulec.api.rulebook_questions import audit_rulebook
+        """Say what a rulebook rests on: citations, examples, certainty. Raises RulecError.
 
-        return audit_rulebook(reference, self.search_path, self.at, self._warn, run=run_examples)
+        ``run_examples``: compile it, too, and find out which of its examples fail.
+        """
+        from rulec.analysis.audit.rulebook_audit import audit
+        from rulec.analysis.lineage.book_lineage import read_with_lineage
+
+        loaded, inherited = read_with_lineage(reference, self.search_path, self.at)
+        self._warn(loaded.warnings)
+        outcomes = self.test(reference).outcomes if run_examples else ()
+        failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
+        return audit(loaded.rulebook, inherited, failing)
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Trace everything in a rulebook to its origin and through its changes."""
@@ -236,6 +269,24 @@ class RulebookVerbs(SessionSettings):
 
     def list(self, kind: Kind = "rulebooks") -> tuple[Listed, ...]:
         """The rulebooks, vocabularies, scenarios or codes that there are, with a title."""
-        from rulec.api.name_listing import listed
+        from rulec.report.text.listing import Listed
 
-        return listed(kind, self._folders())
+        if kind == "codes":
+            from rulec.report.findings.code_registry import all_codes
+
+            return tuple(Listed(text, code.title) for text, code in all_codes().items())
+        if kind == "scenarios":
+            from rulec.resources import scenarios_folder
+            from rulec.scenario import available_scenarios, load_scenario
+
+            abouts = {name: load_scenario(name).about for name in available_scenarios()}
+            return tuple(
+                Listed(name, " ".join(about.split()), str(scenarios_folder() / f"{name}.toml"))
+                for name, about in abouts.items()
+            )
+        from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
+
+        entries = list_rulebooks if kind == "rulebooks" else list_vocabularies
+        return tuple(
+            Listed(entry.name, entry.title, str(entry.path)) for entry in entries(self._folders())
+        )

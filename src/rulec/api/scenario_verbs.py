@@ -39,9 +39,10 @@ class ScenarioVerbs(SessionSettings):
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
         """A scenario as cells and successors over time. Raises RulecError."""
-        from rulec.api.workflow import navigation_graph
+        from rulec.partition import navigation_graph
 
-        return navigation_graph(scenario, **options)
+        scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
+        return navigation_graph(scene, **options)
 
     def find_maneuvers(
         self,
@@ -57,9 +58,11 @@ class ScenarioVerbs(SessionSettings):
         ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
         rules read. Source: algorithm 1 of the paper. Raises RulecError.
         """
-        from rulec.api.workflow import find_maneuvers
+        from rulec.planning import evaluate, partition_for
 
-        return find_maneuvers(scenario, self._compiled(rules), after=after, **options)
+        compiled = self._compiled(rules)
+        options["partition"] = partition_for(compiled, options.get("partition"))
+        return evaluate(self.navigation_graph(scenario, **options), compiled, after)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
         """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     """A name, a path of a source or of a compiled file (.json), or what these lead to."""
 
 
-def ignore(_: Sequence[Diagnostic]) -> None:
-    """Say nothing of warnings."""
+def ignore(_: object) -> None:
+    """Say nothing of warnings or progress."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,6 @@ class SessionSettings:
 
     def _compiled(self, rules: Rules) -> CompiledRulebook:
         # On every trace that is judged, so a rulebook that is compiled already comes first.
-        from rulec.api.workflow import machines
+        from rulec.api.rulebook_compilation import machines
 
         return machines(rules, self.search_path, self._warn, self.at)

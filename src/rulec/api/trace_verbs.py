@@ -103,8 +103,13 @@ class TraceVerbs(SessionSettings):
             RulecError: R0407 or R0507 if the rules do not fit the step, R0612 for a vehicle that is
                 not there, R0610 for a file that is no recording.
         """
-        from rulec.api.workflow import verify_recording
+        from rulec.extraction.recording_verdicts import RecordingVerdicts
+        from rulec.extraction.selection.requested import RequestedDrives
 
-        return verify_recording(recording, self._compiled(rules), wanted, net)
+        file = recording if isinstance(recording, str | Path) else recording.name
+        if isinstance(recording, str | Path):
+            recording = self.read_recording(recording, net)
+        compiled = self._compiled(rules)
+        return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
 
     judge_recording = verify_recording

@@ -25,7 +25,7 @@ def open_session(at: str = "") -> rulec.Session:
 def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
     """Compile a rulebook for any step; print warnings. Raises RulecError."""
     # The tables of automata, 20 ms: not for --help.
-    from rulec.api.workflow import machines
+    from rulec.api.rulebook_compilation import machines
 
     return machines(rulebook, search_path(), print_diagnostics, at)
 

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from rulec.api.workflow import find_maneuvers
+from rulec import find_maneuvers
 from rulec.planning.product.accepted_edges import accepted_edges
 from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.graph_picture import graph_picture

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook
+from rulec import compile_rulebook
 from rulec.monitoring.verify import verify
 from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.trace_picture import ribbon_picture

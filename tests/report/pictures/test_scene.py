@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.api.workflow import find_maneuvers
+from rulec import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
 from rulec.report.pictures.cell_signatures import in_letters

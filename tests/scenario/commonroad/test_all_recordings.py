@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from rulec.api.workflow import compile_rulebook, find_maneuvers, navigation_graph
+from rulec import compile_rulebook, find_maneuvers, navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario

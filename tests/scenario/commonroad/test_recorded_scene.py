@@ -5,7 +5,7 @@ It is one of CommonRoad's, and not part of this project: RULEC_RECORDINGS names 
 
 import pytest
 
-from rulec.api.workflow import find_maneuvers
+from rulec import find_maneuvers
 from rulec.scenario import Choice, load_scenario
 from rulec.scenario.motion import swept
 from support.builders.recordings import RECORDINGS

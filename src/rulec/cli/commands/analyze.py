@@ -12,10 +12,9 @@ from rulec.cli.options.shared_options import (
     rulebooks_argument,
 )
 from rulec.cli.output import counted, print_findings
-from rulec.cli.project import errors_added_to
+from rulec.cli.project import errors_added_to, open_session
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
-from rulec.settings import search_path
 
 
 @click.command()
@@ -33,14 +32,13 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
     """
     # Automata and their analysis, 150 ms: not for --help.
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
-    from rulec.api.rulebook_questions import analyze_rulebook
 
     only_sources(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):
         with errors_added_to(unread), progress(f"analyzing {rulebook}", None) as tell:
-            findings += analyze_rulebook(rulebook, search_path(), at, tell)
+            findings += open_session(at).analyze(rulebook, on_progress=tell)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,

@@ -20,9 +20,9 @@ from rulec.cli.options.shared_options import (
 )
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import counted
-from rulec.cli.project import answer_or_print
+from rulec.cli.project import answer_or_print, open_session
 from rulec.files import written_whole
-from rulec.report.text.console import print_aside, print_diagnostics, progress, put_result
+from rulec.report.text.console import print_aside, progress, put_result
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -86,7 +86,6 @@ def command(
     """
     # Rulebooks and their automata, 140 ms: not for --help.
     from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
-    from rulec.api.rulebook_questions import compare_rulebooks
     from rulec.report.rulebooks import diff_formats, matrix_report
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.loader import load_rulebook
@@ -118,15 +117,8 @@ def command(
     if len(rulebooks) != 2:
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
     with progress("comparing", None) as tell:
-        difference = compare_rulebooks(
-            *rulebooks,
-            search_path=search_path(),
-            at=at,
-            patterns=patterns,
-            step_s=step_s,
-            warn=print_diagnostics,
-            tell=tell,
-            most=most,
+        difference = open_session(at).diff(
+            *rulebooks, patterns=patterns, step_s=step_s, witnesses=most, on_progress=tell
         )
     if witness is not None:
         with written_whole(Path(witness)) as stream:

@@ -1,0 +1,75 @@
+"""Compile rules, given as a name, a path, a rulebook or already compiled."""
+
+# Imports within functions: what all of them need takes 330 ms, this module alone 20 ms.
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from rulec.api.session_settings import Rules
+
+
+def machines(
+    rules: Rules,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    at: str = "",
+) -> CompiledRulebook:
+    """Compile rules into automata that adapt to any trace's step.
+
+    ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
+    than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
+    `law` line or else today.
+    """
+    if isinstance(rules, CompiledRulebook):
+        return rules
+    if isinstance(rules, str | Path):
+        if Path(rules).suffix == ".json":
+            from rulec.automata.bundle.bundle_file import read_compiled
+
+            return read_compiled(Path(rules))
+        from rulec.pipeline import compile_source
+
+        return compile_source(rules, search_path, at, any_step=True, on_warning=warn)
+    from rulec.automata.compiler import lower
+    from rulec.automata.step_compilation import StepCompiler, build_automata
+
+    return build_automata(lower(rules, any_step=True), StepCompiler(rules))
+
+
+def compile_rulebook(
+    reference: Rules,
+    search_path: Sequence[str | Path] = (),
+    warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
+    step_s: Fraction | float | None = None,
+    at: str = "",
+) -> CompiledRulebook:
+    """Compile rules for one step, or for that of their examples.
+
+    ``step_s`` (above 0, a float meaning the decimal that is written) is that step; without it rules
+    with bounds in seconds are compiled for the step of their own examples. R0407 for a bound that
+    is no multiple of the step, R0507 if the rules have been compiled for another one.
+    """
+    from rulec.automata.thresholds import exact
+
+    step = None if step_s is None else exact(step_s)
+    if isinstance(reference, CompiledRulebook) or (
+        isinstance(reference, str | Path) and Path(reference).suffix == ".json"
+    ):
+        compiled = machines(reference)
+        return compiled if step is None else compiled.at_step(step)
+    if isinstance(reference, str | Path):
+        from rulec.pipeline import compile_source
+
+        return compile_source(reference, search_path, at, step, on_warning=warn)
+    from rulec.automata.compiler import lower
+    from rulec.automata.step_compilation import StepCompiler, build_automata
+
+    return build_automata(lower(reference, step), StepCompiler(reference))
