@@ -7,13 +7,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from rulec.api.session_settings import Rules
+    from rulec.rulebook.rulebook_model import Rulebook
+
+    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
+    """A name, a path of a source or of a compiled file (.json), or what these lead to."""
 
 
 def machines(

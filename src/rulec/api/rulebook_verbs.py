@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.analysis.lineage.rule_lineage import BookLineage
-    from rulec.api.session_settings import Rules
+    from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.book_tests.edge_coverage import RuleCoverage
     from rulec.book_tests.example_runs import ExampleRun

@@ -13,7 +13,7 @@ from rulec.api.session_settings import SessionSettings
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from rulec.api.session_settings import Rules
+    from rulec.api.rulebook_compilation import Rules
     from rulec.partition import Envelope, GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.probability.alternative_predictions import AlternativeCounts

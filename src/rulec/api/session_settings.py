@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
+    from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.rulebook.rulebook_model import Rulebook
-
-    Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
-    """A name, a path of a source or of a compiled file (.json), or what these lead to."""
 
 
 def ignore(_: object) -> None:

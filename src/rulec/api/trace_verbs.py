@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
-    from rulec.api.session_settings import Rules
+    from rulec.api.rulebook_compilation import Rules
     from rulec.diagnostics import RulecError
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection.requested import RequestedDrives

@@ -11,7 +11,7 @@ from rulec.api.session import Session
 from rulec.api.session_settings import ignore
 
 if TYPE_CHECKING:
-    from rulec.api.session_settings import Rules
+    from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.diagnostics import Diagnostic
     from rulec.rulebook.rulebook_model import Rulebook
