@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.partition.cells.snapping import EPSILON_M, snap_table
+from rulec.partition.cells.roadway import EPSILON_M, snap_table
 
 NEAR = 0.9 * EPSILON_M
 

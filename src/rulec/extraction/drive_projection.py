@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.partition.cell_valuations import PAPER_SURFACE
+from rulec.partition.cell_graph import PAPER_SURFACE
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 

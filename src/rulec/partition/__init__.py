@@ -3,11 +3,12 @@
 scenario -> occupancy -> regions -> cells -> adjacency, continuation -> edges and margins
 """
 
-from rulec.partition.cells.adjacency import AdjacencyName
+from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.cells.cell_links import AdjacencyName
 from rulec.partition.cells.cell_model import Cell, Layer
 from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.envelope import Envelope, envelope
-from rulec.partition.navigation_graph import GraphOptions, NavigationGraph, navigation_graph
+from rulec.partition.navigation_graph import GraphOptions, navigation_graph
 
 __all__ = [
     "AdjacencyName",

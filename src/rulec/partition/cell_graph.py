@@ -1,21 +1,30 @@
-"""Layered graph of cells, as data."""
+"""The navigation graph as data: layers of cells, their edges, and its other forms."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING
 
-from rulec.partition.cells.adjacency import AdjacencyName
-from rulec.partition.cells.cell_model import Layer
-from rulec.partition.cells.predicted_occupancy import Predicted
-from rulec.partition.cells.regions import ExtentName, PartitionName
+from rulec.partition.cells.cell_links import AdjacencyName
+from rulec.partition.cells.cell_model import Cell, Layer
+from rulec.partition.cells.occupancy import Predicted
+from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
 from rulec.partition.time_margin import Edges, Margins
 from rulec.scenario import Obstacle, Scenario
+from rulec.trace import State, TraceGraph, Value
+from rulec.value_display import short_repr
+
+if TYPE_CHECKING:
+    import networkx
+
+PAPER_SURFACE = {"carriageway": "R_cw", "crossing": "R_pc"}
 
 
 @dataclass(frozen=True)
-class CellGraph:
+class NavigationGraph:
     """Layered directed graph whose paths from start to goals are maneuvers.
 
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
@@ -23,6 +32,8 @@ class CellGraph:
     that are on the road at some time, ``alternatives`` as less likely predictions have them, and
     ``present`` the first and last layer of each.
     """
+
+    __repr__ = short_repr
 
     scenario: Scenario
     partition: PartitionName
@@ -52,3 +63,102 @@ class CellGraph:
     def edges(self) -> int:
         """Number of edges, staying included."""
         return sum(len(followers) for layer in self.successors for followers in layer)
+
+    def at_times(self, names: Mapping[str, str]) -> dict[str, tuple[int, int]]:
+        """First and last layers of those not always present, under their new names."""
+        always = (0, len(self.layers) - 1)
+        spans = {new: self.present[name] for name, new in names.items()}
+        return {new: span for new, span in spans.items() if span != always}
+
+    def trace_graph(self) -> TraceGraph:
+        """The cells as states and whole-number costs, without geometry.
+
+        With the partition ``paper``: ``position`` (object -> b, f, l, r) and ``surface`` (R_cw,
+        R_pc). With ``fine``: ``station``, ``lateral`` and ``surface``. The scenario's signals are
+        added. An object that is not on the road in a layer is missing from its states.
+
+        A change costs 1 / margin, in 1/s. To be added exactly it is counted in ``cost_unit``, of
+        which every such cost is a whole multiple.
+        """
+        whole = lcm(*range(1, len(self.layers) + 1))
+        return TraceGraph(
+            step_s=self.step_s,
+            objects={name: obstacle.type for name, obstacle in self.objects.items()},
+            present=self.at_times({name: name for name in self.objects}),
+            states=tuple(map(self._states, self.layers)),
+            successors=self.successors,
+            weights=tuple(_weights(margins, whole) for margins in self.margins),
+            margins=self.margins,
+            cost_unit=Fraction(1) / (whole * self.step),
+            start=self.start,
+            goals=self.goals,
+        )
+
+    def _states(self, layer: Layer) -> tuple[State, ...]:
+        signals = self.signals_of({name: self.objects[name] for name in layer.objects})
+        return tuple(
+            {**valuation(cell, layer.objects, cell.code), **signals} for cell in layer.cells
+        )
+
+    def signals_of(self, objects: Mapping[str, Obstacle]) -> State:
+        """Signals of the scenario and of some objects, constant over time."""
+        signals: dict[str, dict[str, Value]] = {}
+        for name, obstacle in objects.items():
+            for signal, value in obstacle.signals.items():
+                signals.setdefault(signal, {})[name] = value
+        return {**self.scenario.signals, **signals}
+
+    def to_networkx(self) -> networkx.DiGraph:
+        """The graph for networkx, with nodes ``(layer, cell index)``.
+
+        Nodes have ``cell``, ``state`` (the valuation), ``polygon`` (shapely, in metres of s and d),
+        ``start`` and ``goal`` (bool); edges ``margin_s`` (seconds; None for staying), ``weight``
+        (int, in ``cost_unit``) and ``cost`` (1/s); the graph ``step_s`` and ``cost_unit``
+        (Fraction, 1/s).
+        """
+        import networkx  # it takes 0.1 s to load, and few need it
+
+        traces = self.trace_graph()
+        graph = networkx.DiGraph(step_s=self.step_s, cost_unit=traces.cost_unit)
+        last = len(self.layers) - 1
+        for p, layer in enumerate(self.layers):
+            for i, cell in enumerate(layer.cells):
+                graph.add_node(
+                    (p, i),
+                    cell=cell,
+                    state=traces.states[p][i],
+                    polygon=cell.polygon,
+                    start=p == 0 and i == self.start,
+                    goal=p == last and i in self.goals,
+                )
+        for p, rows in enumerate(zip(self.successors, self.margins, traces.weights, strict=True)):
+            for i, (followers, margins, weights) in enumerate(zip(*rows, strict=True)):
+                for j, margin, weight in zip(followers, margins, weights, strict=True):
+                    graph.add_edge(
+                        (p, i),
+                        (p + 1, j),
+                        margin_s=None if margin is None else float(margin * self.step),
+                        weight=weight,
+                        cost=float(weight * traces.cost_unit),
+                    )
+        return graph
+
+
+def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
+    """Surface and relations of a cell; ``code`` has a byte for each of ``names``."""
+    if cell.partition == "paper":
+        return {
+            "position": dict(zip(names, code.decode("ascii"), strict=False)),
+            "surface": PAPER_SURFACE[cell.surface],
+        }
+    return {
+        "station": dict(zip(names, map(STATION_OF.__getitem__, code), strict=False)),
+        "lateral": dict(zip(names, map(LATERAL_OF.__getitem__, code), strict=False)),
+        "surface": cell.surface,
+    }
+
+
+def _weights(margins: Margins, whole: int) -> tuple[tuple[int, ...], ...]:
+    return tuple(
+        tuple(0 if margin is None else whole // margin for margin in row) for row in margins
+    )

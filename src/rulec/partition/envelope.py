@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import RulecError
+from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.cells.cell_model import Cell
-from rulec.partition.navigation_graph import NavigationGraph
 from rulec.partition.partition_messages import NOT_A_PATH
 from rulec.value_display import short_repr
 
@@ -33,35 +35,28 @@ class Envelope:
 
 
 def envelope(graph: NavigationGraph, path: Sequence[int]) -> tuple[Envelope, ...]:
-    """Envelope of a path, layer by layer.
-
-    ``path[p]`` is the index of its cell in layer p.
+    """Envelope of a path, layer by layer; ``path[p]`` is the index of its cell in layer p.
 
     Raises:
         RulecError: R0609 if ``path`` does not follow the graph from its first layer.
     """
     if len(path) > len(graph.layers):
-        raise RulecError(
-            _stray(f"the path has {len(path)} cells", f"at most {len(graph.layers)}, one a layer")
-        )
+        expected = f"at most {len(graph.layers)}, one a layer"
+        raise _stray(f"the path has {len(path)} cells", expected)
     for p, i in enumerate(path):
-        if not 0 <= i < len(graph.layers[p].cells):
-            count = len(graph.layers[p].cells)
-            raise RulecError(
-                _stray(f"layer {p} has no cell {i}", f"a cell's index from 0 to {count - 1}")
-            )
+        count = len(graph.layers[p].cells)
+        if not 0 <= i < count:
+            raise _stray(f"layer {p} has no cell {i}", f"a cell's index from 0 to {count - 1}")
         if p and i not in (followers := graph.successors[p - 1][path[p - 1]]):
-            raise RulecError(
-                _stray(
-                    f"no edge leads from cell {path[p - 1]} of layer {p - 1} to cell {i}",
-                    "one of " + ", ".join(map(str, followers)) if followers else "no successor",
-                )
+            raise _stray(
+                f"no edge leads from cell {path[p - 1]} of layer {p - 1} to cell {i}",
+                "one of " + ", ".join(map(str, followers)) if followers else "no successor",
             )
     return tuple(_bounds(graph.layers[p].cells[i]) for p, i in enumerate(path))
 
 
-def _stray(message: str, expected: str) -> Diagnostic:
-    return NOT_A_PATH.at(
+def _stray(message: str, expected: str) -> RulecError:
+    return NOT_A_PATH.error(
         None,
         message,
         expected=f"expected {expected}",
@@ -75,11 +70,10 @@ def _bounds(cell: Cell) -> Envelope:
     right: list[tuple[float, float]] = []
     for start in cuts[:-1]:
         here = [box for box in cell.boxes if box.s_min <= start < box.s_max]
-        _extend(left, start, max(box.d_max for box in here))
-        _extend(right, start, min(box.d_min for box in here))
-    return Envelope(cuts[-1], cuts[0], tuple(left), tuple(right))
+        left.append((start, max(box.d_max for box in here)))
+        right.append((start, min(box.d_min for box in here)))
+    return Envelope(cuts[-1], cuts[0], _breakpoints(left), _breakpoints(right))
 
 
-def _extend(profile: list[tuple[float, float]], s: float, d: float) -> None:
-    if not profile or profile[-1][1] != d:
-        profile.append((s, d))
+def _breakpoints(bounds: Sequence[tuple[float, float]]) -> Profile:
+    return tuple(next(same) for _, same in groupby(bounds, key=itemgetter(1)))

@@ -7,44 +7,21 @@ one open, ours is in ``docs/scenarios.md``.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypedDict, get_args
+from typing import TypedDict, get_args
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.partition.cell_graph import CellGraph
-from rulec.partition.cell_valuations import trace_graph
-from rulec.partition.cells.adjacency import AdjacencyName, neighbours
+from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.cells.cell_links import AdjacencyName, continuations, neighbours
 from rulec.partition.cells.cell_model import Layer
 from rulec.partition.cells.cell_plane import plane
-from rulec.partition.cells.continuation import continuations
 from rulec.partition.cells.occupancy import scene
 from rulec.partition.cells.regions import ExtentName, PartitionName
-from rulec.partition.cells.snapping import snapped
-from rulec.partition.networkx_graph import to_networkx
+from rulec.partition.cells.roadway import snapped
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
 from rulec.partition.time_margin import edges
 from rulec.scenario import Scenario
 from rulec.scenario.time_grid import Timing, timing
-from rulec.value_display import short_repr
-
-if TYPE_CHECKING:
-    import networkx
-
-    from rulec.trace.trace_model import TraceGraph
-
-
-class NavigationGraph(CellGraph):
-    """Cell graph with its two other forms: a trace graph, and one for networkx."""
-
-    __repr__ = short_repr
-
-    def trace_graph(self) -> TraceGraph:
-        """The graph as valuations and whole-number costs, without geometry."""
-        return trace_graph(self)
-
-    def to_networkx(self) -> networkx.DiGraph:
-        """The graph for networkx; see ``rulec.partition.networkx_graph.to_networkx``."""
-        return to_networkx(self, self.trace_graph())
 
 
 class GraphOptions(TypedDict, total=False):
@@ -83,9 +60,18 @@ def navigation_graph(
             R0608 for an unknown partition, adjacency or extent.
     """
     partition = partition or "paper"
-    _check_choice("partition", partition, get_args(PartitionName))
-    _check_choice("adjacency", adjacency, get_args(AdjacencyName))
-    _check_choice("extent", extent, get_args(ExtentName))
+    for what, name, names_type in (
+        ("partition", partition, PartitionName),
+        ("adjacency", adjacency, AdjacencyName),
+        ("extent", extent, ExtentName),
+    ):
+        if name not in (known := get_args(names_type)):
+            raise UNKNOWN_PARTITION.error(
+                None,
+                f"there is no {what} `{name}`",
+                expected=f"expected one of {named(known)}",
+                help=did_you_mean(str(name), known),
+            )
     times = timing(
         scenario.horizon_s if horizon_s is None else horizon_s,
         scenario.step_s if step_s is None else step_s,
@@ -99,22 +85,12 @@ def navigation_graph(
         plane(places.roadway, regions, partition, names)
         for regions, names in zip(places.swept, places.names, strict=True)
     ]
-    start = start_cell(
-        first=planes[0],
-        places=places,
-        scenario=scenario,
-        timing=times,
-        partition=partition,
-        extent=extent,
-    )
-    instants = [
-        plane(places.roadway, regions, partition, [str(region.obstacle) for region in regions])
-        for regions in places.instants
-    ]
-    onward = [
-        continuations(before, instant, after)
-        for (before, after), instant in zip(pairwise(planes), instants, strict=True)
-    ]
+    start = start_cell(planes[0], places, scenario, times, partition=partition, extent=extent)
+    onward = []
+    for (before, after), regions in zip(pairwise(planes), places.instants, strict=True):
+        obstacles = [str(region.obstacle) for region in regions]
+        instant = plane(places.roadway, regions, partition, obstacles)
+        onward.append(continuations(before, instant, after))
     layers = tuple(
         Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
         for p, (flat, names, others) in enumerate(
@@ -122,6 +98,7 @@ def navigation_graph(
         )
     )
     successors, margins = edges(layers, onward)
+    predictions = places.predicted_of.items()
     goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
     return NavigationGraph(
         scenario=scenario,
@@ -130,13 +107,9 @@ def navigation_graph(
         extent=extent,
         step=times.step,
         objects={
-            name: predicted.obstacle
-            for name, predicted in places.predicted_of.items()
-            if not predicted.number
+            name: prediction.obstacle for name, prediction in predictions if not prediction.number
         },
-        alternatives={
-            name: predicted for name, predicted in places.predicted_of.items() if predicted.number
-        },
+        alternatives={name: prediction for name, prediction in predictions if prediction.number},
         present=places.present,
         layers=layers,
         successors=successors,
@@ -146,13 +119,3 @@ def navigation_graph(
             i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)
         ),
     )
-
-
-def _check_choice(what: str, name: str, known: tuple[str, ...]) -> None:
-    if name not in known:
-        raise UNKNOWN_PARTITION.error(
-            None,
-            f"there is no {what} `{name}`",
-            expected=f"expected one of {named(known)}",
-            help=did_you_mean(str(name), known),
-        )

@@ -12,10 +12,9 @@ from fractions import Fraction
 from itertools import compress
 from typing import TypeVar
 
-from rulec.partition.cell_valuations import relations, signals_of
+from rulec.partition.cell_graph import NavigationGraph, valuation
 from rulec.partition.cells.cell_model import Cell, Layer
-from rulec.partition.cells.predicted_occupancy import HIT, Predicted
-from rulec.partition.navigation_graph import NavigationGraph
+from rulec.partition.cells.occupancy import HIT, Predicted
 from rulec.scenario import Obstacle
 from rulec.trace.trace_model import State, TraceGraph
 
@@ -41,30 +40,23 @@ class PredictedPath:
     hit: frozenset[str]
 
 
-def everybody(graph: NavigationGraph) -> dict[str, Predicted]:
-    """Obstacles on the road by some prediction, by the graph's names."""
-    likeliest = {name: Predicted(object_, object_.id, 0) for name, object_ in graph.objects.items()}
-    return {**likeliest, **graph.alternatives}
-
-
 def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath:
     """A path, given by its cells' indices, as all predictions have it."""
     cells = [layer.cells[i] for layer, i in zip(graph.layers, path, strict=True)]
     weights = _told_apart(graph, cells)
     who = {
-        name: predicted
-        for name, predicted in everybody(graph).items()
-        if predicted.number in weights[predicted.of]
+        name: prediction
+        for name, prediction in _predictions(graph).items()
+        if prediction.number in weights[prediction.of]
     }
+    named = {name: name for name in who}
     last = len(path) - 1
     step = ((0,),)
     traces = TraceGraph(
         step_s=graph.step_s,
-        objects={name: predicted.obstacle.type for name, predicted in who.items()},
-        present={name: graph.present[name] for name in who if graph.present[name] != (0, last)},
-        states=tuple(
-            _states(graph, p, [i], who, {name: name for name in who}) for p, i in enumerate(path)
-        ),
+        objects={name: prediction.obstacle.type for name, prediction in who.items()},
+        present=graph.at_times(named),
+        states=tuple(_states(graph, p, [i], who, named) for p, i in enumerate(path)),
         successors=(step,) * last,
         weights=(step,) * last,
         margins=(((None,),),) * last,
@@ -76,29 +68,31 @@ def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath
     return PredictedPath(traces, weights, who, frozenset().union(*hit))
 
 
+def _predictions(graph: NavigationGraph) -> dict[str, Predicted]:
+    """Obstacles on the road by some prediction, by the graph's names."""
+    likeliest = {name: Predicted(object_, object_.id, 0) for name, object_ in graph.objects.items()}
+    return {**likeliest, **graph.alternatives}
+
+
 def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict[int, Fraction]]:
     """The predictions of each obstacle that cells tell apart, with their weights."""
-    who = everybody(graph)
-    said: dict[tuple[str, int], dict[int, int]] = {}
+    predictions = _predictions(graph)
+    codes: dict[tuple[str, int], dict[int, int]] = {}
     for p, (layer, cell) in enumerate(zip(graph.layers, cells, strict=True)):
         for name, code in zip((*layer.objects, *layer.alternatives), cell.code, strict=True):
-            said.setdefault((who[name].of, who[name].number), {})[p] = code
+            codes.setdefault((predictions[name].of, predictions[name].number), {})[p] = code
     result: dict[str, dict[int, Fraction]] = {}
     for obstacle in graph.scenario.obstacles:
         own = result[obstacle.id] = {0: obstacle.weight}
         for number, alternative in enumerate(obstacle.alternatives, start=1):
-            alike = (
-                k for k in own if said.get((obstacle.id, k)) == said.get((obstacle.id, number))
-            )
-            known = next(alike, number)
-            own[known] = own.get(known, Fraction(0)) + alternative.weight
+            there = codes.get((obstacle.id, number))
+            same = next((k for k in own if codes.get((obstacle.id, k)) == there), number)
+            own[same] = own.get(same, Fraction(0)) + alternative.weight
     return result
 
 
 def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
-    """Paths without a collision in a world, with their valuations.
-
-    None if there are none.
+    """Paths without a collision in a world, with their valuations; None if there are none.
 
     Obstacles have the names that they have in the scenario, whatever they do.
     """
@@ -109,13 +103,10 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
     ]
     if graph.start not in free[0] or not all(free):
         return None
-    last = len(graph.layers) - 1
     return replace(
         _thinned(graph.trace_graph(), free),
-        objects={named[name]: predicted.obstacle.type for name, predicted in who.items()},
-        present={
-            named[name]: graph.present[name] for name in who if graph.present[name] != (0, last)
-        },
+        objects={named[name]: prediction.obstacle.type for name, prediction in who.items()},
+        present=graph.at_times(named),
         states=tuple(_states(graph, p, cells, who, named) for p, cells in enumerate(free)),
     )
 
@@ -123,20 +114,19 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
 def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
     """Obstacles on the road in a world, by their names there."""
     who, named = _in_world(graph, world)
-    return {named[name]: predicted.obstacle for name, predicted in who.items()}
+    return {named[name]: prediction.obstacle for name, prediction in who.items()}
 
 
 def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
     """Names in the graph and in the world of obstacles on the road."""
-    everyone = everybody(graph)
     who = {
-        name: predicted
-        for name, predicted in everyone.items()
-        if world.get(predicted.of, 0) == predicted.number
+        name: prediction
+        for name, prediction in _predictions(graph).items()
+        if world.get(prediction.of, 0) == prediction.number
     }
     return who, {
-        name: predicted.of if name == predicted.obstacle.id else name
-        for name, predicted in who.items()
+        name: prediction.of if name == prediction.obstacle.id else name
+        for name, prediction in who.items()
     }
 
 
@@ -160,12 +150,11 @@ def _states(
     here = [
         (i, name) for i, name in enumerate((*layer.objects, *layer.alternatives)) if name in who
     ]
-    signals = signals_of(graph, {named[name]: who[name].obstacle for _, name in here})
+    signals = graph.signals_of({named[name]: who[name].obstacle for _, name in here})
     states = []
     for cell in (layer.cells[i] for i in cells):
-        told = [(named[name], cell.code[i]) for i, name in here if cell.code[i] != HIT]
-        code = bytes([number for _, number in told])
-        states.append({**relations(cell, [name for name, _ in told], code), **signals})
+        codes = {named[name]: cell.code[i] for i, name in here if cell.code[i] != HIT}
+        states.append({**valuation(cell, list(codes), bytes(codes.values())), **signals})
     return tuple(states)
 
 

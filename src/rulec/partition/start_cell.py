@@ -26,11 +26,9 @@ def start_cell(
     scenario: Scenario,
     timing: Timing,
     partition: PartitionName,
-    extent: ExtentName = "lane",
+    extent: ExtentName,
 ) -> int:
-    """Cell of the first layer that holds ego's centre.
-
-    On a border, the free cell to the left and ahead.
+    """Cell of the ``first`` layer with ego's centre; on a border the one left and ahead.
 
     Raises:
         RulecError: R0607 if an obstacle sweeps that place within the first interval.
@@ -63,6 +61,9 @@ def start_cell(
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
     finer = step_that_leaves_room(scenario, timing, partition, extent, 2)
+    remedy = "choose another moment or another ego with --at-time and --ego"
+    if scenario.account is None:
+        remedy = "move ego along the road, or that obstacle"
     raise NO_START_CELL.error(
         None,
         f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
@@ -70,14 +71,8 @@ def start_cell(
         expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
         help=f"a step of {float(finer.step):g} s would do"
         if finer
-        else f"a smaller step does not help here: {_remedy(scenario)}",
+        else f"a smaller step does not help here: {remedy}",
     )
-
-
-def _remedy(scenario: Scenario) -> str:
-    if scenario.account is None:
-        return "move ego along the road, or that obstacle"
-    return "choose another moment or another ego with --at-time and --ego"
 
 
 def step_that_leaves_room(

@@ -10,9 +10,10 @@ is ours.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
+from rulec.partition.cells.cell_links import Links, inverse
 from rulec.partition.cells.cell_model import Layer
-from rulec.partition.cells.continuation import Links, inverse
 
 Edges = tuple[tuple[int, ...], ...]
 Margins = tuple[tuple[int | None, ...], ...]
@@ -68,13 +69,7 @@ def _runs(layers: Sequence[Layer], back: Sequence[Links]) -> list[_Runs]:
         current: _Runs = {}
         for a, row in enumerate(layer.neighbours):
             for b in row:
-                current[a, b] = 1 + max(
-                    (
-                        earlier.get((x, y), 0)
-                        for x in (links[a] if p else ())
-                        for y in (links[b] if p else ())
-                    ),
-                    default=0,
-                )
+                before = product(links[a], links[b]) if p else ()
+                current[a, b] = 1 + max((earlier.get(pair, 0) for pair in before), default=0)
         runs.append(current)
     return runs

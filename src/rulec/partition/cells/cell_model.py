@@ -36,19 +36,13 @@ class Cell:
     @property
     def bounds(self) -> Box:
         """The smallest rectangle around the cell."""
-        return Box(
-            min(box.s_min for box in self.boxes),
-            max(box.s_max for box in self.boxes),
-            min(box.d_min for box in self.boxes),
-            max(box.d_max for box in self.boxes),
-        )
+        s = [place for box in self.boxes for place in (box.s_min, box.s_max)]
+        d = [place for box in self.boxes for place in (box.d_min, box.d_max)]
+        return Box(min(s), max(s), min(d), max(d))
 
     @property
     def signature(self) -> Signature:
-        """Relation to every object, by its name.
-
-        A letter, or (station, lateral) if ``fine``.
-        """
+        """Relation to every object by its name: a letter, or (station, lateral) if ``fine``."""
         if self.partition == "paper":
             return dict(zip(self.objects, self.code.decode("ascii"), strict=False))
         return {
@@ -66,7 +60,7 @@ class Cell:
         )
 
     def meets(self, region: Box) -> bool:
-        """Has it some area in the region?"""
+        """Tell whether some area is in the region."""
         return any(box.overlaps(region) for box in self.boxes)
 
 
@@ -90,19 +84,13 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Road cut into cells for an interval or instant.
-
-    Its rows go from right to left.
-    """
+    """Road cut into cells for an interval or instant, its rows from right to left."""
 
     rows: tuple[Row, ...]
     cells: tuple[Cell, ...]
 
     def cells_at(self, s: float, d: float) -> Iterator[int]:
-        """Cells whose closure holds a point.
-
-        First those to its right, and behind it.
-        """
+        """Cells whose closure holds a point, first those to its right, and behind it."""
         for row in self.rows:
             if row.d_min <= d <= row.d_max:
                 for run in row.runs:
@@ -114,11 +102,9 @@ class Plane:
 class Layer:
     """Cells of ``[start_s, start_s + step]``.
 
-    ``neighbours[i]`` are those adjacent to cell ``i``.
-
-    Neighbours are in ascending order, never include the cell itself, and with the adjacency
-    ``forward`` need not be mutual. ``alternatives`` are objects as less likely predictions have
-    them.
+    ``neighbours[i]`` are those adjacent to cell ``i``, ascending, never the cell itself; with the
+    adjacency ``forward`` they need not be mutual. ``alternatives`` are objects as less likely
+    predictions have them.
     """
 
     __repr__ = short_repr

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from itertools import groupby, pairwise
+from itertools import accumulate, groupby, pairwise
 
 from rulec.partition.cells.cell_model import Cell, Plane, Row, Run
 from rulec.partition.cells.regions import OCCUPIED, PartitionName, Region
@@ -26,36 +26,31 @@ _Piece = tuple[int, int, bytes]
 def plane(
     roadway: Roadway, regions: Sequence[Region], partition: PartitionName, names: Sequence[str]
 ) -> Plane:
-    """Cut the road by the obstacles' regions.
-
-    ``names`` are the obstacles', in the order of the regions.
-    """
+    """Cut the road by the regions of obstacles, which have these ``names``, in their order."""
     s_cuts, d_cuts = _cuts(roadway, regions)
     rows = [list(_pieces(roadway, regions, s_cuts, bounds)) for bounds in pairwise(d_cuts)]
     numbers = _connected(rows)
-    boxes: dict[int, list[Box]] = {}
-    labels: dict[int, bytes] = {}
+    parts: dict[int, tuple[bytes, list[Box]]] = {}
     finished: list[Row] = []
     for pieces, of_piece, (d_min, d_max) in zip(rows, numbers, pairwise(d_cuts), strict=True):
         runs = []
         for (first, last, label), cell in zip(pieces, of_piece, strict=True):
             run = Run(s_cuts[first], s_cuts[last], cell)
             runs.append(run)
-            labels[cell] = label
-            boxes.setdefault(cell, []).append(Box(run.s_min, run.s_max, d_min, d_max))
+            parts.setdefault(cell, (label, []))[1].append(Box(run.s_min, run.s_max, d_min, d_max))
         finished.append(Row(d_min, d_max, tuple(runs)))
     objects = tuple(names)
-    cells = tuple(
+    cells = (
         Cell(
-            tuple(boxes[i]),
-            "crossing" if labels[i][:1] == _CROSSING else "carriageway",
+            tuple(boxes),
+            "crossing" if label[:1] == _CROSSING else "carriageway",
             partition,
             objects,
-            labels[i][1:],
+            label[1:],
         )
-        for i in range(len(boxes))
+        for label, boxes in parts.values()  # which are numbered in reading order
     )
-    return Plane(tuple(finished), cells)
+    return Plane(tuple(finished), tuple(cells))
 
 
 def _cuts(roadway: Roadway, regions: Sequence[Region]) -> tuple[list[float], list[float]]:
@@ -76,10 +71,7 @@ def _cuts(roadway: Roadway, regions: Sequence[Region]) -> tuple[list[float], lis
 def _pieces(
     roadway: Roadway, regions: Sequence[Region], s_cuts: list[float], bounds: tuple[float, float]
 ) -> Iterator[_Piece]:
-    """Free runs of one row.
-
-    ``columns`` has a string per obstacle, read crosswise.
-    """
+    """Free runs of one row, between ``bounds`` in ``d``."""
     width = len(s_cuts) - 1
     surface = bytearray(_CARRIAGEWAY * width)
     for start, end in roadway.crossings:
@@ -90,6 +82,7 @@ def _pieces(
             first, last = _columns(s_cuts, hole.s_min, hole.s_max)
             surface[first:last] = bytes([OCCUPIED]) * (last - first)
     columns = [bytes(surface)]
+    """A string for the surface, one per obstacle; read crosswise they are labels."""
     for region in regions:
         extent = region.extent
         first, last = _columns(s_cuts, extent.s_min, extent.s_max)
@@ -112,9 +105,7 @@ def _columns(s_cuts: list[float], start: float, end: float) -> tuple[int, int]:
 
 def _connected(rows: list[list[_Piece]]) -> list[list[int]]:
     """The cell of every piece, cells numbered from 0 in reading order."""
-    offsets = [0]
-    for row in rows:
-        offsets.append(offsets[-1] + len(row))
+    offsets = list(accumulate(map(len, rows), initial=0))
     parent = list(range(offsets[-1]))
 
     def root(i: int) -> int:
@@ -128,12 +119,12 @@ def _connected(rows: list[list[_Piece]]) -> list[list[int]]:
         for i, (first, last, label) in enumerate(lower):
             while j < len(upper) and upper[j][1] <= first:
                 j += 1
-            k = j
-            while k < len(upper) and upper[k][0] < last:
+            for k in range(j, len(upper)):
+                if upper[k][0] >= last:
+                    break
                 if upper[k][2] == label:
                     a, b = root(base + i), root(top + k)
                     parent[max(a, b)] = min(a, b)
-                k += 1
     numbers: dict[int, int] = {}
     return [
         [numbers.setdefault(root(base + i), len(numbers)) for i in range(len(row))]

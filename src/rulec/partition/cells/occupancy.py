@@ -2,21 +2,54 @@
 
 An obstacle is in a layer if what it sweeps there has some area on the road. One that leaves and
 comes back counts as another object, called ``id_2``: a rule is judged on one stretch of presence.
+
+Cells avoid what is occupied if everybody does what is likeliest. Each other prediction cuts the
+road too, as an obstacle of its own would, but what it occupies is road: there ego is hit by it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import count, pairwise
 
-from rulec.partition.cells.predicted_occupancy import Predicted, entered, predicted
-from rulec.partition.cells.regions import ExtentName, PartitionName, Region, region_of
-from rulec.partition.cells.roadway import Roadway, coordinates, roadway
-from rulec.partition.cells.snapping import Snap, snap_table, snapped
+from rulec.partition.cells.regions import OCCUPIED, ExtentName, PartitionName, Region, region_of
+from rulec.partition.cells.roadway import Roadway, Snap, coordinates, roadway, snap_table, snapped
 from rulec.scenario import Box, Obstacle, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import Timing
+
+HIT = ord("x")
+"""In place of a relation to an obstacle as a less likely prediction has it: that is here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """Obstacle by one prediction; ``number`` 0 is the likeliest.
+
+    ``obstacle`` moves by that prediction. Its ``id`` is like that of no other; ``of`` is the id in
+    the scenario.
+    """
+
+    obstacle: Obstacle
+    of: str
+    number: int
+
+
+def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
+    """Obstacles by their likeliest predictions, then by each further one."""
+    predictions = [Predicted(obstacle, obstacle.id, 0) for obstacle in scenario.obstacles]
+    taken = {obstacle.id for obstacle in scenario.obstacles}
+    for obstacle in scenario.obstacles:
+        for number, alternative in enumerate(obstacle.alternatives, start=1):
+            name = f"{obstacle.id}~{number}"
+            while name in taken:
+                name += "~"
+            taken.add(name)
+            motion, weight = alternative.motion, alternative.weight
+            moving = replace(obstacle, id=name, motion=motion, weight=weight, alternatives=())
+            predictions.append(Predicted(moving, obstacle.id, number))
+    return tuple(predictions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +77,8 @@ def scene(
     scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
 ) -> Occupancy:
     """Occupied regions in every layer and at every instant between two."""
-    everybody = predicted(scenario)
-    obstacles = [predicted_.obstacle for predicted_ in everybody]
+    predictions = predicted(scenario)
+    obstacles = [prediction.obstacle for prediction in predictions]
     likeliest = len(scenario.obstacles)
     starts = [timing.start(p) for p in range(timing.layers + 1)]
     layers = list(pairwise(starts))
@@ -62,30 +95,30 @@ def scene(
     s, d = _snaps(scenario, [*bodies.values(), *wide.values(), free])
     road = roadway(scenario.road, free, s, d)
 
-    def regions(interval: tuple[float, float], looking: tuple[float, float]) -> tuple[Region, ...]:
-        generator = (
-            region_of(
-                obstacle=obstacles[i],
+    def regions(interval: tuple[float, float], looking: tuple[float, float]) -> Iterator[Region]:
+        for i, obstacle in enumerate(obstacles):
+            if (i, interval) not in bodies:
+                continue
+            region = region_of(
+                obstacle=obstacle,
                 index=i,
-                body=snapped(body, s, d),
+                body=snapped(bodies[i, interval], s, d),
                 interval=looking,
                 partition=partition,
                 roadway=road,
                 body_wide=snapped(wide[i, interval], s, d) if wide else None,
             )
-            for i in range(len(obstacles))
-            if (body := bodies.get((i, interval))) is not None
-        )
-        return tuple(
-            region if region.obstacle < likeliest else entered(region)
-            for region in generator
-            if region is not None
-        )
+            if region is not None and i >= likeliest:  # which may be entered
+                table = region.table.replace(bytes([OCCUPIED]), bytes([HIT]))
+                region = replace(region, table=table)
+            if region is not None:
+                yield region
 
-    layer_regions = tuple(regions(interval, interval) for interval in layers)
+    layer_regions = tuple(tuple(regions(interval, interval)) for interval in layers)
     # At an instant a pedestrian faces where it goes next
     instants = tuple(
-        regions(moment, upcoming) for moment, upcoming in zip(moments, layers[1:], strict=True)
+        tuple(regions(moment, upcoming))
+        for moment, upcoming in zip(moments, layers[1:], strict=True)
     )
     names, index_of, present = _appearances(obstacles, layer_regions)
     return Occupancy(
@@ -94,7 +127,7 @@ def scene(
         names=tuple(tuple(name for name in here if index_of[name] < likeliest) for here in names),
         others=tuple(tuple(name for name in here if index_of[name] >= likeliest) for here in names),
         instants=instants,
-        predicted_of={name: everybody[i] for name, i in index_of.items()},
+        predicted_of={name: predictions[i] for name, i in index_of.items()},
         present=present,
         s=s,
         d=d,
@@ -102,18 +135,12 @@ def scene(
 
 
 def _wider(body: Box, half: float) -> Box:
-    """Widen a region by half of ego's width, ``half``.
-
-    Outside of it, ego's centre is not beside the obstacle.
-    """
+    """Region outside of which ego's centre is not beside the obstacle."""
     return Box(body.s_min, body.s_max, body.d_min - half, body.d_max + half)
 
 
 def _narrower(outline: Box, half: float, start: float) -> Box:
-    """Narrow the road so that ego's width stays on it.
-
-    Where it stands closer than that at the start, it may stay as close.
-    """
+    """The road on which ego's width stays, or is as close to the edge as at the start."""
     return Box(
         outline.s_min,
         outline.s_max,
@@ -145,7 +172,9 @@ def _appearances(
         for i in (region.obstacle for region in regions):
             name = current.get(i)
             if name is None or present[name][1] < p - 1:
-                name = obstacles[i].id if name is None else _spare(obstacles[i].id, taken)
+                first = obstacles[i].id
+                spares = (f"{first}_{number}" for number in count(2))
+                name = first if name is None else next(x for x in spares if x not in taken)
                 taken.add(name)
                 current[i] = name
                 index_of[name] = i
@@ -153,7 +182,3 @@ def _appearances(
             present[name] = (present[name][0], p)
         names.append(tuple(current[region.obstacle] for region in regions))
     return tuple(names), index_of, present
-
-
-def _spare(name: str, taken: set[str]) -> str:
-    return next(spare for number in count(2) if (spare := f"{name}_{number}") not in taken)
