@@ -24,7 +24,7 @@ from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario
-from rulec.trace.graph_paths import paths
+from rulec.trace.trace_model import paths
 
 CROWDED = """rulebook crowded
 use road

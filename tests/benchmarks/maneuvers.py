@@ -11,8 +11,8 @@ import rulec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.logic.formula import Atom, atoms_of
 from rulec.trace import Trace
-from rulec.trace.graph_paths import paths
 from rulec.trace.trace_columns import TraceCells, layout_of
+from rulec.trace.trace_model import paths
 
 PEDESTRIAN = "ffflfll"
 """Where the pedestrian is, seen from each node of a layer."""

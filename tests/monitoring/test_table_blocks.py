@@ -22,16 +22,15 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.formats import csv_table
 from rulec.trace.formats import table_blocks as trace_blocks
-from rulec.trace.formats.arrow import trace_cuts
+from rulec.trace.formats.arrow import arrow_blocks
 from rulec.trace.formats.table_blocks import Block
-from rulec.trace.formats.table_writer import kinds_in
-from rulec.trace.formats.trace_files import read_chunks, write_traces
+from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from support.builders.rulebooks import compile_here
 from support.generators.random_records import chunks, rulebooks, told
 
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
-from rulec.trace.formats.arrow import arrow_columns  # noqa: E402
+
 from rulec.trace.formats.arrow import arrow_csv as plain_csv  # noqa: E402
 from rulec.trace.formats.arrow import parquet as parquet_table  # noqa: E402
 
@@ -213,7 +212,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     bound = {item for one in alone for lost in one.violations for item in lost.binding.values()}
     assert len(bound) > 100
     assert any(one.violations == () for one in alone)
-    for module in (trace_blocks, trace_cuts, csv_table):
+    for module in (trace_blocks, arrow_blocks, csv_table):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     assert by_columns(data, form, traffic(), block_bytes) == alone
 
@@ -229,7 +228,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
 )
 def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
-    for module in (trace_blocks, trace_cuts, csv_table):
+    for module in (trace_blocks, arrow_blocks, csv_table):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     expected = [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
     assert by_columns(data, "csv", traffic(), 3_000) == expected
@@ -275,8 +274,8 @@ def test_csv_is_read_by_rows_from_where_it_is_not_plain(odd):
 def test_many_numbers_are_those_that_are_written(numbers):
     """More than are read one by one, in spellings of which Arrow reads some."""
     texts = [numbers.format(n) for n in range(1, 3000)]
-    column = arrow_columns._read(
-        arrow_columns.coded(pyarrow.array([*texts, "", "12"])), csv_table._value
+    column = arrow_blocks._read(
+        arrow_blocks.coded(pyarrow.array([*texts, "", "12"])), csv_table._value
     )
     assert column.given.tolist() == [True] * 2999 + [False, True]
     if isinstance(column, trace_blocks.Numbers):

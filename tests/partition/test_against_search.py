@@ -11,7 +11,7 @@ from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.rulebook.loader import parse_rulebook
-from rulec.trace.graph_paths import all_traces
+from rulec.trace.trace_model import all_traces
 from support.generators.random_scenarios import scenarios
 
 PAPER = compile_rulebook("esterle2019")

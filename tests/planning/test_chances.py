@@ -24,7 +24,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import Alternative, ConstantAcceleration, Ego, Obstacle, Road, Scenario
 from rulec.trace import Trace
-from rulec.trace.graph_paths import paths
+from rulec.trace.trace_model import paths
 from support.generators.random_scenarios import with_predictions
 from support.oracles import partition_oracle as book
 

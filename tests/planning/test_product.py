@@ -10,7 +10,7 @@ from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace import TraceGraph
-from rulec.trace.graph_paths import paths
+from rulec.trace.trace_model import paths
 from support.builders.rulebooks import (
     P,
     Q,

@@ -14,7 +14,7 @@ from rulec import compile_rulebook, navigation_graph
 from rulec.monitoring.verify import verify
 from rulec.planning import evaluate, partition_for
 from rulec.planning.ranking.penalties import PenaltyRank, ranks_of
-from rulec.trace.graph_paths import paths, trace_of
+from rulec.trace.trace_model import paths, trace_of
 from support.generators.random_priorities import LEVELS, RULES, closed, rulebooks
 
 

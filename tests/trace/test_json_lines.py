@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.trace.formats import json_lines
-from rulec.trace.formats.json_lines import read_traces, write_traces
+from rulec.trace.formats import json_line_problems, json_lines
+from rulec.trace.formats.json_lines import read_chunks, write_traces
 from rulec.trace.formats.stream_lines import lines_as_they_come
 
 GOOD = {
@@ -23,7 +23,7 @@ GOOD = {
 
 
 def read(data):
-    return list(read_traces(io.BytesIO(data), "t.jsonl"))
+    return [item for chunk in read_chunks(io.BytesIO(data), "t.jsonl") for item in chunk]
 
 
 def line(**changes):
@@ -189,7 +189,8 @@ def test_a_field_is_called_as_it_is_written():
 
 
 def test_a_line_without_end_is_refused_without_keeping_it(monkeypatch):
-    monkeypatch.setattr(json_lines, "LONGEST_LINE_BYTES", 1000)
+    for module in (json_lines, json_line_problems):
+        monkeypatch.setattr(module, "LONGEST_LINE_BYTES", 1000)
     found = read(b"x" * 5000 + b"\n" + line(id="after"))
     assert "longer than" in found[0].diagnostics[0].message
     assert [item.id for item in found[1:]] == ["after"]

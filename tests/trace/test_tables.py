@@ -11,8 +11,13 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 from rulec.trace.formats import csv_table
-from rulec.trace.formats.table_writer import columns_for, kinds_in
-from rulec.trace.formats.trace_files import format_of, read_chunks, write_traces
+from rulec.trace.formats.trace_files import (
+    columns_for,
+    format_of,
+    kinds_in,
+    read_chunks,
+    write_traces,
+)
 
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")

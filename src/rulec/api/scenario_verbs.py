@@ -85,7 +85,7 @@ class ScenarioVerbs(SessionSettings):
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
         """Generate a scenario's maneuvers lazily as traces, in the rules' words."""
-        from rulec.trace.graph_paths import all_traces
+        from rulec.trace.trace_model import all_traces
 
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
         if rules is None:

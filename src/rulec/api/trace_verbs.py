@@ -37,8 +37,7 @@ class TraceVerbs(SessionSettings):
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
         """Write traces in the format of the file's name. Raises RulecError."""
         from rulec.files import written_whole
-        from rulec.trace.formats.table_writer import kinds_in
-        from rulec.trace.formats.trace_files import format_of, write_traces
+        from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
 
         listed = list(traces)
         kinds = kinds_in(state for trace in listed for state in trace.states)

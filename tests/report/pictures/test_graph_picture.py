@@ -8,7 +8,7 @@ from rulec import find_maneuvers
 from rulec.planning.product.accepted_edges import accepted_edges
 from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
 from rulec.report.pictures.graph_picture import graph_picture
-from rulec.trace.graph_paths import paths
+from rulec.trace.trace_model import paths
 
 
 def drawn(scenario, maneuver=None, **options):

@@ -13,8 +13,7 @@ from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.verify import verify_or_reason
-from rulec.trace.formats.table_writer import kinds_in
-from rulec.trace.formats.trace_files import read_chunks, write_traces
+from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits

@@ -83,9 +83,8 @@ def command(
         raise click.UsageError(f"{option} is for drives: add --recorded.")
     # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
     from rulec.planning.product.graph_product import count_paths
-    from rulec.trace.formats.table_writer import kinds_in
-    from rulec.trace.formats.trace_files import format_of, write_traces
-    from rulec.trace.graph_paths import all_traces
+    from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
+    from rulec.trace.trace_model import all_traces
 
     scene = read_scene(scenario, options)
     if rulebook is None:

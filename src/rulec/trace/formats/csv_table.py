@@ -11,10 +11,16 @@ from importlib.util import find_spec
 from typing import IO, cast
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.chunks import in_chunks
-from rulec.trace.formats.foreign_files import foreign
-from rulec.trace.formats.stream_lines import not_utf8, placed
-from rulec.trace.formats.table_reader import TRACE, Row, Table, check_columns, problem, traces_in
+from rulec.trace.formats.stream_lines import foreign, not_utf8, placed
+from rulec.trace.formats.table_reader import (
+    TRACE,
+    Row,
+    Table,
+    check_columns,
+    in_chunks,
+    problem,
+    traces_in,
+)
 from rulec.trace.trace_model import Trace, Value
 
 LARGE_BYTES = 1 << 22
@@ -41,8 +47,8 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
     if columns is None:
         yield from in_chunks(_traces(stream, file))
         return
+    from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
     from rulec.trace.formats.arrow.arrow_csv import pieces  # loads Arrow, 0.1 s
-    from rulec.trace.formats.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
 
     plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
     yield from cut(plain, _table(columns, file), 2, SourceLocation(file))

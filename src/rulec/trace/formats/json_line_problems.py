@@ -1,9 +1,11 @@
-"""Diagnostics for a line of JSON that is refused."""
+"""Lines of JSON, each a trace or a state, and diagnostics for those that are refused."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Generic, TypeVar
 
 import msgspec
 
@@ -11,6 +13,9 @@ from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.diagnostics.json_problems import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
+
+LONGEST_LINE_BYTES = 256 << 20
+"""A longer line is refused: it is a file or a stream that lacks its line ends."""
 
 _MOST_SEARCHED = 1 << 24
 """Of a longer line nobody is told in which state it ends."""
@@ -23,12 +28,15 @@ _CALLED = re.compile(rb'\s*:\s*([0-9]+\b|"[^"\\]{1,100}")')
 ONE_LINE = "write it without line breaks, as `jq -c . FILE` does"
 
 
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """Expected content of lines: ``"trace"``, its fields, an example."""
+Record = TypeVar("Record", bound=msgspec.Struct)
+
+
+@dataclass(frozen=True)
+class Kind(Generic[Record]):
+    """Expected content of lines: ``"trace"``, its structure, an example."""
 
     name: str
-    fields: tuple[str, ...]
+    structure: type[Record]
     example: str
 
     @property
@@ -36,12 +44,24 @@ class Kind:
         """Help for a file that is one JSON list."""
         return f"{self.example}; `jq -c '.[]' FILE` takes a list apart"
 
+    @cached_property
+    def _decoder(self) -> msgspec.json.Decoder[Record]:
+        return msgspec.json.Decoder(self.structure)
+
+    def read(self, line: bytes, place: SourceLocation) -> Record | RulecError:
+        """What the line has, or the RulecError (R0501) that says why it is refused."""
+        if len(line) > LONGEST_LINE_BYTES:
+            return self.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
+        try:
+            return self._decoder.decode(line)
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as problem:
+            return self._refused(problem, line, place)
+
     def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
         """The line at this place is none (R0501)."""
         return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
-    def refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
-        """Diagnostic for a line that msgspec refuses."""
+    def _refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
         what = f"this is not a {self.name}"
         if isinstance(problem, RecursionError):
             return self.bad(f"{what}: it is nested too deep", place)
@@ -62,7 +82,7 @@ class Kind:
             help_text = _spelling(line[at : at + 10]) or help_text
         unknown = _UNKNOWN_FIELD.search(str(problem))
         if unknown is not None:
-            help_text = did_you_mean(unknown[1], self.fields) or help_text
+            help_text = did_you_mean(unknown[1], self.structure.__struct_fields__) or help_text
         return self.bad(f"{what}: {words}", place, help_text)
 
 
@@ -89,10 +109,7 @@ def _is_truncated(line: bytes) -> bool:
 
 
 def middle_of(line: bytes) -> str:
-    """Place at which a trace is cut off, in words.
-
-    Such as ``state 6 of trace `t1` ``.
-    """
+    """Place at which a trace is cut off, such as ``state 6 of trace `t1` ``."""
     open_: list[int | bytes | None] = []
     """For every list that has begun the place in it, for every object the key, if it has one."""
     called = b""

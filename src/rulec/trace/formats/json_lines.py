@@ -2,74 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import IO, Any
 
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.foreign_files import foreign
-from rulec.trace.formats.json_line_problems import ONE_LINE, Kind, is_beginning, middle_of
-from rulec.trace.formats.stream_lines import lines_as_they_come, placed
+from rulec.trace.formats.json_line_problems import (
+    LONGEST_LINE_BYTES,
+    ONE_LINE,
+    Kind,
+    is_beginning,
+    middle_of,
+)
+from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_model import State, Trace
-
-LONGEST_LINE_BYTES = 256 << 20
-"""A longer line is refused: it is not a trace but a file that lacks its line ends."""
 
 _LONGEST_HEAD_BYTES = 1 << 16
 
 
-class _Record(msgspec.Struct, forbid_unknown_fields=True):
-    states: list[dict[str, bool | float | str | dict[str, Any]]]
+class _Header(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     id: str | int = ""
     step_s: float = 1.0
     objects: dict[str, str] = {}
     present: dict[str, tuple[int, int]] = {}
 
 
-class _Outline(msgspec.Struct, forbid_unknown_fields=True):
+class _Record(_Header):
+    states: list[dict[str, bool | float | str | dict[str, Any]]]
+
+
+class _Outline(_Header):
     """Trace whose states are not decoded yet."""
 
     states: list[msgspec.Raw]
-    id: str | int = ""
-    step_s: float = 1.0
-    objects: dict[str, str] = {}
-    present: dict[str, tuple[int, int]] = {}
 
 
-_TRACE = Kind(
-    "trace",
-    _Record.__struct_fields__,
-    'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}',
-)
-_DECODER = msgspec.json.Decoder(_Record)
+_TRACE = Kind("trace", _Record, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}')
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
-def read_traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
-    """Read the traces of a stream, one a line.
-
-    Blank lines are skipped. See ``read_chunks``.
-    """
-    for chunk in read_chunks(stream, file):
-        yield from chunk
-
-
 def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
-    """Read traces in chunks, a block of the stream at a time.
+    """Read traces, one a line, in chunks: a block of the stream, of a pipe what has arrived.
 
-    Of a pipe, as many as have arrived.
-
-    States that are written alike are the same object, as far as there is room to remember them.
-
-    Args:
-        stream: the open file.
-        file: its name, for messages.
-
-    Yields:
-        For every line a Trace, or the RulecError (R0501) that says why it is none; for a stream
-        without any trace one RulecError (R0501).
+    For every line that is not blank there is a Trace, or the RulecError (R0501) that says why it is
+    none; for a stream without any trace one RulecError (R0501). The stream is called ``file`` in
+    messages. States that are written alike are the same object, as far as there is room to remember
+    them.
     """
     number = result = 0
     read_state = _StateReader()
@@ -143,33 +124,18 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
 
 
 def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:
-    record: _Outline | _Record
-    if len(line) > LONGEST_LINE_BYTES:
-        return _TRACE.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
-    if read_state.pays:
-        try:
-            record = _OUTLINE_DECODER.decode(line)
-            states = tuple([read_state[bytes(raw)] for raw in record.states])
-            return _made(record, states, place)
-        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
-            pass  # read as a whole, it says what is wrong
-    try:
-        record = _DECODER.decode(line)
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as problem:
-        return _TRACE.refused(problem, line, place)
-    return _made(record, tuple(record.states), place)
+    if read_state.pays and len(line) <= LONGEST_LINE_BYTES:
+        with suppress(msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+            outline = _OUTLINE_DECODER.decode(line)
+            return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
+    # Read as a whole, it says what is wrong.
+    record = _TRACE.read(line, place)
+    return record if isinstance(record, RulecError) else _made(record, record.states, place)
 
 
-def _made(record: _Outline | _Record, states: tuple[State, ...], place: SourceLocation) -> Trace:
+def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Trace:
     name = str(record.id) or f"line {place.line}"
-    return Trace(
-        id=name,
-        step_s=record.step_s,
-        objects=record.objects,
-        states=states,
-        present=record.present,
-        place=place,
-    )
+    return Trace(name, record.step_s, record.objects, tuple(states), record.present, place=place)
 
 
 class _StateReader(dict[bytes, State]):
@@ -199,17 +165,7 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
     encoder = msgspec.json.Encoder()
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
-        stream.write(encoder.encode(as_record(trace)))
+        fields = ("id", "step_s", "objects", "states", *(["present"] if trace.present else []))
+        stream.write(encoder.encode({name: getattr(trace, name) for name in fields}))
         stream.write(b"\n")
     return count
-
-
-def as_record(trace: Trace) -> dict[str, Any]:
-    """A trace as the object of its line."""
-    record: dict[str, Any] = {
-        "id": trace.id,
-        "step_s": trace.step_s,
-        "objects": trace.objects,
-        "states": trace.states,
-    }
-    return {**record, "present": trace.present} if trace.present else record

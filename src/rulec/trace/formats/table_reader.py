@@ -26,6 +26,7 @@ Row = tuple[int, Sequence[Any]]
 """Its number, for messages, and its cells; an empty cell is None or the empty text."""
 
 _MOST_REMEMBERED = 1 << 16
+_MOST_STATES = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -283,3 +284,17 @@ def whole(cell: Any) -> int | None:
 def _shown(cell: Any) -> str:
     text = "empty" if is_empty(cell) else f"`{cell}`"
     return text if len(text) <= 60 else f"{text[:60]}…`"
+
+
+def in_chunks(traces: Iterable[Trace | RulecError]) -> Iterator[list[Trace | RulecError]]:
+    """Group traces into lists of some thousand states."""
+    chunk: list[Trace | RulecError] = []
+    n_states = 0
+    for trace in traces:
+        chunk.append(trace)
+        n_states += len(trace.states) if isinstance(trace, Trace) else 1
+        if n_states >= _MOST_STATES:
+            yield chunk
+            chunk, n_states = [], 0
+    if chunk:
+        yield chunk

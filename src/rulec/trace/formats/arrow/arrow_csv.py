@@ -9,7 +9,7 @@ from typing import IO, Any
 import pyarrow
 from pyarrow import compute, csv
 
-from rulec.trace.formats.arrow.trace_cuts import Piece
+from rulec.trace.formats.arrow.arrow_blocks import Piece
 from rulec.trace.formats.table_reader import Row
 
 _BLOCK_BYTES = 1 << 22

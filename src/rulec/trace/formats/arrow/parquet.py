@@ -8,13 +8,13 @@ from itertools import islice
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.arrow.arrow_library import arrow, unavailable
-from rulec.trace.formats.foreign_files import packed
+from rulec.trace.formats.stream_lines import packed
 from rulec.trace.formats.table_reader import Table, check_columns, problem
+from rulec.trace.trace_messages import PARQUET_UNAVAILABLE
 from rulec.trace.trace_model import Trace, Value
 
 if TYPE_CHECKING:
-    from rulec.trace.formats.arrow.trace_cuts import Piece
+    from rulec.trace.formats.arrow.arrow_blocks import Piece
 
 _ROWS_AT_ONCE = 1 << 16
 
@@ -51,7 +51,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except (pyarrow.ArrowException, OSError) as reason:
         yield [_unreadable("the file", reason, file)]
         return
-    from rulec.trace.formats.arrow.trace_cuts import cut  # loads Arrow, 0.1 s
+    from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
 
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError)
@@ -147,3 +147,22 @@ def write_parquet(
                 for column, field in zip(zip(*chunk, strict=True), schema, strict=True)
             ]
             writer.write_batch(pyarrow.record_batch(arrays, schema=schema))
+
+
+def arrow(file: str) -> tuple[Any, Any]:
+    """Import Arrow and its Parquet module.
+
+    Raises RulecError R0706 if it is not installed.
+    """
+    try:
+        import pyarrow  # an extra, and 0.1 s
+        from pyarrow import parquet  # an extra, and 0.1 s
+    except ImportError:
+        message = "Parquet takes the package `pyarrow`, which is not installed"
+        raise unavailable(message, file, "`pip install 'rulec[parquet]'`") from None
+    return pyarrow, parquet
+
+
+def unavailable(message: str, file: str, help_text: str) -> RulecError:
+    """Parquet cannot be read or written here (R0706)."""
+    return PARQUET_UNAVAILABLE.error(SourceLocation(file), message, help=help_text)

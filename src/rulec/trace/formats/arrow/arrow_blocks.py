@@ -1,0 +1,152 @@
+"""Tables that come in pieces, cut where traces end, with their columns as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import pyarrow
+from pyarrow import compute, types
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.formats.table_blocks import (
+    Block,
+    Coded,
+    Column,
+    Numbers,
+    OddTableError,
+    trace_starts,
+)
+from rulec.trace.formats.table_reader import NAMES, TRACE, Row, Table, in_chunks, traces_in
+from rulec.trace.trace_model import Trace, Value
+
+Piece = Any
+"""A record batch."""
+
+NUMBER = r"\A[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\z"
+"""A number in a text, as ``csv_table`` knows it."""
+
+_FEW = 1 << 10
+
+
+def cut(
+    pieces: Iterable[Piece | Iterator[Row] | RulecError],
+    table: Table,
+    first: int,
+    file: SourceLocation,
+) -> Iterator[Sequence[Trace | RulecError]]:
+    """Cut a table into traces: blocks, or lists of rows.
+
+    ``pieces`` may end with rows, which are then read one by one, or with an error, which takes the
+    place of the trace that may have gone on there. ``first`` is the first row's number. A table
+    without any trace gives one RulecError, as from ``traces_in``.
+    """
+    waiting: list[Piece] = []
+    for piece in pieces:
+        if isinstance(piece, RulecError):
+            yield [piece]
+            return
+        if not isinstance(piece, pyarrow.RecordBatch):
+            rows = chain(_rows(waiting, first), piece)
+            yield from in_chunks(traces_in(rows, table, file))
+            return
+        if not len(piece):
+            continue
+        end = _last_start(waiting, piece, table)
+        if end is None:
+            waiting.append(piece)
+            continue
+        whole = [*waiting, piece.slice(0, end)]
+        yield _block(whole, table, first, file)
+        first += sum(map(len, whole))
+        waiting = [piece.slice(end)]
+    yield _block(waiting, table, first, file)
+
+
+def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | None:
+    """Start of the last trace of a piece; None if earlier."""
+    at = table.at[TRACE]
+    start = int(trace_starts(coded(piece.column(at)))[-1])
+    if start:
+        return start
+    if not waiting or waiting[-1].column(at)[-1] == piece.column(at)[0]:
+        return None
+    return 0
+
+
+def _block(
+    pieces: Sequence[Piece], table: Table, first: int, file: SourceLocation
+) -> Sequence[Trace | RulecError]:
+    if not pieces:
+        return list(traces_in((), table, file))
+    whole = pyarrow.Table.from_batches(pieces).combine_chunks().to_batches()[0]
+    try:
+        columns = columns_of(whole, table)
+    except OddTableError:
+        return list(traces_in(_rows([whole], first), table, file))
+    starts = np.append(trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
+
+    def rows(start: int, stop: int) -> Iterator[Row]:
+        return _rows([whole.slice(start, stop - start)], first + start)
+
+    return Block(table, columns, starts, rows, file)
+
+
+def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
+    cells = chain.from_iterable(
+        zip(*[column.to_pylist() for column in piece.columns], strict=True) for piece in pieces
+    )
+    return enumerate(cells, first)
+
+
+def columns_of(piece: Any, table: Table) -> Mapping[str, Column]:
+    """The columns of a piece (a record batch). Raises OddTableError."""
+    columns: dict[str, Column] = {}
+    for name, array in zip(table.columns, piece.columns, strict=True):
+        if types.is_dictionary(array.type):
+            array = array.dictionary_decode()  # whose values need not be distinct
+        if name in NAMES:
+            columns[name] = coded(array)
+        elif table.has_texts:
+            columns[name] = _read(coded(array), table.value)
+        elif types.is_integer(array.type) or types.is_floating(array.type):
+            columns[name] = _numbers(array)
+        else:
+            columns[name] = coded(array)
+    return columns
+
+
+def coded(array: Any) -> Coded:
+    """Column of dictionary codes; empty texts are no value."""
+    if types.is_null(array.type):
+        return Coded(np.full(len(array), -1), ())
+    encoded = array.dictionary_encode()
+    values = encoded.dictionary.to_pylist()
+    codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+    if "" in values:
+        codes = np.where(codes == values.index(""), -1, codes)
+    return Coded(codes, values)
+
+
+def _numbers(array: Any) -> Numbers:
+    try:
+        numbers = array.cast(pyarrow.float64()).fill_null(0)
+    except pyarrow.ArrowInvalid:  # floats cannot tell such whole numbers apart
+        raise OddTableError from None
+    given = compute.is_valid(array)
+    return Numbers(numbers.to_numpy(zero_copy_only=False), given.to_numpy(zero_copy_only=False))
+
+
+def _read(texts: Coded, value: Callable[[str], Value]) -> Column:
+    """Texts as the values that they stand for."""
+    if len(texts.values) > _FEW:
+        written = pyarrow.array([text or "0" for text in texts.values])
+        if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():
+            try:
+                numbers = written.cast(pyarrow.float64()).to_numpy()
+                return Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
+            except pyarrow.ArrowInvalid:  # such as `.5`, which Arrow does not read
+                pass
+    return Coded(texts.codes, [value(text) if text else "" for text in texts.values])
