@@ -3,8 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.lineage.extension_forest import ExtensionTree, extension_forest
-from rulec.analysis.lineage.rule_lineage import BookHeader
+from rulec.analysis.lineage.rule_lineage import BookHeader, ExtensionTree, extension_forest
 
 
 def book(name, extends=""):

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
-from rulec.analysis.vocabulary_use import used_declarations
+from rulec.logic.free_names import names_in
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.syntax import tree
@@ -76,10 +76,7 @@ class Audit(Rows):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a finding."""
-        return [
-            {"kind": finding.kind, "name": finding.name, "note": finding.note}
-            for finding in self.findings
-        ]
+        return [asdict(finding) for finding in self.findings]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,12 +123,14 @@ def audit(
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
     """The findings that came or went between two audits, without notes."""
-    known = {(finding.kind, finding.name) for finding in before.findings}
-    still = {(finding.kind, finding.name) for finding in now.findings}
-    return AuditChanges(
-        tuple(finding for finding in now.findings if (finding.kind, finding.name) not in known),
-        tuple(finding for finding in before.findings if (finding.kind, finding.name) not in still),
-    )
+
+    def only_in(one: Audit, other: Audit) -> tuple[AuditFinding, ...]:
+        known = {(finding.kind, finding.name) for finding in other.findings}
+        return tuple(
+            finding for finding in one.findings if (finding.kind, finding.name) not in known
+        )
+
+    return AuditChanges(only_in(now, before), only_in(before, now))
 
 
 def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, AuditChanges]:
@@ -141,17 +140,20 @@ def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str,
     """
     by_name = {saved.rulebook: saved for saved in older}
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
-    pairs = ((saved, by_name.get(saved.rulebook, only)) for saved in audits)
+    pairs = ((now, by_name.get(now.rulebook, only)) for now in audits)
     return {
         now.rulebook: AuditChanges(now.findings) if before is None else audit_changes(now, before)
         for now, before in pairs
     }
 
 
-def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArticle, ...]:
-    """The provisions that rules cite, in order of their rulebooks.
+def used_declarations(rulebook: Rulebook) -> frozenset[str]:
+    """The enumerations, signals and quantities of which some rule speaks."""
+    return frozenset(name for rule in rulebook.rules for name in names_in(rule.formula))
 
-    The rulebook's own law comes first, then that of each base.
+
+def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArticle, ...]:
+    """The provisions that rules cite, those of the rulebook's own law before each base's.
 
     Numbers in them are in the order of numbers.
     """

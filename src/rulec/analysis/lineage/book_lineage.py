@@ -6,8 +6,8 @@ and this one expects that the overlay has found no mistake in them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path, PurePath
 
 from rulec.analysis.lineage.rule_lineage import (
@@ -24,7 +24,9 @@ from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.overlay.constants_and_macros import in_force
 from rulec.rulebook.overlay.rulebook_overlay import merged
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import print_formula
+from rulec.syntax.tree_printer import print_formula, print_parameters
+
+_Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 
 def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
@@ -34,18 +36,31 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
         chain: their trees, the most general first.
         at: the day (ISO) whose law it is; it decides which value of a parameter counts.
     """
-    history = _ChainHistory()
-    for level, file in enumerate(chain):
+    rules: dict[str, list[LineageStep]] = {}
+    provisions: dict[str, list[tuple[_Given, str]]] = {}
+    for file in chain:
         book = book_header(file).name
         for item in file.items:
-            history.take(item, book, level)
-    used = _used(history)
+            match item:
+                case tree.OptionItem() | tree.ParamItem() | tree.SetItem() | tree.DefineItem():
+                    provisions.setdefault(item.name.text, []).append((item, book))
+                case tree.RuleItem() | tree.SoftenItem() | tree.DropItem() | tree.SilentItem():
+                    steps = rules.setdefault(item.name.text, [])
+                    steps.append(_step(item, book, steps))
+                case _:
+                    pass
+    used: set[str] = set()
+    unread: list[tree.Item] = [rule for steps in rules.values() if (rule := steps[-1].rule)]
+    while unread:
+        names = set(names_used(unread.pop())) & provisions.keys()
+        unread += [item for name in names - used for item, _ in provisions[name]]
+        used |= names
     return BookLineage(
         tuple(map(book_header, chain)),
-        tuple(RuleHistory(name, tuple(steps)) for name, steps in history.rules.items()),
+        tuple(RuleHistory(name, tuple(steps)) for name, steps in rules.items()),
         tuple(
-            replace(_provision(name, given, at), used=name in used)
-            for name, given in history.provisions.items()
+            replace(_history(name, given, at), used=name in used)
+            for name, given in provisions.items()
         ),
     )
 
@@ -56,17 +71,6 @@ def read_with_lineage(
     """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
     loaded = read_rulebook(reference, search_path, at)
     return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
-
-
-def _used(history: _ChainHistory) -> set[str]:
-    """The provisions that rules use, directly or through other provisions."""
-    used: set[str] = set()
-    open_: list[tree.Item] = [rule for steps in history.rules.values() if (rule := steps[-1].rule)]
-    while open_:
-        names = set(names_used(open_.pop())) & history.provisions.keys()
-        open_ += [item for name in names - used for item, _, _ in history.provisions[name]]
-        used |= names
-    return used
 
 
 def book_header(file: tree.File) -> BookHeader:
@@ -81,127 +85,75 @@ def book_header(file: tree.File) -> BookHeader:
     )
 
 
-_Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
-
-
-@dataclass(slots=True)
-class _ChainHistory:
-    """The history of a chain so far.
-
-    Of a provision it has the book and the book's number in the chain.
-    """
-
-    rules: dict[str, list[LineageStep]] = field(default_factory=dict)
-    provisions: dict[str, list[tuple[_Given, str, int]]] = field(default_factory=dict)
-
-    def take(self, item: tree.Item, book: str, level: int) -> None:
-        match item:
-            case tree.RuleItem(override=False):
-                self._note(item.name, LineageStep(book, "declared", item))
-            case tree.RuleItem():
-                before = self._rule(item.name)
-                after = merged(before, item)
-                changed = tuple(changed_clauses(before, after))
-                self._note(item.name, LineageStep(book, "overridden", after, changed))
-            case tree.SoftenItem(name, level_name, weight, because):
-                before = self._rule(name)
-                after = replace(
-                    before,
-                    strength="soft",
-                    level=level_name or before.level,
-                    weight=weight or before.weight,
-                )
-                changed = tuple(changed_clauses(before, after))
-                why = because.value if because else ""
-                self._note(name, LineageStep(book, "softened", after, changed, why))
-            case tree.DropItem(name, because):
-                self._note(name, LineageStep(book, "dropped", None, (), because.value))
-            case tree.SilentItem(name, because):
-                self._note(name, LineageStep(book, "silent", None, (), because.value))
-            case tree.OptionItem() | tree.ParamItem() | tree.SetItem() | tree.DefineItem():
-                self.provisions.setdefault(item.name.text, []).append((item, book, level))
-            case _:
-                return
-
-    def _note(self, name: tree.Name, step: LineageStep) -> None:
-        self.rules.setdefault(name.text, []).append(step)
-
-    def _rule(self, name: tree.Name) -> tree.RuleItem:
-        rule = self.rules[name.text][-1].rule
-        assert rule is not None, "nobody changes a rule that is gone"
-        return rule
+def _step(
+    item: tree.RuleItem | tree.SoftenItem | tree.DropItem | tree.SilentItem,
+    book: str,
+    earlier: Sequence[LineageStep],
+) -> LineageStep:
+    match item:
+        case tree.DropItem(because=because):
+            return LineageStep(book, "dropped", None, (), because.value)
+        case tree.SilentItem(because=because):
+            return LineageStep(book, "silent", None, (), because.value)
+        case tree.RuleItem(override=False):
+            return LineageStep(book, "declared", item)
+    before = earlier[-1].rule
+    assert before is not None, "nobody changes a rule that is gone"
+    if isinstance(item, tree.RuleItem):
+        after = merged(before, item)
+        return LineageStep(book, "overridden", after, _changed_clauses(before, after))
+    after = replace(
+        before,
+        strength="soft",
+        level=item.level or before.level,
+        weight=item.weight or before.weight,
+    )
+    why = item.because.value if item.because else ""
+    return LineageStep(book, "softened", after, _changed_clauses(before, after), why)
 
 
 HARDNESS = "hard or soft"
 """What the word before ``rule`` is called among the clauses."""
 
-_CLAUSES = {
-    "strength": HARDNESS,
-    "variables": "variables",
-    "level": "level",
-    "weight": "weight",
-    "cite": "cite",
-    "says": "says",
-    "source": "source",
-    "certainty": "certainty",
-    "in_force": "in force",
-    "require": "require",
-    "when": "when",
-    "unless": "unless",
-    "examples": "examples",
-}
-"""Field of a rule's tree -> what it is called."""
+_CLAUSES = (
+    *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
+    *("in_force", "require", "when", "unless", "examples"),
+)
+"""Fields of a rule's tree."""
 
 
-def changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> Iterator[str]:
+def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, ...]:
     """The kinds of clauses in which two rules differ, whatever their spelling."""
-    for name, spoken in _CLAUSES.items():
-        if getattr(before, name) != getattr(after, name):
-            yield spoken
+    return tuple(
+        HARDNESS if field == "strength" else field.replace("_", " ")
+        for field in _CLAUSES
+        if getattr(before, field) != getattr(after, field)
+    )
 
 
-def _provision(name: str, given: Sequence[tuple[_Given, str, int]], at: str) -> ConstantHistory:
-    first = given[0][0]
-    current = _current(given, at)
+def _history(name: str, given: Sequence[tuple[_Given, str]], at: str) -> ConstantHistory:
+    """All that a chain, the most general book first, says of a provision."""
+    dates: list[tree.InForce | None] = [getattr(item, "in_force", None) for item, _ in given]
+    good = [index for index, own in enumerate(dates) if in_force(own, at)]
     settings = tuple(
         ConstantValue(
             book,
             _text(item),
-            *_dates(item),
-            current=index == current,
+            since=own.since if own else "",
+            until=own.until if own else "",
+            current=good[-1:] == [index],
             note=description(item.span),
         )
-        for index, (item, book, _) in enumerate(given)
+        for index, ((item, book), own) in enumerate(zip(given, dates, strict=True))
     )
-    match first:
+    match given[0][0]:
         case tree.OptionItem():
             return ConstantHistory("option", name, name, settings)
         case tree.DefineItem(parameters=parameters):
-            shown = (
-                f"{parameter.name.text}: {parameter.type.text}"
-                if parameter.type
-                else parameter.name.text
-                for parameter in parameters
-            )
-            head = f"{name}({', '.join(shown)})" if parameters else name
+            head = name + print_parameters(parameters)
             return ConstantHistory("definition", name, head, settings)
         case _:
             return ConstantHistory("parameter", name, name, settings)
-
-
-def _current(given: Sequence[tuple[_Given, str, int]], at: str) -> int | None:
-    """The index of the nearest book's item in force, or None."""
-    good = [index for index, (item, _, _) in enumerate(given) if in_force(_when(item), at)]
-    return max(good, key=lambda index: (given[index][2], index), default=None)
-
-
-def _when(item: _Given) -> tree.InForce | None:
-    return item.in_force if isinstance(item, tree.ParamItem | tree.SetItem) else None
-
-
-def _dates(item: _Given) -> tuple[str, str]:
-    dates = _when(item)
-    return ("", "") if dates is None else (dates.since, dates.until)
 
 
 def _text(item: _Given) -> str:

@@ -1,7 +1,8 @@
-"""The history of rules and constants in a chain of rulebooks."""
+"""Histories of rules and constants in a chain of rulebooks, and who extends whom."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,10 +16,7 @@ ConstantKind = Literal["option", "parameter", "definition"]
 
 @dataclass(frozen=True, slots=True)
 class BookHeader:
-    """A rulebook of a family: its title, law, file and base.
-
-    ``file`` is the base name.
-    """
+    """A rulebook of a family: its title, law, file (base name) and base."""
 
     name: str
     title: str = ""
@@ -78,9 +76,7 @@ class RuleHistory:
 class ConstantValue:
     """A value or meaning that a book gave a constant, as written.
 
-    It is ``current`` if it is the one that counts.
-
-    ``note`` is the comment beside it.
+    It is ``current`` if it is the one that counts. ``note`` is the comment beside it.
     """
 
     book: str
@@ -126,3 +122,34 @@ class BookLineage(Rows):
         return [
             {"rule": rule.name, "books": [step.book for step in rule.steps]} for rule in self.rules
         ]
+
+
+@dataclass(frozen=True, slots=True)
+class ExtensionTree:
+    """A rulebook and those that extend it directly, in alphabetical order."""
+
+    book: BookHeader
+    children: tuple[ExtensionTree, ...] = ()
+
+
+def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]:
+    """Every rulebook once, by name, below the one that it extends.
+
+    The roots extend none, or one that is not among them. Rulebooks that go round in a circle hang
+    below the first of them by name.
+    """
+    by_name = {header.name: header for header in sorted(members, key=lambda header: header.name)}
+    placed: set[str] = set()
+
+    def branch(name: str) -> ExtensionTree:
+        placed.add(name)
+        children = [
+            branch(child)
+            for child, header in by_name.items()
+            if header.extends == name and child not in placed
+        ]
+        return ExtensionTree(by_name[name], tuple(children))
+
+    roots = [name for name, header in by_name.items() if header.extends not in by_name]
+    trees = [branch(name) for name in (*roots, *by_name) if name not in placed]
+    return tuple(sorted(trees, key=lambda extension_tree: extension_tree.book.name))

@@ -31,7 +31,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     """
     # Rulebooks and their colours, 80 ms: not for --help.
     from rulec.analysis.lineage.book_lineage import book_header
-    from rulec.analysis.lineage.extension_forest import extension_forest
+    from rulec.analysis.lineage.rule_lineage import extension_forest
     from rulec.report.rulebooks import lineage_tree
     from rulec.rulebook.files.catalogue import rulebook_trees
 

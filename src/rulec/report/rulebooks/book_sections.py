@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from rulec.analysis.audit.rulebook_audit import used_declarations
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
-from rulec.analysis.vocabulary_use import used_declarations
 from rulec.logic.english.atom_phrases import listed, spoken
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.book_rule import WIDTH

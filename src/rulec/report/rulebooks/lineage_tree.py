@@ -10,12 +10,12 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from rulec.analysis.lineage.extension_forest import ExtensionTree
 from rulec.analysis.lineage.rule_lineage import (
     BookHeader,
     BookLineage,
     ConstantHistory,
     ConstantValue,
+    ExtensionTree,
     LineageAction,
     LineageStep,
     RuleHistory,
