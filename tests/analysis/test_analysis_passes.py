@@ -8,12 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.counterexample import counterexample, declarations_read
-from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
-from rulec.analysis.shared_vocabulary import shared_vocabulary
-from rulec.analysis.trace_literals import trace_literal
-from rulec.analysis.trace_table import SignalRow, trace_table
-from rulec.analysis.vocabulary_use import declared_names_in, used_declarations
+from rulec.analysis.audit.rulebook_audit import used_declarations
+from rulec.analysis.counterexample import counterexample, declarations_read, shared_vocabulary
+from rulec.analysis.shared_compilation import at_one_step, compile_shared
+from rulec.analysis.trace_display import SignalRow, trace_note, trace_table
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -25,6 +23,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
+from rulec.logic.free_names import names_in
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 from rulec.trace import Trace
@@ -67,7 +66,7 @@ class TestSharedCompilation:
         monkeypatch.setattr(shared_compilation, "compile_rulebook", counting)
         first, second = rule("r", P), replace(rule("s", P), strength="soft", cite="§ 2")
         other = rule("t", no(P))
-        (ours, theirs) = SharedCompiler().compile(
+        (ours, theirs) = compile_shared(
             [book("a", first, other), book("b", second)], [{"r": first, "t": other}, {"s": second}]
         )
         assert compiled == [["r", "t"], []]
@@ -87,12 +86,12 @@ class TestSharedCompilation:
     def test_another_context_is_another_law(self, changed):
         own = rule("r", P)
         books = [book("a", own), replace(book("b", own), **changed)]
-        (ours, theirs) = SharedCompiler().compile(books, [{"r": own}, {"r": own}])
+        (ours, theirs) = compile_shared(books, [{"r": own}, {"r": own}])
         assert ours["r"].law != theirs["r"].law
 
     def test_progress_is_told_by_rulebook(self):
         told = []
-        SharedCompiler(told.append).compile([book("a"), book("b")], [{}, {}])
+        compile_shared([book("a"), book("b")], [{}, {}], told.append)
         assert told == [1, 2]
 
     @given(st.lists(st.fractions("1/20", 4, max_denominator=20), min_size=1, max_size=4))
@@ -189,11 +188,19 @@ class TestCounterexample:
     def test_words_of_two_vocabularies(self):
         first = parse_rulebook("rulebook a signal p default false hard rule r { require never p }")
         unlike = parse_rulebook("rulebook b quantity p in m hard rule r { require never p < 1 m }")
-        (ours, theirs) = SharedCompiler().compile(
+        (ours, theirs) = compile_shared(
             [first, unlike], [{"r": one.rules[0]} for one in (first, unlike)]
         )
         with pytest.raises(UndecidedError, match="`p` is not declared alike in both"):
             counterexample(ours["r"], [theirs["r"]])
+
+    def test_a_rule_judges_alone_in_the_words_of_another_vocabulary(self):
+        own = rule("r", always(no(P)))
+        analyzed = compile_shared([book("a", own)], [{"r": own}])[0]["r"]
+        defaults = Vocabulary("other", {}, {"p": Signal("p", (), True)})
+        silent = Trace("t", 1.0, {}, ({},))
+        assert not analyzed.violations(silent, Vocabulary("v", {}, {"p": Signal("p", (), False)}))
+        assert [one.rule for one in analyzed.violations(silent, defaults)] == ["r"]
 
     def test_declarations_that_a_rule_reads(self):
         (counting,) = sides([Binary(BinaryOperator.OR, COUNTED[1], ALONE[3])], [], ["stutter"])
@@ -230,15 +237,14 @@ class TestTraceLiterals:
             [X],
             ["stutter"],
         )
-        rules = [reading[0].rule]
         said = (
             {"p": True, "speed": 0.0, "gap": {"x": 2.5}},
             {"p": False, "speed": 1.0, "place": {"x": "near"}, "follows": {"x": {"y": True}}},
             {},
         )
         trace = Trace("t", 1.0, {"x": "thing", "y": "thing"}, said)
-        assert trace_literal(trace, rules, VOCABULARY) == (
-            "{ p and gap(x) = 2.5 m; near(x) and speed = 1 m/s; true }"
+        assert trace_note("seen", trace, reading) == (
+            "seen: { p and gap(x) = 2.5 m; near(x) and speed = 1 m/s; true }",
         )
 
 
@@ -248,6 +254,6 @@ class TestVocabularyUse:
     def test_names_in_the_order_of_the_formula(self):
         terms = ((Fraction(1), QuantityTerm("speed")), (Fraction(2), self.COUNT))
         formula = Binary(BinaryOperator.UNTIL, Comparison(terms, "<", Fraction(1)), no(P))
-        assert list(declared_names_in(formula)) == ["speed", "place", "p"]
+        assert list(names_in(formula)) == ["speed", "place", "p"]
         own = book("a", rule("r", formula), rule("s", P))
         assert used_declarations(own) == {"speed", "place", "p"}

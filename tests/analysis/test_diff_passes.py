@@ -10,8 +10,13 @@ from hypothesis import strategies as st
 
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.diff.comparison_matrix import CONVERSE, comparison_matrix, pairs, steps
-from rulec.analysis.diff.diverse_witnesses import diverse_witnesses, non_default_names
-from rulec.analysis.diff.rule_comparison import common_types, compare, relation_of
+from rulec.analysis.diff.rule_comparison import (
+    common_types,
+    compare,
+    diverse_witnesses,
+    non_default_names,
+    relation_of,
+)
 from rulec.analysis.diff.rulebook_comparison import (
     diff_rulebooks,
     rules_matching,

@@ -10,7 +10,6 @@ from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrenc
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import are_related, common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
-from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,
     can_be_kept,
@@ -18,6 +17,7 @@ from rulec.analysis.lint.redundancy import (
     implied_by,
     small_premises,
 )
+from rulec.analysis.trace_display import trace_note
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.rulebook.loader import parse_rulebook

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rulec.analysis.diff.diverse_witnesses import non_default_names
-from rulec.analysis.diff.rule_comparison import compare
+from rulec.analysis.diff.rule_comparison import compare, non_default_names
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace

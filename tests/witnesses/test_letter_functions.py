@@ -29,7 +29,7 @@ from rulec.witnesses.letter_functions import (
     speaks_of_extra,
     truths_of,
 )
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
 from rulec.witnesses.undecided import UndecidedError
 from support.generators.random_reads import PLAIN_STATES, VOCABULARY, value
 from support.oracles.state_oracle import joined
@@ -142,12 +142,11 @@ def test_a_monitor_reads_its_objects_in_the_place_of_its_variables():
     monitor = MealyMonitor(
         (Read("q", ("v",)), number), (0, 1, 1, 0), ((0, 0),), ((True, True),), None, 0
     )
-    universe = ObjectUniverse(TWO, VOCABULARY)
-    function = monitor_function(monitor, {"v": "y"}, universe)
+    function = monitor_function(monitor, {"v": "y"})
     assert function.reads[0] == Read("q", ("y",))
     # Counts that differ in their variable only are the same.
     other = Count("w", "thing", Atom("q", ("w",)))
-    assert counts_read(function.reads) == [universe.canonical_term(other)]
+    assert counts_read(function.reads) == [canonical_term(other)]
     assert function.letters == monitor.letters
 
 
@@ -170,7 +169,6 @@ def test_counts_in_a_formula_are_those_outside_of_others():
     outer = Count("o", "thing", Comparison(((Fraction(1), inner),), ">=", Fraction(1)))
     formula = Comparison(((Fraction(1), outer),), ">=", Fraction(1))
     assert list(counts_in(formula)) == [outer]
-    universe = ObjectUniverse(TWO, VOCABULARY)
-    renamed = universe.canonical_term(outer)
+    renamed = canonical_term(outer)
     (own,) = counts_in(renamed.body)
     assert renamed.variable != own.variable

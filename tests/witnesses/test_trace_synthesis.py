@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Count, Same
@@ -22,7 +21,6 @@ from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import JointState
 from rulec.witnesses.trace_synthesis import (
     place_objects,
-    single_rule_rulebook,
     synthesize_trace,
 )
 from rulec.witnesses.undecided import UndecidedError
@@ -154,9 +152,3 @@ def test_what_further_objects_make_impossible_is_no_mistake():
         synthesize_trace([state((PARKED, 1))], UNIVERSE, Fraction(1), refuses)
     with pytest.raises(RulecError):
         synthesize_trace([state()], UNIVERSE, Fraction(1), refuses)
-
-
-def test_a_rulebook_of_one_rule():
-    book = CompiledRulebook("b", Vocabulary("other", {}, {}), ("r", "s"), "", "", "", (), "", "")
-    alone = single_rule_rulebook(book, "r", UNIVERSE)
-    assert (alone.rules, alone.vocabulary, alone.name) == (("r",), VOCABULARY, "b")

@@ -8,22 +8,22 @@ these objects in all ways in which they fit its variables.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.analysis.shared_compilation import AnalyzedRule
-from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.free_names import names_in
-from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.trace import Trace
+from rulec.vocabulary import Declaration, ObjectType, Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_word import shortest_word
-from rulec.witnesses.trace_synthesis import single_rule_rulebook, synthesize_trace
+from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -36,42 +36,39 @@ def counterexample(
     """
     universe = _universe(forbidding, allowing, given)
     own = {variable.name: variable.name for variable in forbidding.rule.variables}
-    monitors, verdicts = [forbidding.rule.machine], [False]
-    functions = [monitor_function(forbidding.rule.machine, own, universe)]
-    for allowed in allowing:
-        for binding in universe.bindings(allowed.rule.variables):
-            monitors.append(allowed.rule.machine)
-            functions.append(monitor_function(allowed.rule.machine, binding, universe))
-            verdicts.append(True)
-    alphabet = JointAlphabet(universe, functions)
+    bound = [(forbidding.rule.machine, own, False)]
+    bound += [
+        (allowed.rule.machine, binding, True)
+        for allowed in allowing
+        for binding in universe.bindings(allowed.rule.variables)
+    ]
+    monitors, bindings, verdicts = zip(*bound, strict=True)
+    alphabet = JointAlphabet(universe, list(map(monitor_function, monitors, bindings)))
     word = shortest_word(monitors, verdicts, alphabet.letters)
     if word is None:
         return None
-    forbidding_book = single_rule_rulebook(forbidding.rulebook, forbidding.rule, universe)
-    allowing_books = [
-        single_rule_rulebook(allowed.rulebook, allowed.rule, universe) for allowed in allowing
-    ]
 
     def shows(trace: Trace) -> bool:
-        forbids = bool(verify(trace, forbidding_book).violations)
-        return forbids and not any(verify(trace, book).violations for book in allowing_books)
+        return bool(forbidding.violations(trace, universe.vocabulary)) and not any(
+            allowed.violations(trace, universe.vocabulary) for allowed in allowing
+        )
 
     states = [alphabet.states[letter] for letter in word]
-    steps = [rule.rule.step_s for rule in (forbidding, *allowing) if rule.rule.step_s is not None]
-    return synthesize_trace(states, universe, (*steps, Fraction(1))[0], shows)
+    return synthesize_trace(states, universe, common_step((forbidding, *allowing)), shows)
+
+
+def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:
+    """Step of traces for rules with one step, in seconds; 1 where none matters."""
+    return next((step for rule in rules if (step := rule.rule.step_s) is not None), Fraction(1))
 
 
 def _universe(
     forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom]
 ) -> ObjectUniverse:
     """The objects of a rule, in the vocabulary of all the rulebooks."""
-    analyzed_rules = (forbidding, *allowing)
-    read = {name for analyzed in analyzed_rules for name in declarations_read(analyzed.rule)}
-    axioms = tuple(
-        dict.fromkeys(
-            (*(axiom for analyzed in analyzed_rules for axiom in analyzed.axioms), *given)
-        )
-    )
+    rules = (forbidding, *allowing)
+    read = {name for analyzed in rules for name in declarations_read(analyzed.rule)}
+    axioms = tuple(dict.fromkeys((*(axiom for rule in rules for axiom in rule.axioms), *given)))
     names = read | {name for axiom in axioms for name in names_in(axiom.formula)}
     vocabulary, unsaid = forbidding.rulebook.vocabulary, frozenset[str]()
     for allowed in allowing:
@@ -94,3 +91,35 @@ def declarations_read(rule: CompiledRule) -> frozenset[str]:
         else:
             names.add(read.name)
     return frozenset(names)
+
+
+@dataclass(frozen=True, slots=True)
+class SharedVocabulary:
+    """The joint vocabulary of two rulebooks, with what one lacks or means otherwise."""
+
+    vocabulary: Vocabulary
+    not_shared: frozenset[str]
+    unlike: frozenset[str]
+
+
+def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
+    """The words of two vocabularies together.
+
+    Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
+    type is not the same in both.
+    """
+    types: dict[str, ObjectType] = dict(first.types)
+    for name, kind in second.types.items():
+        if types.setdefault(name, kind).parent != kind.parent:
+            raise UndecidedError(f"`{name}` is not the same type in both")
+    declarations: dict[str, Declaration] = dict(first.declarations)
+    unlike = set()
+    for name, item in second.declarations.items():
+        known = declarations.setdefault(name, item)
+        if replace(known, default=None) != replace(item, default=None):
+            unlike.add(name)
+        elif known.default != item.default:
+            declarations[name] = replace(known, default=None)
+    not_shared = frozenset(first.declarations.keys() ^ second.declarations.keys())
+    vocabulary = Vocabulary(first.name, types, declarations)
+    return SharedVocabulary(vocabulary, not_shared, frozenset(unlike))

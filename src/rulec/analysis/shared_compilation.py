@@ -11,7 +11,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.bounds import has_seconds
 from rulec.logic.free_names import names_in
+from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
+from rulec.trace import Trace
+from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,72 +30,63 @@ class AnalyzedRule:
     rule: CompiledRule
     law: int
 
-
-CompilationKey = tuple[object, ...]
-
-
-class SharedCompiler:
-    """Compiles rules, each law once."""
-
-    def __init__(self, tell: Callable[[float], object] = lambda _: None) -> None:
-        self._tell = tell
-        self._machines: dict[CompilationKey, CompiledRule] = {}
-        self._laws: dict[CompilationKey, int] = {}
-        self._headers: dict[int, CompiledRulebook] = {}
-
-    def compile(
-        self, rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
-    ) -> list[dict[str, AnalyzedRule]]:
-        """For each rulebook its chosen rules by name, at the named steps.
-
-        Raises RulecError if one cannot be compiled.
-        """
-        compiled_rules = []
-        for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True)):
-            keys = {name: _key(rule, book) for name, rule in chosen.items()}
-            missing = {key: chosen[name] for name, key in keys.items() if key not in self._machines}
-            header = compile_rulebook(replace(book, rules=tuple(missing.values())))
-            self._machines.update(zip(missing, header.rules, strict=True))
-            self._tell(number + 1)
-            compiled_rules.append(
-                {
-                    name: AnalyzedRule(
-                        replace(header, rules=()),
-                        book.axioms,
-                        _named(self._machines[key], chosen[name]),
-                        self._laws.setdefault((key, book.axioms), len(self._laws)),
-                    )
-                    for name, key in keys.items()
-                }
-            )
-        return compiled_rules
+    def violations(self, trace: Trace, vocabulary: Vocabulary) -> tuple[Violation, ...]:
+        """How a trace in the words of a vocabulary violates the rule."""
+        alone = replace(self.rulebook, vocabulary=vocabulary, rules=(self.rule,))
+        return verify(trace, alone).violations
 
 
-def _key(rule: Rule, book: Rulebook) -> CompilationKey:
+def compile_shared(
+    rulebooks: Sequence[Rulebook],
+    rules: Sequence[Mapping[str, Rule]],
+    tell: Callable[[float], object] = lambda _: None,
+) -> list[dict[str, AnalyzedRule]]:
+    """For each rulebook its chosen rules by name, at the named steps; each law once.
+
+    ``tell`` is told how many rulebooks are compiled. Raises RulecError if a rule cannot be.
+    """
+    machines: dict[object, CompiledRule] = {}
+    laws: dict[object, int] = {}
+    compiled_rules = []
+    for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True), 1):
+        keys = {name: _key(rule, book) for name, rule in chosen.items()}
+        missing = {key: chosen[name] for name, key in keys.items() if key not in machines}
+        header = compile_rulebook(replace(book, rules=tuple(missing.values())))
+        machines.update(zip(missing, header.rules, strict=True))
+        tell(number)
+        compiled_rules.append(
+            {
+                name: AnalyzedRule(
+                    replace(header, rules=()),
+                    book.axioms,
+                    replace(
+                        machines[key],
+                        **{field: getattr(chosen[name], field) for field in _NOT_COMPILED},
+                    ),
+                    laws.setdefault((key, book.axioms), len(laws)),
+                )
+                for name, key in keys.items()
+            }
+        )
+    return compiled_rules
+
+
+_NOT_COMPILED = (
+    *("name", "strength", "cite", "says", "level", "weight"),
+    *("source", "certainty", "book"),
+)
+"""The fields of a rule on which its monitor does not depend."""
+
+
+def _key(rule: Rule, book: Rulebook) -> object:
     """All that a rule's monitor depends on."""
-    read = dict.fromkeys(names_in(rule.formula))
     return (
         rule.formula,
         rule.variables,
         rule.step_s if has_seconds(rule.formula) else None,
-        tuple(book.vocabulary.declarations[name] for name in read),
+        tuple(book.vocabulary.declarations[name] for name in dict.fromkeys(names_in(rule.formula))),
         book.semantics,
         book.axioms,
-    )
-
-
-def _named(compiled: CompiledRule, rule: Rule) -> CompiledRule:
-    return replace(
-        compiled,
-        name=rule.name,
-        strength=rule.strength,
-        cite=rule.cite,
-        says=rule.says,
-        level=rule.level,
-        weight=rule.weight,
-        source=rule.source,
-        certainty=rule.certainty,
-        book=rule.book,
     )
 
 

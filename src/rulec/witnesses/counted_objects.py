@@ -7,16 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import product
 from math import ceil
+from operator import add
 
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.logic.formula import Count, Formula, QuantityTerm
+from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
-from rulec.witnesses.letter_functions import body_of, counts_read, speaks_of_extra, truths_of
+from rulec.witnesses.letter_functions import (
+    body_of,
+    counts_read,
+    letter_of,
+    speaks_of_extra,
+    truths_of,
+)
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
-from rulec.witnesses.state_synthesis import JointState, Subject, Value, solve_numbers, value_of
+from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_COUNTED_OBJECTS = 40
@@ -74,16 +80,12 @@ def counted_objects_of_types(
     reached: dict[tuple[int, ...], CountedObjects] = {start: ()}
     for type_name in types:
         following: dict[tuple[int, ...], CountedObjects] = {}
-        for sums, further in reached.items():
-            for kind in kinds:
-                if kind.type == type_name:
-                    after = tuple(a + b for a, b in zip(sums, kind.adds, strict=True))
-                    following.setdefault(after, (*further, kind))
+        for (sums, further), kind in product(reached.items(), kinds):
+            if kind.type == type_name:
+                following.setdefault(tuple(map(add, sums, kind.adds)), (*further, kind))
         reached = following
-    for sums, further in reached.items():
-        if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
-            return further
-    return None
+    every = ((dict(zip(counts, sums, strict=True)), further) for sums, further in reached.items())
+    return next((objects for sums, objects in every if _comes_out(state, universe, sums)), None)
 
 
 def _enough(count: Count, state: JointState) -> int:
@@ -102,16 +104,10 @@ def _counts_of(state: JointState) -> list[Count]:
 
 
 def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Count, int]) -> bool:
-    for read, digit in state.number_digits:
-        total = Fraction(0)
-        for factor, term in read.terms:
-            if isinstance(term, Count):
-                total += factor * counted[term]
-            else:
-                total += factor * state.number(term, universe.vocabulary)
-        if read.digit(total) != digit:
-            return False
-    return True
+    return all(
+        read.digit(state.total(read.terms, universe.vocabulary, counted)) == digit
+        for read, digit in state.number_digits
+    )
 
 
 def object_kinds(
@@ -141,24 +137,26 @@ def _of_type(
     vocabulary = universe.vocabulary
     own_counts = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
     bodies = [body_of(count, EXTRA) for count in own_counts]
-    known = [*_axioms_about(kind, universe)]
-    reads, truths = truths_of([*bodies, *known], vocabulary)
+    reads, truths = truths_of([*bodies, *_axioms_about(kind, universe)], vocabulary)
     choices: list[Sequence[int]] = [
         range(read.size) if speaks_of_extra(read) else (_digit(read, state, universe),)
         for read in reads
     ]
     for digits in product(*choices):
-        letter, stride = 0, 1
-        for read, digit in zip(reads, digits, strict=True):
-            letter += stride * digit
-            stride *= read.size
+        letter = letter_of(digits, reads)
         values = [bool(letters >> letter & 1) for letters in truths]
         if not all(values[len(bodies) :]):
             continue
-        said = _said(list(zip(reads, digits, strict=True)), state, universe)
-        if said is not None:
+        about_it = [
+            (read if isinstance(read, Read) else _unknown(read, state, universe), digit)
+            for read, digit in zip(reads, digits, strict=True)
+            if speaks_of_extra(read)
+        ]
+        added = synthesize_state(universe, about_it)
+        if added is not None:
             holds = dict(zip(own_counts, values, strict=False))
-            yield CountedObject(kind, tuple(int(holds.get(count, False)) for count in counts), said)
+            adds = tuple(int(holds.get(count, False)) for count in counts)
+            yield CountedObject(kind, adds, added.values)
 
 
 def _axioms_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
@@ -171,47 +169,15 @@ def _axioms_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
 def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:
     if isinstance(read, Read):
         return read.digit(state.value((read.name, read.variables), universe.vocabulary))
-    total = Fraction(0)
-    for factor, term in read.terms:
-        assert isinstance(term, QuantityTerm), "no count stands inside another one"
-        total += factor * state.number(term, universe.vocabulary)
-    return read.digit(total)
+    return read.digit(state.total(read.terms, universe.vocabulary, {}))
 
 
-def _said(
-    digits: Sequence[tuple[Read | NumberRead, int]], state: JointState, universe: ObjectUniverse
-) -> dict[Subject, Value] | None:
-    """Values of an object that give the reads these digits, or None."""
-    values: dict[Subject, Value] = {}
-    sides = []
-    for read, digit in digits:
-        if not speaks_of_extra(read):
-            continue
-        if isinstance(read, Read):
-            values[read.name, read.variables] = value_of(read, digit, universe.vocabulary)
-        else:
-            sides.append((_given(read, state, universe), digit))
-    if sides:
-        numbers = solve_numbers(sides, universe.vocabulary, {})
-        if numbers is None:
-            return None
-        for term, number in numbers.items():
-            assert isinstance(term, QuantityTerm)
-            values[term.name, term.arguments] = float(number)
-    return values
-
-
-def _given(read: NumberRead, state: JointState, universe: ObjectUniverse) -> NumberRead:
+def _unknown(read: NumberRead, state: JointState, universe: ObjectUniverse) -> NumberRead:
     """Sum of the unknown terms, with known ones moved into the thresholds."""
-    known = Fraction(0)
-    left = []
-    for factor, term in read.terms:
-        if EXTRA in variables_of(term):
-            left.append((factor, term))
-        else:
-            assert isinstance(term, QuantityTerm)
-            known += factor * state.number(term, universe.vocabulary)
+    unknown = tuple(pair for pair in read.terms if EXTRA in variables_of(pair[1]))
+    rest = [pair for pair in read.terms if pair not in unknown]
+    known = state.total(rest, universe.vocabulary, {})
     thresholds = tuple(
         replace(threshold, limit=threshold.limit - known) for threshold in read.thresholds
     )
-    return NumberRead(tuple(left), thresholds)
+    return NumberRead(unknown, thresholds)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from math import inf
 
-from rulec.automata.alphabet import letters_with
+from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.logic.formula import Comparison, Formula, Proposition, QuantityTerm, atoms_of
@@ -17,14 +16,8 @@ from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.rulebook.rules.axiom_checks import ExampleValues
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_functions import counts_read
-from rulec.witnesses.letter_witness import digits_of
-from rulec.witnesses.state_synthesis import (
-    Subject,
-    Value,
-    numbers_near_thresholds,
-    value_of,
-)
+from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of
+from rulec.witnesses.state_synthesis import numbers_near_thresholds, values_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +45,7 @@ def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
     for letter, letter_class in enumerate(monitor.letters):
         if letter_class == IMPOSSIBLE or letter_class in first:
             continue
-        if all(map(is_possible, monitor.reads, digits_of(letter, monitor))):
+        if all(map(is_possible, monitor.reads, digits_of(letter, monitor.reads))):
             first[letter_class] = letter
     return first
 
@@ -61,24 +54,22 @@ def truth_values(
     propositions: Sequence[Proposition], monitor: MealyMonitor
 ) -> Mapping[Proposition, tuple[bool, ...]]:
     """Truth values of each proposition in possible states, True first."""
-    reads = monitor.reads
     excluded = {
         (place, digit)
-        for place, read in enumerate(reads)
+        for place, read in enumerate(monitor.reads)
         for digit in range(read.size)
         if not is_possible(read, digit)
     }
     bits = [
-        letter_class != IMPOSSIBLE
-        and (not excluded or excluded.isdisjoint(enumerate(digits_of(letter, monitor))))
-        for letter, letter_class in enumerate(monitor.letters)
+        letter_class != IMPOSSIBLE and excluded.isdisjoint(enumerate(digits))
+        for letter_class, digits in zip(monitor.letters, all_digits(monitor.reads), strict=True)
     ]
     possible = int("".join("1" if bit else "0" for bit in reversed(bits)), 2)
     return {
         proposition: tuple(
             value for value, letters in ((True, true), (False, ~true)) if letters & possible
         )
-        for proposition, true in letters_with(reads, propositions).items()
+        for proposition, true in letters_with(monitor.reads, propositions).items()
     }
 
 
@@ -94,22 +85,17 @@ def coverage_witness(
     ``axioms`` hold in every state. Where chosen numbers would contradict one, they are left to the
     reader.
     """
-    digits = list(zip(monitor.reads, digits_of(letter, monitor), strict=True))
-    says: dict[Subject, Value] = {
-        (read.name, read.variables): value_of(read, digit, vocabulary)
-        for read, digit in digits
-        if isinstance(read, Read)
-    }
+    digits = list(zip(monitor.reads, digits_of(letter, monitor.reads), strict=True))
+    says = values_of(digits, vocabulary)
     numbers = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
     # What is compared by itself has less of a choice than what is also part of a sum.
     numbers.sort(key=lambda pair: len(pair[0].terms))
     chosen, left = _choose([pair for pair in numbers if not counts_read(pair[:1])], vocabulary)
     says.update({(term.name, term.arguments): number for term, number in chosen.items()})
+    letters = letters_with(monitor.reads, propositions_of(formula))
     texts = [
         (proposition.terms, proposition.text if true >> letter & 1 else f"not {proposition.text}")
-        for proposition, true in letters_with(
-            monitor.reads, dict.fromkeys(atoms_of(formula))
-        ).items()
+        for proposition, true in letters.items()
         if isinstance(proposition, Comparison)
     ]
 
@@ -122,9 +108,12 @@ def coverage_witness(
     for axiom in axioms:
         own_names = {name: name for name in variables_of(axiom)}
         if holds(axiom, own_names, ExampleValues(says, frozenset(), {}, vocabulary)) is False:
-            about = set(chain.from_iterable(map(_quantities, atoms_of(axiom))))
             dropped = {
-                term for term in about if says.pop((term.name, term.arguments), None) is not None
+                term
+                for atom in atoms_of(axiom)
+                for _, term in (atom.terms if isinstance(atom, Comparison) else ())
+                if isinstance(term, QuantityTerm)
+                if says.pop((term.name, term.arguments), None) is not None
             }
             for read, _ in numbers:
                 if not dropped.isdisjoint(term for _, term in read.terms):
@@ -143,17 +132,11 @@ def _choose(
     chosen = {}
     good: list[tuple[NumberRead, int]] = []
     left: list[NumberRead] = []
-    for read, digit in numbers:
-        more = numbers_near_thresholds([*good, (read, digit)], vocabulary)
+    for number in numbers:
+        more = numbers_near_thresholds([*good, number], vocabulary)
         if more is None:
-            left.append(read)
+            left.append(number[0])
         else:
             chosen = more
-            good.append((read, digit))
+            good.append(number)
     return chosen, left
-
-
-def _quantities(proposition: Proposition) -> Iterator[QuantityTerm]:
-    for _, term in proposition.terms if isinstance(proposition, Comparison) else ():
-        if isinstance(term, QuantityTerm):
-            yield term

@@ -18,70 +18,70 @@ Children = tuple[int, ...]
 
 
 class _Nodes:
-    """The unique table: every node once."""
+    """The unique table: every node once. A leaf's only child is its class."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[float, Children], int] = {}
-        self.all: list[tuple[float, Children]] = []
+        self._nodes: list[tuple[float, Children]] = []
 
-    def add(self, level: float, children: Children) -> int:
-        """Node that tests a level; a leaf's only child is its class."""
+    def add(self, level: float, *children: int) -> int:
+        """Node that tests a level, or a leaf, which tests infinity."""
         if level != inf and children.count(children[0]) == len(children):
             return children[0]
         key = (level, children)
         node = self._known.get(key)
         if node is None:
-            node = self._known[key] = len(self.all)
-            self.all.append(key)
+            node = self._known[key] = len(self._nodes)
+            self._nodes.append(key)
         return node
 
+    def level(self, node: int) -> float:
+        """Index of the read that a node tests; infinity for leaves."""
+        return self._nodes[node][0]
 
-class _Own:
+    def value(self, node: int) -> int:
+        """The class of a node that tests nothing any more."""
+        return self._nodes[node][1][0]
+
+
+class _OwnDiagram(_Nodes):
     """Decision diagram of a function over its own reads, last read first."""
 
     def __init__(self, letters: Sequence[int], sizes: Sequence[int]) -> None:
-        self._nodes = _Nodes()
+        super().__init__()
         self._after: dict[tuple[int, int, int], int] = {}
-        nodes = [self._nodes.add(inf, (symbol,)) for symbol in letters]
+        nodes = [self.add(inf, symbol) for symbol in letters]
         for place, size in enumerate(sizes):
-            nodes = [
-                self._nodes.add(place, tuple(nodes[first : first + size]))
-                for first in range(0, len(nodes), size)
-            ]
+            firsts = range(0, len(nodes), size)
+            nodes = [self.add(place, *nodes[first : first + size]) for first in firsts]
         (self.root,) = nodes
-
-    def value(self, node: int) -> int:
-        return self._nodes.all[node][1][0]
 
     def after(self, node: int, place: int, digit: int) -> int:
         """Restriction of a node to one digit of a read."""
-        own, children = self._nodes.all[node]
+        own, children = self._nodes[node]
         if own == place:
             return children[digit]
         if own == inf or own < place:
             return node
         key = (node, place, digit)
         if key not in self._after:
-            inner = tuple(self.after(child, place, digit) for child in children)
-            self._after[key] = self._nodes.add(own, inner)
+            inner = [self.after(child, place, digit) for child in children]
+            self._after[key] = self.add(own, *inner)
         return self._after[key]
 
 
 @lru_cache(maxsize=1024)
-def _own(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _Own:
+def _own_diagram(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _OwnDiagram:
     """Kept, because a rule is compared to many others."""
-    return _Own(letters, sizes)
+    return _OwnDiagram(letters, sizes)
 
 
-class DecisionDiagrams:
+class DecisionDiagrams(_Nodes):
     """All nodes of some diagrams over the same joint reads."""
-
-    def __init__(self) -> None:
-        self._nodes = _Nodes()
 
     def of(self, function: LetterFunction, views: Sequence[JointDigits]) -> int:
         """The diagram of a function: its class, given the joint digits."""
-        own = _own(function.letters, tuple(read.size for read in function.reads))
+        own = _own_diagram(function.letters, tuple(read.size for read in function.reads))
         by_level: dict[int, list[tuple[int, JointDigits]]] = {}
         for place, view in enumerate(views):
             by_level.setdefault(view.joint, []).append((place, view))
@@ -90,7 +90,7 @@ class DecisionDiagrams:
 
         def built(node: int, depth: int) -> int:
             if depth == len(levels):
-                return self._nodes.add(inf, (own.value(node),))
+                return self.add(inf, own.value(node))
             if (node, depth) not in known:
                 level, here = levels[depth]
                 children = []
@@ -99,20 +99,12 @@ class DecisionDiagrams:
                     for place, view in here:
                         inner = own.after(inner, place, view.digits[digit])
                     children.append(built(inner, depth + 1))
-                known[node, depth] = self._nodes.add(level, tuple(children))
+                known[node, depth] = self.add(level, *children)
             return known[node, depth]
 
         return built(own.root, 0)
 
-    def level(self, node: int) -> float:
-        """Index of the joint read that a node tests; infinity for leaves."""
-        return self._nodes.all[node][0]
-
     def child(self, node: int, level: float, digit: int) -> int:
         """Restriction of a node to one digit of a joint read."""
-        own, children = self._nodes.all[node]
+        own, children = self._nodes[node]
         return children[digit] if own == level else node
-
-    def value(self, node: int) -> int:
-        """The class of a node that tests nothing any more."""
-        return self._nodes.all[node][1][0]

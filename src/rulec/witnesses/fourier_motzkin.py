@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from math import floor
 
 from rulec.logic.formula import Term
@@ -55,18 +56,38 @@ def solve(
         return None
     solution: dict[Term, Fraction] = {}
     for unknown, bounds in reversed(stages):
-        lows, highs = _interval(unknown, bounds, solution)
+        # Those from below come first, as the numbers beside them are tried first.
+        limits = sorted(
+            [
+                (bound.coefficients[unknown], _rest(bound, solution), bound.strict)
+                for bound in bounds
+            ],
+            key=lambda limit: limit[0] > 0,
+        )
         candidates = _candidates(
             preferred.get(unknown),
-            [limit for limit, _ in (*lows, *highs)],
+            [rest / factor for factor, rest, _ in limits],
             whole=unknown in whole,
             zero_first=unknown not in near_bounds,
         )
-        number = next((number for number in candidates if _lies_in(number, lows, highs)), None)
-        if number is None:
+        for number in candidates:
+            if all(
+                factor * number < rest or (factor * number == rest and not strict)
+                for factor, rest, strict in limits
+            ):
+                solution[unknown] = number
+                break
+        else:
             return None
-        solution[unknown] = number
     return solution
+
+
+def _rest(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
+    """What the unknowns with a number leave of a limit."""
+    factors = bound.coefficients.items()
+    return bound.limit - sum(
+        (factor * solution[name] for name, factor in factors if name in solution), Fraction(0)
+    )
 
 
 def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound]:
@@ -74,48 +95,17 @@ def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound
     rest = [bound for bound in system if not bound.coefficients.get(unknown)]
     above = [bound for bound in system if bound.coefficients.get(unknown, 0) > 0]
     below = [bound for bound in system if bound.coefficients.get(unknown, 0) < 0]
-    for upper in above:
-        for lower in below:
-            up, low = upper.coefficients[unknown], -lower.coefficients[unknown]
-            names = {*upper.coefficients, *lower.coefficients} - {unknown}
-            sums = {
-                name: upper.coefficients.get(name, Fraction(0)) / up
-                + lower.coefficients.get(name, Fraction(0)) / low
-                for name in names
-            }
-            sums = {name: factor for name, factor in sums.items() if factor}
-            limit = upper.limit / up + lower.limit / low
-            rest.append(LinearBound(sums, limit, upper.strict or lower.strict))
+    for upper, lower in product(above, below):
+        sums: dict[Term, Fraction] = {}
+        limit = Fraction(0)
+        for bound in (upper, lower):
+            own = abs(bound.coefficients[unknown])
+            limit += bound.limit / own
+            for name, factor in bound.coefficients.items():
+                sums[name] = sums.get(name, Fraction(0)) + factor / own
+        sums = {name: factor for name, factor in sums.items() if factor}
+        rest.append(LinearBound(sums, limit, upper.strict or lower.strict))
     return rest
-
-
-_Ends = list[tuple[Fraction, bool]]
-"""Limits of an interval on one side, and whether each is left out."""
-
-
-def _interval(
-    unknown: Term, bounds: Sequence[LinearBound], solution: Mapping[Term, Fraction]
-) -> tuple[_Ends, _Ends]:
-    """Lower and upper limits of an unknown, given those eliminated later."""
-    lows: _Ends = []
-    highs: _Ends = []
-    for bound in bounds:
-        known = [
-            factor * solution[name]
-            for name, factor in bound.coefficients.items()
-            if name != unknown
-        ]
-        own = bound.coefficients[unknown]
-        limit = (bound.limit - sum(known, Fraction(0))) / own
-        (highs if own > 0 else lows).append((limit, bound.strict))
-    return lows, highs
-
-
-def _lies_in(number: Fraction, lows: _Ends, highs: _Ends) -> bool:
-    above = all(number > limit or (number == limit and not strict) for limit, strict in lows)
-    return above and all(
-        number < limit or (number == limit and not strict) for limit, strict in highs
-    )
 
 
 def _candidates(

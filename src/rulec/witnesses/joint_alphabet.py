@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from heapq import heappop, heappush
+from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.witnesses.counted_objects import fewest_counted_objects
@@ -47,39 +48,28 @@ class JointAlphabet:
 
     def __init__(self, universe: ObjectUniverse, monitors: Sequence[LetterFunction]) -> None:
         self._universe = universe
-        axioms = [
-            axiom_function(formula, universe.vocabulary) for formula in universe.axiom_formulas()
-        ]
-        self._counts = [
-            count_function(count, universe)
-            for count in counts_read(
-                read for function in (*monitors, *axioms) for read in function.reads
-            )
-        ]
+        vocabulary = universe.vocabulary
+        axioms = [axiom_function(formula, vocabulary) for formula in universe.axiom_formulas()]
+        reads = (read for function in (*monitors, *axioms) for read in function.reads)
+        self._counts = [count_function(count, universe) for count in counts_read(reads)]
         functions = [*monitors, *(count.function for count in self._counts), *axioms]
-        self._joint = joint_reads(functions, universe.vocabulary)
-        self._n_monitors = len(monitors)
+        self._joint = joint_reads(functions, vocabulary)
         self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
-        roots = [
-            self._diagrams.of(function, views)
-            for function, views in zip(functions, self._joint.views, strict=True)
-        ]
-        self._defaults = [default_digit(read, universe.vocabulary) for read in self._joint.reads]
+        roots = list(map(self._diagrams.of, functions, self._joint.views))
+        self._defaults = [default_digit(read, vocabulary) for read in self._joint.reads]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
         ways_to: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
-        number = 0
+        numbers = count()
         for number_digits, ways in self._numbered(self._cleared(roots), ()):
             cost = sum(self._cost(level, digit) for level, digit in number_digits)
             for key, (more, steps) in ways.items():
                 for number_digit in reversed(number_digits):
                     steps = (number_digit, steps)
-                number += 1
-                heappush(
-                    ways_to.setdefault(key[: self._n_monitors], []),
-                    (cost + more, number, steps, key[self._n_monitors :]),
-                )
+                letter, classes = key[: len(monitors)], key[len(monitors) :]
+                way = (cost + more, next(numbers), steps, classes)
+                heappush(ways_to.setdefault(letter, []), way)
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
         self.states: Mapping[JointLetter, JointState] = {
@@ -108,9 +98,9 @@ class JointAlphabet:
                 return ()
         return (*keys, *dict.fromkeys(open_axioms))
 
-    def _level(self, nodes: Sequence[int]) -> int | None:
-        level = min(map(self._diagrams.level, nodes), default=len(self._joint.reads))
-        return int(level) if level < len(self._joint.reads) else None
+    def _level(self, nodes: Sequence[int]) -> int:
+        """The first joint read that a node tests; the number of them if none does."""
+        return int(min(len(self._joint.reads), *map(self._diagrams.level, nodes)))
 
     def _after(self, nodes: Sequence[int], level: int, digit: int) -> tuple[int, ...]:
         return self._cleared([self._diagrams.child(node, level, digit) for node in nodes])
@@ -122,7 +112,7 @@ class JointAlphabet:
         if not nodes:
             return
         level = self._level(nodes)
-        if level is None or level >= self._n_numbers:
+        if level >= self._n_numbers:
             yield number_digits, self._ways(nodes)
             return
         for digit in range(self._joint.reads[level].size):
@@ -148,7 +138,7 @@ class JointAlphabet:
             raise UndecidedError("too many different states of the world have to be told apart")
         level = self._level(nodes)
         ways: dict[JointLetter, tuple[int, Steps]] = {}
-        if level is None:
+        if level == len(self._joint.reads):
             ways[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
             for digit in range(self._joint.reads[level].size):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -10,9 +10,8 @@ from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Term
 from rulec.logic.printing import term_text
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.witnesses.letter_functions import LetterFunction
-
-Terms = tuple[tuple[Fraction, Term], ...]
+from rulec.witnesses.letter_functions import LetterFunction, Reads
+from rulec.witnesses.state_synthesis import value_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +26,7 @@ class JointDigits:
 class JointReads:
     """Joint reads, numbers first, and the views of each function's reads."""
 
-    reads: tuple[Read | NumberRead, ...]
+    reads: Reads
     views: tuple[tuple[JointDigits, ...], ...]
 
     def own_digits(self, index: int, joint_digits: Sequence[int]) -> tuple[int, ...]:
@@ -51,10 +50,9 @@ def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> 
     reads = tuple(_merged(together[subject], vocabulary) for subject in subjects)
     views = tuple(
         tuple(
-            JointDigits(
-                position[_subject(read)], _seen(read, reads[position[_subject(read)]], vocabulary)
-            )
+            JointDigits(place, _seen(read, reads[place], vocabulary))
             for read in function.reads
+            for place in [position[_subject(read)]]
         )
         for function in functions
     )
@@ -62,12 +60,10 @@ def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> 
 
 
 def _subject(read: Read | NumberRead) -> object:
-    if isinstance(read, NumberRead):
-        return normal(read)[0]
-    return read.name, read.variables
+    return normal(read)[0] if isinstance(read, NumberRead) else (read.name, read.variables)
 
 
-def normal(read: NumberRead) -> tuple[Terms, Fraction]:
+def normal(read: NumberRead) -> tuple[tuple[tuple[Fraction, Term], ...], Fraction]:
     """Normal form of a read's sum, and the factor between the two.
 
     In normal form terms are sorted by their text, and the first coefficient is 1.
@@ -75,18 +71,18 @@ def normal(read: NumberRead) -> tuple[Terms, Fraction]:
     sums: dict[Term, Fraction] = {}
     for coefficient, term in read.terms:
         sums[term] = sums.get(term, Fraction(0)) + coefficient
-    left = sorted((term_text(term), term) for term in sums if sums[term])
-    if not left:
+    terms = sorted((term for term in sums if sums[term]), key=term_text)
+    if not terms:
         return (), Fraction(1)
-    factor = sums[left[0][1]]
-    return tuple((sums[term] / factor, term) for _, term in left), factor
+    factor = sums[terms[0]]
+    return tuple((sums[term] / factor, term) for term in terms), factor
 
 
 def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read | NumberRead:
     first = reads[0]
     if isinstance(first, NumberRead):
         passed = {
-            side for read in reads if isinstance(read, NumberRead) for side, _ in _sides(read)
+            side for read in reads if isinstance(read, NumberRead) for side in _scaled(read)[0]
         }
         order = sorted(passed, key=lambda threshold: (threshold.limit, not threshold.inclusive))
         return NumberRead(normal(first)[0], tuple(order))
@@ -98,31 +94,27 @@ def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read 
     return Read(first.name, first.variables, values, len(values) < len(declaration.values))
 
 
-def _sides(read: NumberRead) -> Iterable[tuple[Threshold, bool]]:
-    """Thresholds scaled to the normal form, each with its upward direction."""
+def _scaled(read: NumberRead) -> tuple[list[Threshold], bool]:
+    """Thresholds scaled to the normal form, and whether they are passed upward there."""
     _, factor = normal(read)
-    for threshold in read.thresholds:
-        limit = threshold.limit / factor
-        # The larger a sum, the smaller its negative: one passes where the other stays below.
-        upward = factor > 0
-        yield Threshold(limit, threshold.inclusive if upward else not threshold.inclusive), upward
+    # The larger a sum, the smaller its negative: one passes where the other stays below.
+    upward = factor > 0
+    thresholds = [
+        Threshold(threshold.limit / factor, threshold.inclusive is upward)
+        for threshold in read.thresholds
+    ]
+    return thresholds, upward
 
 
 def _seen(
     read: Read | NumberRead, joint: Read | NumberRead, vocabulary: Vocabulary
 ) -> tuple[int, ...]:
+    """The digit of a read for each digit of its joint read."""
+    joint_digits = range(joint.size)
     if isinstance(read, NumberRead):
         assert isinstance(joint, NumberRead)
-        places = [(joint.thresholds.index(side), upward) for side, upward in _sides(read)]
-        return tuple(
-            sum((digit > place) is upward for place, upward in places)
-            for digit in range(joint.size)
-        )
+        thresholds, upward = _scaled(read)
+        places = [joint.thresholds.index(threshold) for threshold in thresholds]
+        return tuple(sum((digit > place) is upward for place in places) for digit in joint_digits)
     assert isinstance(joint, Read)
-    if not joint.values:
-        return 0, 1
-    declaration = vocabulary.declarations[read.name]
-    assert isinstance(declaration, Enumeration)
-    rest = next((value for value in declaration.values if value not in joint.values), "")
-    values = (*joint.values, rest) if joint.others else joint.values
-    return tuple(read.digit(value) for value in values)
+    return tuple(read.digit(value_of(joint, digit, vocabulary)) for digit in joint_digits)

@@ -5,70 +5,85 @@ Letters are numbers in mixed radix, as those of a monitor.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 
-from rulec.automata.alphabet import count_letters, letters_with, propositions_of, reads_of
+from rulec.automata.alphabet import count_letters, joined, letters_with, propositions_of, reads_of
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold
 from rulec.logic.free_names import variables_of
 from rulec.logic.renaming import rename_variables
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_LETTERS = 1 << 14
 """An axiom or a count that reads more than these is left undecided."""
+
+Reads = tuple[Read | NumberRead, ...]
+
+
+def all_digits(reads: Sequence[Read | NumberRead]) -> Iterator[tuple[int, ...]]:
+    """The digits of each letter, in the order of letters."""
+    for digits in product(*(range(read.size) for read in reversed(reads))):
+        yield digits[::-1]
+
+
+def digits_of(letter: int, reads: Sequence[Read | NumberRead]) -> tuple[int, ...]:
+    """The digits of a letter."""
+    digits = []
+    for read in reads:
+        letter, digit = divmod(letter, read.size)
+        digits.append(digit)
+    return tuple(digits)
+
+
+def letter_of(digits: Sequence[int], reads: Sequence[Read | NumberRead]) -> int:
+    """The letter with these digits."""
+    letter = 0
+    for read, digit in zip(reversed(reads), reversed(digits), strict=True):
+        letter = letter * read.size + digit
+    return letter
 
 
 @dataclass(frozen=True, slots=True)
 class LetterFunction:
     """Function from letters of some reads about objects to letter classes."""
 
-    reads: tuple[Read | NumberRead, ...]
+    reads: Reads
     letters: tuple[int, ...]
 
     def value(self, digits: Sequence[int]) -> int:
         """The class of the letter with these digits."""
-        letter, stride = 0, 1
-        for read, digit in zip(self.reads, digits, strict=True):
-            letter += stride * digit
-            stride *= read.size
-        return self.letters[letter]
+        return self.letters[letter_of(digits, self.reads)]
 
 
-def monitor_function(
-    machine: MealyMonitor, names: Mapping[str, str], universe: ObjectUniverse
-) -> LetterFunction:
+def monitor_function(machine: MealyMonitor, names: Mapping[str, str]) -> LetterFunction:
     """Letter function of a rule's monitor for a binding of its variables."""
-    reads: list[Read | NumberRead] = []
-    for read in machine.reads:
-        if isinstance(read, Read):
-            variables = tuple(names[variable] for variable in read.variables)
-            reads.append(Read(read.name, variables, read.values, read.others))
-        else:
-            terms = tuple(
-                (factor, _renamed_term(universe.canonical_term(term), names))
-                for factor, term in read.terms
-            )
-            reads.append(NumberRead(terms, read.thresholds))
+
+    def renamed(term: ltl.Term) -> ltl.Term:
+        match canonical_term(term):
+            case ltl.QuantityTerm(name, arguments):
+                return ltl.QuantityTerm(name, tuple(names[argument] for argument in arguments))
+            case ltl.Count(variable, kind, body):
+                return ltl.Count(variable, kind, rename_variables(body, names))
+
+    reads = [
+        replace(read, variables=tuple(names[variable] for variable in read.variables))
+        if isinstance(read, Read)
+        else replace(read, terms=tuple((factor, renamed(term)) for factor, term in read.terms))
+        for read in machine.reads
+    ]
     return LetterFunction(tuple(reads), machine.letters)
-
-
-def _renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
-    if isinstance(term, ltl.QuantityTerm):
-        return ltl.QuantityTerm(term.name, tuple(names[argument] for argument in term.arguments))
-    return ltl.Count(term.variable, term.type, rename_variables(term.body, names))
 
 
 def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFunction:
     """Letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
-    return LetterFunction(
-        reads, tuple(holds >> letter & 1 for letter in range(count_letters(reads)))
-    )
+    letters = range(count_letters(reads))
+    return LetterFunction(reads, tuple(holds >> letter & 1 for letter in letters))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,30 +109,30 @@ def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
     """
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")
-    fitting = [
-        name
+    vocabulary = universe.vocabulary
+    bodies = [
+        body_of(count, name)
         for name, kind in universe.objects.items()
-        if universe.vocabulary.is_subtype(kind, count.type)
+        if vocabulary.is_subtype(kind, count.type)
     ]
-    bodies = [body_of(count, name) for name in fitting]
-    extra = reads_of(body_of(count, EXTRA), universe.vocabulary)
-    around = [read for read in extra if not speaks_of_extra(read)]
-    own = reads_of(_all_of(bodies), universe.vocabulary)
-    reads = own + tuple(read for read in around if _key(read) not in map(_key, own))
-    total = count_letters(reads)
+    own = {_key(read): read for read in reads_of(_all_of(bodies), vocabulary)}
+    around = {
+        _key(read): read
+        for read in reads_of(body_of(count, EXTRA), vocabulary)
+        if not speaks_of_extra(read)
+    }
+    # In the order of the first mention; where both read a number, its thresholds are the own ones.
+    reads = tuple((own | around | own).values())
+    beside = [place for place, key in enumerate(own | around) if key in around]
     truths = _truths(bodies, reads)
-    digits = list(product(*(range(read.size) for read in reversed(reads))))
-    beside = [n for n, read in enumerate(reads) if _key(read) in map(_key, around)]
     classes: dict[tuple[int, ...], int] = {}
     letters = []
-    for letter in range(total):
-        own_digits = digits[letter][::-1]
+    for letter, digits in enumerate(all_digits(reads)):
         number = sum(letters_of_body >> letter & 1 for letters_of_body in truths)
-        key = (number, *(own_digits[n] for n in beside))
+        key = (number, *(digits[place] for place in beside))
         letters.append(classes.setdefault(key, len(classes)))
-    return CountFunction(
-        count, LetterFunction(reads, tuple(letters)), tuple(key[0] for key in classes)
-    )
+    function = LetterFunction(reads, tuple(letters))
+    return CountFunction(count, function, tuple(number for number, *_ in classes))
 
 
 def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
@@ -132,6 +147,15 @@ def body_of(count: ltl.Count, name: str) -> ltl.Formula:
     return _settled(rename_variables(count.body, {count.variable: name}))
 
 
+def _settled(formula: ltl.Formula) -> ltl.Formula:
+    """Replace each equality of two names by its truth value."""
+    if isinstance(formula, ltl.Unary | ltl.Binary):
+        return ltl.with_operands(formula, _settled)
+    if isinstance(formula, ltl.Same):
+        return ltl.Constant(formula.left == formula.right)
+    return formula
+
+
 def speaks_of_extra(read: Read | NumberRead) -> bool:
     """Tell whether a read is about an additional, counted object."""
     if isinstance(read, Read):
@@ -144,27 +168,10 @@ def _key(read: Read | NumberRead) -> object:
 
 
 def _all_of(formulas: Sequence[ltl.Formula]) -> ltl.Formula:
-    whole: ltl.Formula = ltl.Constant(True)
-    for formula in formulas:
-        whole = ltl.Binary(ltl.BinaryOperator.AND, whole, formula)
-    return whole
+    return joined(ltl.BinaryOperator.AND, (ltl.Constant(True), *formulas))
 
 
-def _settled(formula: ltl.Formula) -> ltl.Formula:
-    """Replace each equality of two names by its truth value."""
-    match formula:
-        case ltl.Same(left, right):
-            return ltl.Constant(left == right)
-        case ltl.Unary(operator, operand, bound):
-            return ltl.Unary(operator, _settled(operand), bound)
-        case ltl.Binary(operator, left, right, bound):
-            return ltl.Binary(operator, _settled(left), _settled(right), bound)
-    return formula
-
-
-def truths_of(
-    formulas: Sequence[ltl.Formula], vocabulary: Vocabulary
-) -> tuple[tuple[Read | NumberRead, ...], list[int]]:
+def truths_of(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> tuple[Reads, list[int]]:
     """Joint reads of non-temporal formulas, and the letters that satisfy each.
 
     A set of letters is the bits of an integer. Raises UndecidedError if there are too many.
@@ -173,11 +180,10 @@ def truths_of(
     return reads, _truths(formulas, reads)
 
 
-def _truths(formulas: Sequence[ltl.Formula], reads: tuple[Read | NumberRead, ...]) -> list[int]:
+def _truths(formulas: Sequence[ltl.Formula], reads: Reads) -> list[int]:
     total = count_letters(reads)
     if total > MOST_LETTERS:
         raise UndecidedError("a fact or a count reads too much at once")
-    whole = _all_of(formulas)
-    sets = letters_with(reads, propositions_of(whole))
+    sets = letters_with(reads, propositions_of(_all_of(formulas)))
     algebra = bit_sets(sets, (1 << total) - 1)
     return [fold(formula, algebra) for formula in formulas]

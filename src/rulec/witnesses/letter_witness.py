@@ -6,19 +6,26 @@ rule's own objects is chosen too, so that with further objects the counts come o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from math import prod
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead
 from rulec.logic.formula import Count
 from rulec.rulebook.rulebook_model import ExampleState, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.counted_objects import fewest_counted_objects
-from rulec.witnesses.joint_reads import joint_reads
-from rulec.witnesses.letter_functions import LetterFunction, count_function, counts_read
+from rulec.witnesses.joint_reads import JointReads, joint_reads
+from rulec.witnesses.letter_functions import (
+    CountFunction,
+    LetterFunction,
+    all_digits,
+    count_function,
+    counts_read,
+)
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import (
     JointState,
@@ -31,15 +38,6 @@ from rulec.witnesses.undecided import UndecidedError
 
 MOST_CHOICES = 4096
 """Of what counts read of a rule's own objects no more combinations are tried."""
-
-
-def digits_of(letter: int, monitor: MealyMonitor) -> tuple[int, ...]:
-    """The digit of each of the monitor's reads."""
-    digits = []
-    for read in monitor.reads:
-        letter, digit = divmod(letter, read.size)
-        digits.append(digit)
-    return tuple(digits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +63,7 @@ class LetterWitnesses:
         self._universe = ObjectUniverse(objects, vocabulary)
         self._states: dict[int, JointState | None] = {}
         self._undecided: set[int] = set()
-        sizes = [range(read.size) for read in reversed(rule.machine.reads)]
-        self._digits = [digits[::-1] for digits in product(*sizes)]
+        self._digits = list(all_digits(rule.machine.reads))
         self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
         for letter, letter_class in enumerate(rule.machine.letters):
             if letter_class != IMPOSSIBLE:
@@ -75,7 +72,6 @@ class LetterWitnesses:
             0 if isinstance(read, NumberRead) else default_digit(read, vocabulary) or 0
             for read in rule.machine.reads
         ]
-        self._choices: _ObjectChoices | None = None
 
     def plainest(self, letter_class: int) -> int | None:
         """Possible letter of a class with most defaults, or None."""
@@ -122,14 +118,56 @@ class LetterWitnesses:
         digits = self._digits[letter]
         if self._counts:
             try:
-                if self._choices is None:
-                    self._choices = _ObjectChoices(self._monitor, self._universe, self._counts)
-                return self._choices.state(digits)
+                return self._counted_state(digits)
             except UndecidedError:
                 self._undecided.add(letter)
         at_least = tuple((count, 0) for count in self._counts)
         reads = list(zip(self._monitor.reads, digits, strict=True))
         return synthesize_state(self._universe, reads, at_least)
+
+    @cached_property
+    def _joint_counts(self) -> tuple[list[CountFunction], JointReads]:
+        """The counts, and the joint reads of the monitor and of them."""
+        counts = [count_function(count, self._universe) for count in self._counts]
+        own = LetterFunction(self._monitor.reads, self._monitor.letters)
+        functions = [own, *(count.function for count in counts)]
+        return counts, joint_reads(functions, self._universe.vocabulary)
+
+    def _counted_state(self, digits: Sequence[int]) -> JointState | None:
+        """State with these digits of the monitor's reads and fitting counts.
+
+        What the monitor leaves open has its default where it can.
+        """
+        counts, joint = self._joint_counts
+        choices = [self._allowed(level, digits) for level in range(len(joint.reads))]
+        if prod(map(len, choices)) > MOST_CHOICES:
+            raise UndecidedError("too many states of the counted objects have to be told apart")
+        for joint_digits in product(*choices):
+            counted = tuple(
+                (count.count, count.counted_in(joint.own_digits(index, joint_digits)))
+                for index, count in enumerate(counts, 1)
+            )
+            reads = list(zip(joint.reads, joint_digits, strict=True))
+            state = synthesize_state(self._universe, reads, counted)
+            if state is not None and fewest_counted_objects(state, self._universe) is not None:
+                return state
+        return None
+
+    def _allowed(self, level: int, digits: Sequence[int]) -> list[int]:
+        """Digits of a joint read that the monitor's allow, default first."""
+        _, joint = self._joint_counts
+        read = joint.reads[level]
+        default = default_digit(read, self._universe.vocabulary)
+        allowed = [
+            joint_digit
+            for joint_digit in range(read.size)
+            if all(
+                view.digits[joint_digit] == digit
+                for view, digit in zip(joint.views[0], digits, strict=True)
+                if view.joint == level
+            )
+        ]
+        return sorted(allowed, key=lambda joint_digit: joint_digit != default)
 
     def _stem(self, kind: str) -> str:
         """The variable by which the rule counts objects of a type."""
@@ -142,54 +180,6 @@ class LetterWitnesses:
             key=lambda letter: (_distance(self._digits[letter], digits), letter),
         )
         return next((letter for letter in letters if self.state(letter) is not None), None)
-
-
-class _ObjectChoices:
-    """Joint reads of a monitor and of its counts about own objects."""
-
-    def __init__(
-        self, monitor: MealyMonitor, universe: ObjectUniverse, counts: Sequence[Count]
-    ) -> None:
-        self._universe = universe
-        self._functions = [count_function(count, universe) for count in counts]
-        own = LetterFunction(monitor.reads, monitor.letters)
-        functions = [own, *(function.function for function in self._functions)]
-        self._joint = joint_reads(functions, universe.vocabulary)
-
-    def state(self, digits: Sequence[int]) -> JointState | None:
-        """State with these digits of the monitor's reads and fitting counts.
-
-        What the monitor leaves open has its default where it can.
-        """
-        choices = [list(self._ordered(level, digits)) for level in range(len(self._joint.reads))]
-        if prod(map(len, choices)) > MOST_CHOICES:
-            raise UndecidedError("too many states of the counted objects have to be told apart")
-        for joint_digits in product(*choices):
-            counted = tuple(
-                (function.count, function.counted_in(self._joint.own_digits(index, joint_digits)))
-                for index, function in enumerate(self._functions, 1)
-            )
-            reads = list(zip(self._joint.reads, joint_digits, strict=True))
-            state = synthesize_state(self._universe, reads, counted)
-            if state is not None and fewest_counted_objects(state, self._universe) is not None:
-                return state
-        return None
-
-    def _ordered(self, level: int, digits: Sequence[int]) -> Iterator[int]:
-        """Digits of a joint read that the monitor's allow, default first."""
-        read = self._joint.reads[level]
-        default = default_digit(read, self._universe.vocabulary)
-        views = [
-            (view.digits, digit)
-            for view, digit in zip(self._joint.views[0], digits, strict=True)
-            if view.joint == level
-        ]
-        allowed = [
-            joint_digit
-            for joint_digit in range(read.size)
-            if all(seen[joint_digit] == digit for seen, digit in views)
-        ]
-        yield from sorted(allowed, key=lambda joint_digit: joint_digit != default)
 
 
 def _distance(digits: Sequence[int], others: Sequence[int]) -> int:

@@ -6,7 +6,7 @@ Fourier-Motzkin elimination solves.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
@@ -45,11 +45,23 @@ class JointState:
         value = self.values.get(subject)
         return default_value(vocabulary.declarations[subject[0]]) if value is None else value
 
-    def number(self, term: QuantityTerm, vocabulary: Vocabulary) -> Fraction:
-        """The value of a quantity."""
-        value = self.value((term.name, term.arguments), vocabulary)
-        assert not isinstance(value, str), "a quantity is a number"
-        return exact(value)
+    def total(
+        self,
+        terms: Iterable[tuple[Fraction, Term]],
+        vocabulary: Vocabulary,
+        counted: Mapping[Count, int],
+    ) -> Fraction:
+        """The value of a sum, where so many objects are counted."""
+        total = Fraction(0)
+        for factor, term in terms:
+            value: Value = (
+                counted[term]
+                if isinstance(term, Count)
+                else self.value((term.name, term.arguments), vocabulary)
+            )
+            assert not isinstance(value, str), "a quantity is a number"
+            total += factor * exact(value)
+        return total
 
 
 def synthesize_state(
@@ -63,15 +75,22 @@ def synthesize_state(
     numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
     if numbers is None:
         return None
-    values: dict[Subject, Value] = {
-        (read.name, read.variables): value_of(read, digit, vocabulary)
-        for read, digit in digits
-        if isinstance(read, Read)
-    }
+    values = values_of(digits, vocabulary)
     for term, number in numbers.items():
         if isinstance(term, QuantityTerm):
             values[term.name, term.arguments] = float(number)
     return JointState(values, number_digits, counted)
+
+
+def values_of(
+    digits: Sequence[tuple[Read | NumberRead, int]], vocabulary: Vocabulary
+) -> dict[Subject, Value]:
+    """The values of what is no number."""
+    return {
+        (read.name, read.variables): value_of(read, digit, vocabulary)
+        for read, digit in digits
+        if isinstance(read, Read)
+    }
 
 
 def solve_numbers(
@@ -80,13 +99,12 @@ def solve_numbers(
     least: Mapping[Count, int],
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
-    counts, quantities = _terms_of(number_digits)
-    system = _linear_system(number_digits, counts, least)
-    preferred: dict[Term, Fraction] = {}
-    for term in quantities:
-        default = vocabulary.declarations[term.name].default
-        if isinstance(default, int | float):
-            preferred[term] = exact(default)
+    system, quantities, counts = _linear_system(number_digits, least)
+    preferred: dict[Term, Fraction] = {
+        term: default
+        for term in quantities
+        if (default := _default_number(term, vocabulary)) is not None
+    }
     # Most quantities are nothing below zero, though nobody has said so.
     natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
     order: list[Term] = [*quantities, *counts]
@@ -99,24 +117,23 @@ def solve_numbers(
 def numbers_near_thresholds(
     number_digits: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
 ) -> dict[QuantityTerm, float] | None:
-    """Numbers with these digits, close to the thresholds, for tests.
+    """Numbers of quantities with these digits, close to the thresholds, for tests.
 
     Of a sum of several quantities one is close, the others have their defaults, or are zero, unless
     they are compared by themselves. None if there are none, or if floats cannot write them.
     """
-    _, quantities = _terms_of(number_digits)
+    system, quantities, _ = _linear_system(number_digits, {})
     preferred: dict[Term, Fraction] = {}
     listed: list[QuantityTerm] = []
     order: list[Term] = []
     # A quantity that is compared by itself has less of a choice than one in a sum only.
     for read, _ in sorted(number_digits, key=lambda pair: len(pair[0].terms)):
-        new = [term for term in quantities if term not in listed and term in _addends(read)]
+        addends = [term for _, term in read.terms]
+        new = [term for term in quantities if term not in listed and term in addends]
         for term in new[1:]:
-            default = vocabulary.declarations[term.name].default
-            preferred[term] = exact(default) if isinstance(default, int | float) else Fraction(0)
+            preferred[term] = _default_number(term, vocabulary) or Fraction(0)
         listed += new
         order += [*new[1:], *new[:1]]
-    system = _linear_system(number_digits, (), {})
     near = frozenset(quantities) - preferred.keys()
     solution = solve(system, order[::-1], preferred, near_bounds=near)
     if solution is None or not all(map(_is_float, solution.values())):
@@ -124,8 +141,9 @@ def numbers_near_thresholds(
     return {term: float(solution[term]) for term in listed}
 
 
-def _addends(read: NumberRead) -> list[Term]:
-    return [term for _, term in read.terms]
+def _default_number(term: QuantityTerm, vocabulary: Vocabulary) -> Fraction | None:
+    default = vocabulary.declarations[term.name].default
+    return exact(default) if isinstance(default, int | float) else None
 
 
 def _is_float(number: Fraction) -> bool:
@@ -143,29 +161,21 @@ def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, in
 
 def are_consistent(number_digits: Sequence[tuple[NumberRead, int]]) -> bool:
     """Tell whether numbers with these digits exist; counts are natural numbers."""
-    counts, quantities = _terms_of(number_digits)
-    system = _linear_system(number_digits, counts, {})
+    system, quantities, counts = _linear_system(number_digits, {})
     return solve(system, [*quantities, *counts], {}, frozenset(counts)) is not None
 
 
-def _terms_of(
-    number_digits: Sequence[tuple[NumberRead, int]],
-) -> tuple[list[Count], list[QuantityTerm]]:
+def _linear_system(
+    number_digits: Sequence[tuple[NumberRead, int]], least: Mapping[Count, int]
+) -> tuple[list[LinearBound], list[QuantityTerm], list[Count]]:
+    """Inequalities for these digits and least counts, and their unknowns."""
     terms = list(dict.fromkeys(term for read, _ in number_digits for _, term in read.terms))
     counts = [term for term in terms if isinstance(term, Count)]
-    return counts, [term for term in terms if isinstance(term, QuantityTerm)]
-
-
-def _linear_system(
-    number_digits: Sequence[tuple[NumberRead, int]],
-    counts: Sequence[Count],
-    least: Mapping[Count, int],
-) -> list[LinearBound]:
     system = [bound for read, digit in number_digits for bound in _bounds_of(read, digit)]
     system += [
         LinearBound({count: Fraction(-1)}, Fraction(-least.get(count, 0))) for count in counts
     ]
-    return system
+    return system, [term for term in terms if isinstance(term, QuantityTerm)], counts
 
 
 def _bounds_of(read: NumberRead, digit: int) -> Iterator[LinearBound]:
@@ -209,10 +219,10 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
     total = Fraction(0)
     for coefficient, term in read.terms:
         if isinstance(term, QuantityTerm):
-            default = vocabulary.declarations[term.name].default
-            if not isinstance(default, int | float):
+            number = _default_number(term, vocabulary)
+            if number is None:
                 return None
-            total += coefficient * exact(default)
+            total += coefficient * number
     return read.digit(total)
 
 

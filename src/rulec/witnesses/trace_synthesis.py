@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
+from itertools import count
 from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
 from rulec.witnesses.counted_objects import counted_objects_of_types, fewest_counted_objects
@@ -20,21 +19,22 @@ from rulec.witnesses.undecided import UndecidedError
 def place_objects(
     states: Sequence[JointState], universe: ObjectUniverse, stem: Callable[[str], str]
 ) -> tuple[dict[str, str], list[dict[Subject, Value]]]:
-    """Name the additional objects that all states' counts need, with values.
+    """Name the objects that the counts of all states need besides the universe's.
 
-    Args:
-        states: synthesised states.
-        universe: the objects that are there already.
-        stem: of a type, what the names of such objects begin with.
-
-    Returns:
-        The types of the further objects by name, and the values of each state.
-
-    Raises:
-        UndecidedError: if the objects counted in one state are in the way in another.
+    ``stem`` gives for a type what the names of such objects begin with. Returns their types by
+    name, and the values of each state. Raises UndecidedError if the objects counted in one state
+    are in the way in another.
     """
-    types = _types([fewest_counted_objects(state, universe) or () for state in states])
-    names = _names([stem(kind) for kind in types], universe.objects)
+    # Each type as often as any state needs it.
+    most: Counter[str] = Counter()
+    for state in states:
+        needed = fewest_counted_objects(state, universe) or ()
+        most |= Counter(companion.type for companion in needed)
+    types = sorted(most.elements())
+    names: list[str] = []
+    for kind in types:
+        numbered = (f"{stem(kind)}{number}" for number in count(1))
+        names.append(next(name for name in numbered if name not in {*universe.objects, *names}))
     placed: list[dict[Subject, Value]] = []
     for state in states:
         further = counted_objects_of_types(state, universe, types)
@@ -65,47 +65,22 @@ def synthesize_trace(
     for fill in _fills(universe, types):
         written = tuple(_written(values, universe, all_objects, fill) for values in placed)
         trace = Trace("witness", float(step_s), all_objects, written)
-        if _does_show(trace, shows, certain=not types):
-            return trace
+        try:
+            if shows(trace):
+                return trace
+        except RulecError:
+            # Objects that are there to be counted may be what facts of several objects rule out.
+            if not types:
+                raise
     if types:
         raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
 
 
-def _does_show(trace: Trace, shows: Callable[[Trace], bool], *, certain: bool) -> bool:
-    try:
-        return shows(trace)
-    except RulecError:
-        # Objects that are there to be counted may be what facts of several objects rule out.
-        if certain:
-            raise
-        return False
-
-
-def _types(groups: Iterable[Sequence[Any]]) -> list[str]:
-    """Types of companions, each as often as any state needs it."""
-    most: Counter[str] = Counter()
-    for group in groups:
-        most |= Counter(companion.type for companion in group)
-    return sorted(most.elements())
-
-
-def _names(stems: Sequence[str], taken: Mapping[str, str]) -> list[str]:
-    names: list[str] = []
-    for stem in stems:
-        number = 1
-        while (name := f"{stem}{number}") in taken or name in names:
-            number += 1
-        names.append(name)
-    return names
-
-
 def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
     """Values for unread properties of additional objects, defaults first."""
     yield {}
-    if not types:
-        return
-    for name, declaration in universe.vocabulary.declarations.items():
+    for name, declaration in universe.vocabulary.declarations.items() if types else ():
         if declaration.parameters:
             for value in getattr(declaration, "values", ()):
                 yield {name: value}
@@ -121,9 +96,9 @@ def _written(
     state: dict[str, Any] = {}
     for (name, items), declaration in subjects_of(universe.vocabulary, all_objects):
         value = values.get((name, items))
-        if value is None and name in universe.unsaid:
-            continue
         if value is None:
+            if name in universe.unsaid:
+                continue
             value = fill.get(name, default_value(declaration))
         if value == declaration.default and type(value) is type(declaration.default):
             continue
@@ -133,10 +108,3 @@ def _written(
             inside = inside.setdefault(key, {})
         inside[last] = value
     return state
-
-
-def single_rule_rulebook(
-    rulebook: CompiledRulebook, rule: CompiledRule, universe: ObjectUniverse
-) -> CompiledRulebook:
-    """Rulebook of one rule, in the vocabulary of a universe."""
-    return replace(rulebook, vocabulary=universe.vocabulary, rules=(rule,))

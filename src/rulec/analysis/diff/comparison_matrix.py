@@ -11,7 +11,7 @@ from string import ascii_uppercase
 
 from rulec.analysis.diff.rule_comparison import RuleRelation, compare
 from rulec.analysis.diff.rulebook_comparison import rules_matching
-from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
+from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 
 CONVERSE: Mapping[RuleRelation, RuleRelation] = {
@@ -51,10 +51,7 @@ class SharedRule:
         return ascii_uppercase[rest] + (str(turns) if turns else "")
 
     def relation(self, first: str, second: str) -> RuleRelation | None:
-        """The relation of the first rulebook's rule to the second's, or None.
-
-        It is None if one of them has no such rule.
-        """
+        """The relation of two rulebooks' rules; None if one has no such rule."""
         if first not in self.laws or second not in self.laws:
             return None
         return self.relations[self.laws[first], self.laws[second]]
@@ -107,52 +104,37 @@ def comparison_matrix(
 ) -> ComparisonMatrix:
     """Compare every two of the rulebooks, rule by rule.
 
-    The arguments are as for ``difference``.
-
-    ``tell`` is told how much is done of ``steps``. Raises RulecError.
+    The arguments are as for ``diff_rulebooks``; ``tell`` is told how much is done of ``steps``.
+    Raises RulecError.
     """
     ours = [rules_matching(book, patterns) for book in books]
-    names = list(dict.fromkeys(name for rules in ours for name in rules))
-    has = Counter(name for rules in ours for name in rules)
+    having: dict[str, list[int]] = {}
+    for number, rules in enumerate(ours):
+        for name in rules:
+            having.setdefault(name, []).append(number)
     stepped: list[dict[str, Rule]] = [{} for _ in books]
-    for name in names:
-        having = [number for number, rules in enumerate(ours) if name in rules]
-        rules = at_one_step([ours[number][name] for number in having], step_s)
-        for number, rule in zip(having, rules, strict=True):
-            if has[name] > 1:
+    for name, numbers in having.items():
+        if len(numbers) > 1:
+            same_step = at_one_step([ours[number][name] for number in numbers], step_s)
+            for number, rule in zip(numbers, same_step, strict=True):
                 stepped[number][name] = rule
-    sides = SharedCompiler(tell).compile(books, stepped)
+    sides = compile_shared(books, stepped, tell)
     shared_rules = []
-    for number, name in enumerate(names, 1):
-        of_each = {
-            book.name: side[name] for book, side in zip(books, sides, strict=True) if name in side
-        }
-        laws, relations = _classified(of_each)
-        # What only one of them has is its own law, whatever it is.
-        laws = laws or {
-            book.name: 0
-            for book, rules_of_book in zip(books, ours, strict=True)
-            if name in rules_of_book
-        }
-        shared_rules.append(
-            SharedRule(
-                name,
-                laws,
-                {
-                    book.name: rules_of_book[name]
-                    for book, rules_of_book in zip(books, ours, strict=True)
-                    if name in rules_of_book
-                },
-                relations,
-                {
-                    book.name: remark
-                    for book in books
-                    for remark in book.remarks
-                    if remark.name == name and remark.kind != "softened"
-                },
-            )
+    for name, numbers in having.items():
+        laws, relations = _classified(
+            {books[number].name: sides[number][name] for number in numbers if len(numbers) > 1}
         )
-        tell(len(books) + number)
+        remarks = {
+            book.name: remark
+            for book in books
+            for remark in book.remarks
+            if remark.name == name and remark.kind != "softened"
+        }
+        versions = {books[number].name: ours[number][name] for number in numbers}
+        # What only one of them has is its own law, whatever it is.
+        laws = laws or dict.fromkeys(versions, 0)
+        shared_rules.append(SharedRule(name, laws, versions, relations, remarks))
+        tell(len(books) + len(shared_rules))
     return ComparisonMatrix(tuple(books), tuple(shared_rules))
 
 
@@ -168,32 +150,22 @@ def _classified(
     known: dict[int, int] = {}
     representatives: list[AnalyzedRule] = []
     relations: dict[tuple[int, int], RuleRelation] = {}
-    laws: dict[str, int] = {}
-    for book, side in sides.items():
-        if side.law not in known:
-            known[side.law] = _law(side, representatives, relations)
-        laws[book] = known[side.law]
-    return laws, relations
-
-
-def _law(
-    side: AnalyzedRule,
-    representatives: list[AnalyzedRule],
-    relations: dict[tuple[int, int], RuleRelation],
-) -> int:
-    """The equal known law, or a new one, compared to all."""
-    found_relations = {}
-    for number, representative in enumerate(representatives):
-        found_relations[number] = compare(side, representative).relation
-        if found_relations[number] == "equal":
-            return number
-    own = len(representatives)
-    representatives.append(side)
-    relations[own, own] = "equal"
-    for number, relation in found_relations.items():
-        relations[own, number] = relation
-        relations[number, own] = CONVERSE[relation]
-    return own
+    for side in sides.values():
+        if side.law in known:
+            continue
+        compared: list[RuleRelation] = []
+        while "equal" not in compared and len(compared) < len(representatives):
+            compared.append(compare(side, representatives[len(compared)]).relation)
+        if "equal" in compared:
+            known[side.law] = len(compared) - 1
+            continue
+        own = known[side.law] = len(representatives)
+        representatives.append(side)
+        relations[own, own] = "equal"
+        for number, relation in enumerate(compared):
+            relations[own, number] = relation
+            relations[number, own] = CONVERSE[relation]
+    return {book: known[side.law] for book, side in sides.items()}, relations
 
 
 def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:

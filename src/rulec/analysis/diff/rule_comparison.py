@@ -1,23 +1,37 @@
-"""Compare two rules by the traces that only one of them forbids."""
+"""Compare two rules by the traces that only one of them forbids.
+
+A trace says of most things that they are as usual; what it says otherwise is its reason. A further
+trace shows another reason if it does without something that each of those before it needs, so it is
+looked for among the traces in which that is always as usual. Which things to do without is chosen
+as for hitting sets (Reiter 1987), few first, so that plain reasons come first.
+"""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import permutations
 from typing import Literal
 
 from rulec.analysis.counterexample import counterexample
-from rulec.analysis.diff.diverse_witnesses import diverse_witnesses
 from rulec.analysis.shared_compilation import AnalyzedRule
-from rulec.rulebook.rulebook_model import Variable
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
+from rulec.monitoring.state_view import value_in
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.value_display import short_repr
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.witnesses.state_synthesis import subjects_of
 from rulec.witnesses.undecided import UndecidedError
 
 RuleRelation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
 """What the first rule is to the second one: stricter forbids all that the other does, and more."""
+
+MOST_SEARCHES = 12
+"""No more searches for another reason are made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +40,9 @@ class RuleComparison:
 
     ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
     one first, then shortest ones for other reasons; ``second_forbids`` those the other way around.
-    Both are empty where there are none. ``on_common`` is how they
-    stand for objects that both of them speak of, given as ``common`` types, if one of them speaks
-    of more. ``undecided`` says why a question was left open.
+    Both are empty where there are none. ``on_common`` is how they stand for objects that both of
+    them speak of, given as ``common`` types, if one of them speaks of more. ``undecided`` says why
+    a question was left open.
     """
 
     __repr__ = short_repr
@@ -69,10 +83,7 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 
 
 def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
-    """The relation of two rules, from the traces that only one forbids.
-
-    An argument is None if there is no such trace.
-    """
+    """The relation of two rules, from the traces that only one forbids, or None."""
     if first_forbids is None:
         return "equal" if second_forbids is None else "laxer"
     return "stricter" if second_forbids is None else "incomparable"
@@ -90,10 +101,9 @@ def common_types(
     if len(types) != len(second_types) or sorted(types) == sorted(second_types):
         return None
     for order in permutations(second_types):
-        pairs = list(zip(types, order, strict=True))
         narrow = tuple(
             a if vocabulary.is_subtype(a, b) else b if vocabulary.is_subtype(b, a) else ""
-            for a, b in pairs
+            for a, b in zip(types, order, strict=True)
         )
         if all(narrow):
             return narrow
@@ -102,15 +112,83 @@ def common_types(
 
 def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
     """The rule for objects of these types alone."""
-    variables = analyzed.rule.variables
+    is_subtype = analyzed.rulebook.vocabulary.is_subtype
     for order in permutations(common):
-        if all(
-            analyzed.rulebook.vocabulary.is_subtype(kind, variable.type)
-            for kind, variable in zip(order, variables, strict=True)
-        ):
-            own = tuple(
-                Variable(variable.name, kind)
-                for kind, variable in zip(order, variables, strict=True)
-            )
+        pairs = list(zip(order, analyzed.rule.variables, strict=True))
+        if all(is_subtype(kind, variable.type) for kind, variable in pairs):
+            own = tuple(Variable(variable.name, kind) for kind, variable in pairs)
             return replace(analyzed, rule=replace(analyzed.rule, variables=own))
     raise AssertionError("the common types are those of both rules")
+
+
+def diverse_witnesses(
+    forbidding: AnalyzedRule, allowing: AnalyzedRule, first: Trace, most: int
+) -> tuple[Trace, ...]:
+    """At ``most`` so many traces that only one rule forbids, each for another reason.
+
+    ``first`` is one of them, the first of the answer.
+    """
+    vocabulary = forbidding.rulebook.vocabulary
+    traces = [first]
+    shown = [non_default_names(first, vocabulary)]
+    waiting = deque(frozenset([name]) for name in sorted(shown[0]))
+    asked: set[frozenset[str]] = set()
+    while waiting and len(traces) < most and len(asked) < MOST_SEARCHES:
+        defaulted = waiting.popleft()
+        if defaulted in asked:
+            continue
+        known = next((names for names in shown if not names & defaulted), None)
+        if known is None:
+            asked.add(defaulted)
+            trace = _without(defaulted, forbidding, allowing)
+            if trace is None:
+                continue
+            known = non_default_names(trace, vocabulary)
+            traces.append(trace)
+            shown.append(known)
+        waiting.extend(defaulted | {name} for name in sorted(known))
+    return tuple(traces)
+
+
+def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
+    """The declarations whose value in some state differs from their default."""
+    return frozenset(
+        name
+        for (name, items), declaration in subjects_of(vocabulary, trace.objects)
+        if declaration.default is not None
+        if any(
+            value_in(state, name, items, declaration) != declaration.default
+            for state in trace.states
+        )
+    )
+
+
+def _without(
+    names: frozenset[str], forbidding: AnalyzedRule, allowing: AnalyzedRule
+) -> Trace | None:
+    """A trace in which these declarations have their defaults, for all objects."""
+    axioms = []
+    for name in sorted(names):
+        declaration = forbidding.rulebook.vocabulary.declarations[name]
+        variables = tuple(
+            Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
+        )
+        arguments = tuple(variable.name for variable in variables)
+        axioms.append(Axiom(variables, _has_default(name, arguments, declaration)))
+    try:
+        return counterexample(forbidding, [allowing], axioms)
+    except UndecidedError:
+        return None
+
+
+def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:
+    match declaration:
+        case Enumeration(default=str(value)):
+            return ltl.Atom(name, arguments, value)
+        case Signal(default=True):
+            return ltl.Atom(name, arguments)
+        case Signal():
+            return ltl.Unary(ltl.UnaryOperator.NOT, ltl.Atom(name, arguments))
+    assert declaration.default is not None, "only what has a default can be as usual"
+    number = exact(float(declaration.default))
+    return ltl.Comparison(((Fraction(1), ltl.QuantityTerm(name, arguments)),), "=", number)

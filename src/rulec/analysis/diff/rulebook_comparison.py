@@ -8,12 +8,11 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import Any
 
-from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.counterexample import declarations_read, shared_vocabulary
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
-from rulec.analysis.shared_compilation import SharedCompiler, at_one_step
-from rulec.analysis.shared_vocabulary import shared_vocabulary
-from rulec.analysis.trace_table import TraceTable, trace_table
+from rulec.analysis.shared_compilation import at_one_step, compile_shared
+from rulec.analysis.trace_display import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 from rulec.trace import Trace
@@ -48,13 +47,10 @@ class RulePair:
     def notes(self) -> tuple[tuple[str, str, str], ...]:
         """Further differences: their subject, and the version of each rulebook."""
         pairs = (
-            ("strength", self.first.strength, self.second.strength),
-            ("level", self.first.level or "none", self.second.level or "none"),
-            ("weight", str(self.first.weight), str(self.second.weight)),
-            ("cite", self.first.cite or "none", self.second.cite or "none"),
-            ("certainty", self.first.certainty or "none", self.second.certainty or "none"),
+            (name, *(str(getattr(rule, name)) or "none" for rule in (self.first, self.second)))
+            for name in ("strength", "level", "weight", "cite", "certainty")
         )
-        return tuple(pair for pair in pairs if pair[1] != pair[2])
+        return tuple((name, first, second) for name, first, second in pairs if first != second)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,10 +109,7 @@ class RulebookDiff(Rows):
             yield from pair.comparison.second_forbids
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
-        """Tables of traces that one rulebook's rule forbids and the other's allows.
-
-        Each comes with both names and the states.
-        """
+        """Both names and the table of each trace that one rule forbids, the other allows."""
         words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
         names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
         books = self.first.name, self.second.name
@@ -148,15 +141,12 @@ class RulebookDiff(Rows):
 
 def setting_pairs(first: BookLineage, second: BookLineage) -> tuple[SettingPair, ...]:
     """The options and parameters that both have with different values."""
-    theirs = {
-        constant.name: constant for constant in second.provisions if constant.kind != "definition"
-    }
+    others = {(constant.kind, constant.name): constant for constant in second.provisions}
     pairs = []
     for ours in first.provisions:
-        if ours.name in theirs and theirs[ours.name].kind == ours.kind:
-            values = [_value(ours), _value(theirs[ours.name])]
-            if values[0] != values[1]:
-                pairs.append(SettingPair(ours.kind, ours.name, *values))
+        theirs = others.get((ours.kind, ours.name))
+        if ours.kind != "definition" and theirs and _value(ours) != _value(theirs):
+            pairs.append(SettingPair(ours.kind, ours.name, _value(ours), _value(theirs)))
     return tuple(pairs)
 
 
@@ -190,9 +180,8 @@ def diff_rulebooks(
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     shared = [name for name in ours if name in theirs]
     pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
-    sides = SharedCompiler().compile(
-        (first, second),
-        [{name: pairs[name][which] for name in shared} for which in (0, 1)],
+    sides = compile_shared(
+        (first, second), [{name: pairs[name][which] for name in shared} for which in (0, 1)]
     )
     compared = []
     for number, name in enumerate(shared, 1):

@@ -7,9 +7,9 @@ from itertools import combinations
 
 from rulec.analysis.lint.conflict_search import Conflict, are_related, conflict
 from rulec.analysis.lint.finding_messages import CONFLICTING_RULES, undecided_diagnostic
-from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.rulebook.rulebook_model import Rule
@@ -21,39 +21,34 @@ def conflicts(
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules in conflict, then groups without such a pair."""
     conflicting: list[frozenset[str]] = []
-    for pair in combinations(names, 2):
-        if not are_related(sides[pair[0]], sides[pair[1]]):
+    for first, second in combinations(names, 2):
+        if not are_related(sides[first], sides[second]):
             continue
         try:
-            clash = conflict([sides[name] for name in pair])
+            clash = conflict([sides[first], sides[second]])
         except UndecidedError as problem:
-            what = f"it can always be kept together with `{pair[0]}`"
-            yield undecided_diagnostic(rules[pair[1]], what, problem)
+            what = f"it can always be kept together with `{first}`"
+            yield undecided_diagnostic(rules[second], what, problem)
             continue
         if clash is not None:
-            conflicting.append(frozenset(pair))
-            yield _cannot_be_kept(pair, clash, sides, rules)
+            conflicting.append(frozenset((first, second)))
+            yield _cannot_be_kept((first, second), clash, sides, rules)
     for name in names:
-        related = [
-            sides[other_name] for other_name in names if are_related(sides[name], sides[other_name])
+        premises = [
+            sides[premise]
+            for premise in names
+            if premise != name and are_related(sides[name], sides[premise])
         ]
-        premises = [other_name for other_name in related if other_name.rule.name != name]
         group = [sides[name], *small_premises(sides[name], premises)]
-        clash = None if _holds_one(conflicting, group) else _clash(group)
+        if any(pair <= {analyzed.rule.name for analyzed in group} for pair in conflicting):
+            continue
+        clash = _clash(group)
         if clash is not None:
             smaller = _smallest(group)
-            chosen = tuple(
-                other_name
-                for other_name in names
-                if other_name in {side.rule.name for side in smaller}
-            )
+            needed = {analyzed.rule.name for analyzed in smaller}
+            chosen = tuple(other for other in names if other in needed)
             conflicting.append(frozenset(chosen))
             yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
-
-
-def _holds_one(conflicting: Sequence[frozenset[str]], group: Sequence[AnalyzedRule]) -> bool:
-    names = {rule_names.rule.name for rule_names in group}
-    return any(rule_names <= names for rule_names in conflicting)
 
 
 def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
-from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.counterexample import common_step, declarations_read
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.logic.free_names import names_in
-from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -18,7 +16,7 @@ from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, ProductState
-from rulec.witnesses.trace_synthesis import single_rule_rulebook, synthesize_trace
+from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -32,16 +30,8 @@ class Conflict:
     trace: Trace | None
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """The steps from a node to one target that satisfy equal rules.
-
-    The rules are those that are satisfied if the trace ends there.
-    """
-
-    target: ProductState
-    satisfied: frozenset[int]
-    symbol: JointLetter
+Graph = Mapping[ProductState, Mapping[tuple[ProductState, frozenset[int]], JointLetter]]
+"""From each joint state the successors, with the rules satisfied if the trace ends there."""
 
 
 def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
@@ -53,49 +43,34 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     vocabulary = analyzed_rules[0].rulebook.vocabulary
     objects = common_objects([rule.rule.variables for rule in analyzed_rules], vocabulary)
     universe = ObjectUniverse(objects, vocabulary, analyzed_rules[0].axioms)
-    bound = [
-        (number, analyzed.rule.machine, binding)
-        for number, analyzed in enumerate(analyzed_rules)
-        for binding in universe.bindings(analyzed.rule.variables)
-    ]
-    functions = [monitor_function(monitor, binding, universe) for _, monitor, binding in bound]
+    owners, monitors, functions = [], [], []
+    for number, analyzed in enumerate(analyzed_rules):
+        for binding in universe.bindings(analyzed.rule.variables):
+            owners.append(number)
+            monitors.append(analyzed.rule.machine)
+            functions.append(monitor_function(analyzed.rule.machine, binding))
     alphabet = JointAlphabet(universe, functions)
     if not alphabet.letters:
         return None
-    owners = [number for number, _, _ in bound]
-    monitors = [monitor for _, monitor, _ in bound]
-    alone_ok = [
-        _alone(
-            [monitor for owner, monitor in zip(owners, monitors, strict=True) if owner == number],
-            [place for place, owner in enumerate(owners) if owner == number],
-            alphabet.letters,
-        )
-        for number in range(len(analyzed_rules))
-    ]
-    graph = _explored(monitors, owners, alphabet.letters)
-    all_rules = frozenset(range(len(analyzed_rules)))
-    together = _hopeful(graph, all_rules)
-    places = [
-        [place for place, owner in enumerate(owners) if owner == number]
-        for number in range(len(analyzed_rules))
-    ]
-    word = _shortest(graph, together, alone_ok, places, all_rules)
-    if word is None:
-        return None
+    rules = []
+    for number in range(len(analyzed_rules)):
+        places = [place for place, owner in enumerate(owners) if owner == number]
+        own = dict.fromkeys(tuple(letter[place] for place in places) for letter in alphabet.letters)
+        alone = _explored([monitors[place] for place in places], [0] * len(places), list(own))
+        rules.append((places, _hopeful(alone, frozenset([0]))))
+    word = _shortest(_explored(monitors, owners, alphabet.letters), rules)
     if not word:
-        return Conflict(None)
-    steps = [rule.rule.step_s for rule in analyzed_rules if rule.rule.step_s is not None]
-    books = [
-        single_rule_rulebook(analyzed.rulebook, analyzed.rule, universe)
-        for analyzed in analyzed_rules
-    ]
+        return None if word is None else Conflict(None)
 
     def is_open(trace: Trace) -> bool:
-        violations = [violation for book in books for violation in verify(trace, book).violations]
-        return all(violation.step is None for violation in violations)
+        return all(
+            violation.step is None
+            for analyzed in analyzed_rules
+            for violation in analyzed.violations(trace, vocabulary)
+        )
 
     states = [alphabet.states[letter] for letter in word]
-    return Conflict(synthesize_trace(states, universe, (*steps, Fraction(1))[0], is_open))
+    return Conflict(synthesize_trace(states, universe, common_step(analyzed_rules), is_open))
 
 
 def are_related(first: AnalyzedRule, second: AnalyzedRule) -> bool:
@@ -115,18 +90,16 @@ def common_objects(
     for variables in heads:
         free = list(objects)
         for variable in variables:
-            chosen = next(
-                (name for name in free if _fits(objects[name], variable, vocabulary)), None
-            )
-            if chosen is None:
-                chosen = variable.name
-                while chosen in objects:
-                    chosen += "_"
-                objects[chosen] = variable.type
-            else:
-                free.remove(chosen)
-                if vocabulary.is_subtype(variable.type, objects[chosen]):
-                    objects[chosen] = variable.type
+            fitting = [name for name in free if _fits(objects[name], variable, vocabulary)]
+            if not fitting:
+                name = variable.name
+                while name in objects:
+                    name += "_"
+                objects[name] = variable.type
+                continue
+            free.remove(fitting[0])
+            if vocabulary.is_subtype(variable.type, objects[fitting[0]]):
+                objects[fitting[0]] = variable.type
     return objects
 
 
@@ -134,63 +107,46 @@ def _fits(kind: str, variable: Variable, vocabulary: Vocabulary) -> bool:
     return vocabulary.is_subtype(kind, variable.type) or vocabulary.is_subtype(variable.type, kind)
 
 
-Graph = Mapping[ProductState, Sequence[_Step]]
-
-
 def _explored(
     monitors: Sequence[MealyMonitor], owners: Sequence[int], letters: Sequence[JointLetter]
 ) -> Graph:
     """The reachable joint states in breadth-first order; a rejecting sink ends it."""
     start: ProductState = (0,) * len(monitors)
-    graph: dict[ProductState, list[_Step]] = {}
+    everyone = frozenset(owners)
+    graph: dict[ProductState, dict[tuple[ProductState, frozenset[int]], JointLetter]] = {}
     waiting = [start]
     seen = {start}
     for node in waiting:
-        steps: dict[tuple[ProductState, frozenset[int]], _Step] = {}
-        is_lost = any(
-            a == monitor.rejecting_sink for a, monitor in zip(node, monitors, strict=True)
-        )
+        pairs = list(zip(monitors, node, strict=True))
+        outputs = [monitor.outputs[state] for monitor, state in pairs]
+        successors = [monitor.successors[state] for monitor, state in pairs]
+        is_lost = any(state == monitor.rejecting_sink for monitor, state in pairs)
+        steps = graph[node] = {}
         for letter in () if is_lost else letters:
-            unsatisfied = {
+            violated = {
                 owner
-                for owner, monitor, state, letter_class in zip(
-                    owners, monitors, node, letter, strict=True
-                )
-                if not monitor.outputs[state][letter_class]
+                for owner, row, symbol in zip(owners, outputs, letter, strict=True)
+                if not row[symbol]
             }
-            target = tuple(
-                monitor.successors[state][letter_class]
-                for monitor, state, letter_class in zip(monitors, node, letter, strict=True)
-            )
-            key = (target, frozenset(owners) - unsatisfied)
-            steps.setdefault(key, _Step(*key, letter))
+            target = tuple(row[symbol] for row, symbol in zip(successors, letter, strict=True))
+            steps.setdefault((target, everyone - violated), letter)
             if target not in seen:
                 seen.add(target)
                 waiting.append(target)
-        graph[node] = list(steps.values())
         if len(seen) > MOST_STATES or len(graph) * len(letters) > MOST_STEPS:
             raise UndecidedError("their automata together are too large")
     return graph
 
 
-def _alone(
-    monitors: Sequence[MealyMonitor], places: Sequence[int], letters: Sequence[JointLetter]
-) -> frozenset[ProductState]:
-    """The states of one rule's machines from which it can be kept."""
-    own = list(dict.fromkeys(tuple(letter[place] for place in places) for letter in letters))
-    graph = _explored(monitors, [0] * len(monitors), own)
-    return _hopeful(graph, frozenset([0]))
-
-
 def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
     """The states from which a word, not empty, satisfies every rule."""
     before: dict[ProductState, list[ProductState]] = {}
+    waiting = []
     for node, steps in graph.items():
-        for step in steps:
-            before.setdefault(step.target, []).append(node)
-    waiting = [
-        node for node, steps in graph.items() if any(step.satisfied >= everyone for step in steps)
-    ]
+        for target, _ in steps:
+            before.setdefault(target, []).append(node)
+        if any(satisfied >= everyone for _, satisfied in steps):
+            waiting.append(node)
     hopeful = set(waiting)
     for node in waiting:
         for earlier in before.get(node, ()):
@@ -201,35 +157,33 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
 
 
 def _shortest(
-    graph: Graph,
-    together: frozenset[ProductState],
-    alone_ok: Sequence[frozenset[ProductState]],
-    places: Sequence[Sequence[int]],
-    everyone: frozenset[int],
+    graph: Graph, rules: Sequence[tuple[Sequence[int], frozenset[ProductState]]]
 ) -> tuple[JointLetter, ...] | None:
-    """A shortest word after which only some rules can be kept.
+    """A shortest word, maybe empty, after which only some rules can be kept.
 
-    It may be empty.
+    Of each rule the places of its machines, and the states of these from which it can be kept.
     """
+    everyone = frozenset(range(len(rules)))
+    together = _hopeful(graph, everyone)
 
     def each_could(node: ProductState, satisfied: frozenset[int]) -> bool:
         return all(
-            number in satisfied or tuple(node[place] for place in own) in hopeful
-            for number, (own, hopeful) in enumerate(zip(places, alone_ok, strict=True))
+            number in satisfied or tuple(node[place] for place in places) in hopeful
+            for number, (places, hopeful) in enumerate(rules)
         )
 
     start = next(iter(graph))
     if start not in together:
         return () if each_could(start, frozenset()) else None
-    came: dict[ProductState, tuple[JointLetter, ...]] = {start: ()}
+    words: dict[ProductState, tuple[JointLetter, ...]] = {start: ()}
     waiting = [start]
     for node in waiting:
-        for step in graph[node]:
-            word = (*came[node], step.symbol)
-            stuck = step.satisfied < everyone and step.target not in together
-            if stuck and each_could(step.target, step.satisfied):
+        for (target, satisfied), letter in graph[node].items():
+            word = (*words[node], letter)
+            stuck = satisfied < everyone and target not in together
+            if stuck and each_could(target, satisfied):
                 return word
-            if step.target not in came:
-                came[step.target] = word
-                waiting.append(step.target)
+            if target not in words:
+                words[target] = word
+                waiting.append(target)
     return None

@@ -19,31 +19,22 @@ MOST_JOINT_STATES = 5_000
 
 
 def can_be_violated(analyzed: AnalyzedRule) -> bool:
-    """True if some trace violates the rule.
-
-    Raises UndecidedError.
-    """
+    """True if some trace violates the rule. Raises UndecidedError."""
     return counterexample(analyzed, []) is not None
 
 
 def can_be_kept(analyzed: AnalyzedRule) -> bool:
-    """True if some trace, with objects for the rule, keeps it.
-
-    Raises UndecidedError.
-    """
+    """True if some trace, with objects for the rule, keeps it. Raises UndecidedError."""
     objects = {variable.name: variable.type for variable in analyzed.rule.variables}
     universe = ObjectUniverse(objects, analyzed.rulebook.vocabulary, analyzed.axioms)
     bindings = universe.bindings(analyzed.rule.variables)
-    functions = [monitor_function(analyzed.rule.machine, binding, universe) for binding in bindings]
-    monitors = [analyzed.rule.machine] * len(bindings)
-    letters = JointAlphabet(universe, functions).letters
-    return shortest_word(monitors, [True] * len(bindings), letters) is not None
+    machine = analyzed.rule.machine
+    letters = JointAlphabet(universe, [monitor_function(machine, own) for own in bindings]).letters
+    return shortest_word([machine] * len(bindings), [True] * len(bindings), letters) is not None
 
 
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
-    """One or few other rules that forbid all that a rule forbids.
-
-    Empty if there are none.
+    """One or few other rules that forbid all that a rule forbids, if there are any.
 
     The others are taken together as far as their automata stay small; so more of them together may
     imply it without being found. Raises UndecidedError.

@@ -16,9 +16,9 @@ from rulec.analysis.lint.finding_messages import (
     WEAKER_THAN_BASE,
     undecided_diagnostic,
 )
-from rulec.analysis.lint.finding_notes import trace_note
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
-from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler
+from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
+from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
@@ -44,39 +44,36 @@ def rulebook_findings(
         RulecError: if a rule cannot be compiled.
     """
     by_name = {rule.name: rule for rule in book.rules}
-    whens = {
-        f"{rule.name} {number}": (rule, trigger)
+    conditions = {
+        f"{rule.name} {number}": (rule, antecedent)
         for rule in book.rules
-        for number, trigger in enumerate(antecedents(rule))
+        for number, antecedent in enumerate(antecedents(rule))
     }
-    asked = {name: occurrence(*diagnostic, name) for name, diagnostic in whens.items()}
+    asked = {name: occurrence(*condition, name) for name, condition in conditions.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
-    compiled = SharedCompiler().compile([book, *bases], [{**by_name, **asked}, *inherited])
-    own = {name: compiled[0][name] for name in by_name}
-    occurring = {name: (*diagnostic, compiled[0][name]) for name, diagnostic in whens.items()}
+    own, *of_bases = compile_shared([book, *bases], [{**by_name, **asked}, *inherited])
     diagnostics: list[Diagnostic] = []
-    hopeless: set[str] = set()
+    good: list[str] = []
     for number, (name, rule) in enumerate(by_name.items(), 1):
-        alone = [
-            *_idle(
-                rule, [diagnostic[1:] for diagnostic in occurring.values() if diagnostic[0] is rule]
-            )
+        occurring = [
+            (antecedent, own[asked_name])
+            for asked_name, (conditioned, antecedent) in conditions.items()
+            if conditioned is rule
         ]
-        alone = alone or [*_alone(rule, own[name])]
-        if alone:
-            hopeless.add(name)
+        alone = [*_idle(rule, occurring)] or [*_alone(rule, own[name])]
+        if not alone:
+            good.append(name)
         diagnostics += alone
         tell(number)
-    good = [name for name in by_name if name not in hopeless]
     diagnostics += _needless(good, by_name, own)
     hard = [name for name in good if by_name[name].strength == "hard"]
     diagnostics += conflicts(hard, own, by_name)
-    for base, sides in zip(bases, compiled[1:], strict=True):
+    for base, sides in zip(bases, of_bases, strict=True):
         for name, side in sides.items():
-            for diagnostic in _weaker(by_name[name], own[name], side, base):
-                diagnostics.append(
-                    diagnostic if by_name[name].book == book.name else _ours(diagnostic, extends)
-                )
+            diagnostic = _weaker(by_name[name], own[name], side, base)
+            if diagnostic is not None:
+                is_own = by_name[name].book == book.name
+                diagnostics.append(diagnostic if is_own else _inherited(diagnostic, extends))
     return tuple(diagnostics)
 
 
@@ -131,46 +128,39 @@ def _needless(
     left = list(names)
     diagnostics: list[Diagnostic] = []
     for name in reversed(names):
-        diagnostics += _implied(rules[name], [kept for kept in left if kept != name], rules, sides)
-        if (
-            diagnostics
-            and diagnostics[-1].code == ADDS_NOTHING.code
-            and f"`{name}` adds" in diagnostics[-1].message
-        ):
+        others = [
+            sides[kept]
+            for kept in left
+            if kept != name and (rules[kept].strength == "hard" or rules[name].strength == "soft")
+        ]
+        try:
+            premises = implied_by(sides[name], others)
+        except UndecidedError as problem:
+            diagnostics.append(undecided_diagnostic(rules[name], "others imply it", problem))
+            continue
+        if premises:
+            diagnostics.append(_implied(rules[name], [rules[one.rule.name] for one in premises]))
             left.remove(name)
     yield from reversed(diagnostics)
 
 
-def _implied(
-    rule: Rule, names: Sequence[str], rules: dict[str, Rule], sides: dict[str, AnalyzedRule]
-) -> Iterator[Diagnostic]:
+def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
     """A rule that adds nothing to others that are as hard."""
-    others = [
-        sides[name] for name in names if rules[name].strength == "hard" or rule.strength == "soft"
-    ]
-    try:
-        premises = implied_by(sides[rule.name], others)
-    except UndecidedError as problem:
-        yield undecided_diagnostic(rule, "others imply it", problem)
-        return
-    if premises:
-        listed = [premise.rule.name for premise in premises]
-        verb = "forbids" if len(listed) == 1 else "together forbid"
-        who = " and ".join(f"`{one}`" for one in listed)
-        yield ADDS_NOTHING.at(
-            rule.span,
-            f"rule `{rule.name}` adds nothing: {who} {verb} all that it forbids",
-            help="leave it out, unless its own provision is worth a rule",
-            labels=tuple(
-                Label(where, "this is enough" if len(listed) == 1 else "this is part of it")
-                for name in listed
-                if (where := at(rules[name].span)) is not None
-            ),
-            severity="warning",
-        )
+    verb = "forbids" if len(premises) == 1 else "together forbid"
+    names = " and ".join(f"`{premise.name}`" for premise in premises)
+    label = "this is enough" if len(premises) == 1 else "this is part of it"
+    return ADDS_NOTHING.at(
+        rule.span,
+        f"rule `{rule.name}` adds nothing: {names} {verb} all that it forbids",
+        help="leave it out, unless its own provision is worth a rule",
+        labels=tuple(
+            Label(place, label) for premise in premises if (place := at(premise.span)) is not None
+        ),
+        severity="warning",
+    )
 
 
-def _ours(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
+def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
     """The finding about an inherited rule, at the line that inherits it."""
     if extends is None or diagnostic.place is None:
         return diagnostic
@@ -180,15 +170,14 @@ def _ours(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
 
 def _weaker(
     rule: Rule, own: AnalyzedRule, inherited: AnalyzedRule, base: Rulebook
-) -> Iterator[Diagnostic]:
+) -> Diagnostic | None:
     comparison = compare(own, inherited)
     if comparison.undecided:
         problem = UndecidedError(comparison.undecided)
-        yield undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
-        return
+        return undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
     if not comparison.second_forbids and not softer:
-        return
+        return None
     how = "laxer" if comparison.second_forbids else "softer"
     if comparison.relation == "incomparable":
         how = "neither stricter nor laxer"
@@ -197,7 +186,7 @@ def _weaker(
         for trace in comparison.second_forbids
         for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
-    yield WEAKER_THAN_BASE.at(
+    return WEAKER_THAN_BASE.at(
         rule.span,
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
         help="if the law has it so, nothing is to be done",

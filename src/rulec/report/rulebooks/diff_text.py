@@ -10,7 +10,7 @@ import click
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
-from rulec.analysis.trace_table import TraceTable
+from rulec.analysis.trace_display import TraceTable
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.trace_table_text import as_lines
 

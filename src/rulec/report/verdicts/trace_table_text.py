@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textwrap import wrap
 
-from rulec.analysis.trace_table import TraceTable
+from rulec.analysis.trace_display import TraceTable
 from rulec.report.findings.source_excerpt import visible
 from rulec.report.verdicts.violation_table import shown
 

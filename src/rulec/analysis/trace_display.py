@@ -1,0 +1,87 @@
+"""Traces for reports: tables and literals of what rules read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.logic.formula import Atom
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.state_view import value_in
+from rulec.trace import State, Trace, Value
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.witnesses.state_synthesis import subjects_of
+
+
+@dataclass(frozen=True, slots=True)
+class SignalRow:
+    """The values of one subject by column, with its title and unit.
+
+    ``unit`` is empty if it has none. ``is_default``: the value is the default in all of them.
+    """
+
+    title: str
+    unit: str
+    values: tuple[Value | None, ...]
+    is_default: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TraceTable:
+    """A table of a trace; equal neighbouring states share a column.
+
+    Such a column has the numbers of its first and last state.
+    """
+
+    columns: tuple[tuple[int, int], ...]
+    rows: tuple[SignalRow, ...]
+
+
+def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
+    """The table of a trace's values for declarations and all its objects."""
+    starts = [
+        number
+        for number, state in enumerate(trace.states)
+        if number == 0 or state != trace.states[number - 1]
+    ]
+    ends = [*(start - 1 for start in starts[1:]), len(trace.states) - 1]
+    rows = []
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
+        if name in names and len(set(items)) == len(items):
+            values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
+            unit = declaration.unit if isinstance(declaration, Quantity) else ""
+            is_default = all(value == declaration.default for value in values)
+            rows.append(SignalRow(str(Atom(name, items)), unit, values, is_default))
+    return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))
+
+
+def trace_note(what: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
+    """The note on a trace, as a literal in the words of these rules.
+
+    ``{ behind(v); beside(v) and fog }``: what is not said has its default.
+    """
+    names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
+    vocabulary = rules[0].rulebook.vocabulary
+    states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
+    return (f"{what}: {{ {states} }}",)
+
+
+def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
+    literals = []
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
+        value = value_in(state, name, items, declaration)
+        if name not in names or value is None or value == declaration.default:
+            continue
+        if len(set(items)) < len(items):
+            continue
+        if isinstance(declaration, Enumeration):
+            literals.append(str(Atom(name, items, str(value))))
+        elif isinstance(declaration, Quantity):
+            number = number_in_words(Fraction(str(value)))
+            literals.append(f"{Atom(name, items)} = {number} {declaration.unit}")
+        else:
+            literals.append(f"{'' if value else 'not '}{Atom(name, items)}")
+    return " and ".join(literals) or "true"
