@@ -15,10 +15,10 @@ from rulec.report.automata.automaton_layout import (
     STATE_HEIGHT,
     draw,
     is_too_large,
-    text_width,
 )
 from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
 from rulec.report.automata.automaton_picture import as_picture
+from rulec.report.pictures.drawing.canvas import text_width
 from rulec.report.pictures.drawing.svg import as_svg
 from support.builders.rulebooks import P, Q, book, compile_here, rule
 from support.generators.random_machines import VOCABULARY, machines

@@ -15,7 +15,7 @@ from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
 from rulec.report.pictures.graph_picture import graph_picture
-from rulec.report.pictures.picture_titles import graph_title, scene_title, trace_title
+from rulec.report.pictures.picture_captions import graph_title, scene_title, trace_title
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.report.pictures.trace_picture import ribbon_picture
 from rulec.report.pictures.trace_ribbon import ribbon

@@ -8,14 +8,14 @@ from html.parser import HTMLParser
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.report.pictures.drawing.marks import Area, LabelText, Picture, Polyline, rectangle
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Picture, Polyline, corners
 from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes, format_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
 def drawing(number=2):
-    square = Area((rectangle(10, 10, 60, 50), rectangle(20, 20, 30, 30)), "chosen", "a <cell>")
+    square = Area((corners((10, 10, 60, 50)), corners((20, 20, 30, 30))), "chosen", "a <cell>")
     line = Polyline(((0, 0), (100, 60)), "rejected")
     words = LabelText("b & $f$", (50, 30), "middle")
     turned = LabelText("up", (80, 30), "middle", turned=True)

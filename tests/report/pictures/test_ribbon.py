@@ -4,7 +4,7 @@ import pytest
 
 from rulec import compile_rulebook
 from rulec.monitoring.verify import verify
-from rulec.report.pictures.drawing.marks import Area, LabelText, Polyline
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
 from rulec.report.pictures.trace_picture import ribbon_picture
 from rulec.report.pictures.trace_ribbon import ValueRun, ribbon
 from rulec.trace import Trace

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.pictures.drawing.axis_ticks import ticks
+from rulec.report.pictures.picture_captions import ticks
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import wrap
 
 from rulec.report.automata.automaton_model import Automaton, Transition
 from rulec.report.automata.layered_layout import LayoutBox, arrange
-from rulec.report.pictures.drawing.marks import Point
-from rulec.report.pictures.drawing.text_metrics import text_width
+from rulec.report.pictures.drawing.canvas import Point, text_width
 
 LINE = 16.0
 STATE_HEIGHT = 34.0
@@ -38,6 +37,11 @@ class AutomatonState:
     width: float
     number: int
     text: tuple[str, ...]
+
+    @property
+    def height(self) -> float:
+        """The box's height, by its lines of text."""
+        return _state_height(self.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,140 +89,133 @@ def _broken(text: str) -> tuple[str, ...]:
 class _AutomatonLayout:
     """Layered layout: states in every other layer, lines with conditions between.
 
-    A line that goes on past a layer has a place of its own there, so that it passes no text.
+    A line that goes on past a layer has a place of its own there, so that it passes no text. Boxes
+    are numbered, states before such places.
     """
 
     def __init__(self, automaton: Automaton) -> None:
-        self._automaton = automaton
-        self._texts = [_state_text(automaton, state) for state in range(len(automaton.fates))]
-        self._loops: dict[int, list[Transition]] = {}
-        self._ways: list[tuple[Transition, list[int]]] = []
-        level = _levels(automaton)
-        self._layers: list[list[int]] = [[] for _ in range(2 * max(level) + 1)]
-        self._boxes: dict[int, LayoutBox] = {}
-        self._heights: dict[int, float] = {}
-        self._widths: dict[int, float] = {}
+        self._texts = [
+            (str(state),) if fate == "open" else (str(state), f"{fate} for good")
+            for state, fate in enumerate(automaton.fates)
+        ]
+        self._loops: defaultdict[int, list[Transition]] = defaultdict(list)
+        self._widths: list[float] = []
+        self._boxes: list[LayoutBox] = []
+        steps = []
         for transition in automaton.transitions:
             if transition.source == transition.target:
-                self._loops.setdefault(transition.source, []).append(transition)
+                self._loops[transition.source].append(transition)
+            else:
+                steps.append(transition)
+        level = _levels(automaton)
+        leaving = Counter(transition.source for transition in steps)
+        arriving = Counter(transition.target for transition in steps)
         for state in range(len(automaton.fates)):
-            self._add_state(state, level[state])
-        for one in automaton.transitions:
-            if one.source != one.target:
-                self._add_way(one, level)
+            self._add_state(state, 2 * level[state], max(leaving[state], arriving[state]))
+        self._ways = [(transition, self._way(transition)) for transition in steps]
 
-    def _add_state(self, state: int, level: int) -> None:
-        ends = [0, 0]
-        for transition in self._automaton.transitions:
-            if transition.source != transition.target:
-                ends[0] += transition.source == state
-                ends[1] += transition.target == state
-        width = max(44.0, text_width(self._texts[state]) + 20, PORT * (max(ends) + 1))
-        sides = [0.0, 0.0]
-        height = STATE_HEIGHT + LINE * (len(self._texts[state]) - 1)
-        for side, one in enumerate(self._loops.get(state, [])):
-            text = _broken(one.label)
-            sides[side] = LOOP + text_width(text)
-            height = max(height, LINE * len(text))
-        self._boxes[state] = LayoutBox(width / 2 + sides[1] + MARGIN, width / 2 + sides[0] + MARGIN)
-        self._widths[state] = width
-        self._heights[state] = height
-        self._layers[2 * level].append(state)
+    def _add_state(self, state: int, layer: int, n_lines: int) -> None:
+        text = self._texts[state]
+        width = max(44.0, text_width(text) + 20, PORT * (n_lines + 1))
+        sides = [width / 2 + MARGIN] * 2
+        height = _state_height(text)
+        for side, loop in enumerate(self._loops[state]):
+            condition = _broken(loop.label)
+            sides[side] = width / 2 + (LOOP + text_width(condition)) + MARGIN
+            height = max(height, LINE * len(condition))
+        right, left = sides
+        self._widths.append(width)
+        self._boxes.append(LayoutBox(layer, left, right, height))
 
-    def _add_way(self, transition: Transition, level: Sequence[int]) -> None:
-        """Add a line's places, with its condition next to its source."""
-        start, end = 2 * level[transition.source], 2 * level[transition.target]
-        step = 1 if start < end else -1
-        way = [transition.source]
-        for layer in range(start + step, end, step):
-            place = len(self._boxes)
-            labelled = layer == start + step
-            text = _broken(transition.label) if labelled else ()
-            self._boxes[place] = LayoutBox(MARGIN, MARGIN + text_width(text))
-            self._heights[place] = LINE * len(text)
-            self._layers[layer].append(place)
-            way.append(place)
-        self._ways.append((transition, [*way, transition.target]))
+    def _way(self, transition: Transition) -> list[int]:
+        """The boxes of a line, with its condition next to its source."""
+        start, end = (self._boxes[state].layer for state in (transition.source, transition.target))
+        text = _broken(transition.label)
+        first = len(self._boxes)
+        for layer in range(start + 1, end) if start < end else range(start - 1, end, -1):
+            self._boxes.append(
+                LayoutBox(layer, MARGIN, MARGIN + text_width(text), LINE * len(text))
+            )
+            text = ()
+        return [transition.source, *range(first, len(self._boxes)), transition.target]
 
     def drawing(self) -> AutomatonDrawing:
-        links = []
-        for _, way in self._ways:
-            downward = self._layer_of(way[0]) < self._layer_of(way[-1])
-            links += [(a, b) if downward else (b, a) for a, b in pairwise(way)]
-        x = arrange(self._layers, self._boxes, links)
-        into = Counter(self._layer_of(lower) for _, lower in links)
-        tops, bottom = [], MARGIN
-        for number, layer in enumerate(self._layers):
-            tops.append(bottom + LAYER_GAP + MORE_GAP * into[number])
-            bottom = tops[-1] + max(self._heights[box] for box in layer)
-        y = {
-            box: top + max(self._heights[one] for one in layer) / 2
-            for layer, top in zip(self._layers, tops, strict=True)
-            for box in layer
-        }
-        states = tuple(
-            AutomatonState((x[state], y[state]), self._widths[state], state, text)
+        boxes = self._boxes
+        links = [
+            (a, b) if boxes[a].layer < boxes[b].layer else (b, a)
+            for _, way in self._ways
+            for a, b in pairwise(way)
+        ]
+        x = arrange(boxes, links)
+        into = Counter(boxes[lower].layer for _, lower in links)
+        # Half the height of each layer, where lines run straight.
+        bands: list[float] = []
+        middles: list[float] = []
+        bottom = MARGIN
+        for layer in range(1 + max(box.layer for box in boxes)):
+            height = max(box.height for box in boxes if box.layer == layer)
+            top = bottom + LAYER_GAP + MORE_GAP * into[layer]
+            bands.append(height / 2)
+            middles.append(top + height / 2)
+            bottom = top + height
+        places = [(at, middles[box.layer]) for at, box in zip(x, boxes, strict=True)]
+        states = [
+            AutomatonState(places[state], self._widths[state], state, text)
             for state, text in enumerate(self._texts)
-        )
-        width = max(x[box] + self._boxes[box].right for box in x)
-        return AutomatonDrawing(
-            width, bottom + LAYER_GAP, states, (*self._lines(x, y), *self._loop_lines(states))
-        )
+        ]
+        width = max(at + box.right for at, box in zip(x, boxes, strict=True))
+        lines = (*self._lines(places, bands), *self._loop_lines(states))
+        return AutomatonDrawing(width, bottom + LAYER_GAP, tuple(states), lines)
 
-    def _layer_of(self, box: int) -> int:
-        return next(number for number, layer in enumerate(self._layers) if box in layer)
+    def _lines(self, places: Sequence[Point], bands: Sequence[float]) -> Iterator[TransitionLine]:
+        ports = self._ports(places)
+        reach = [bands[box.layer] for box in self._boxes]
+        for number, (transition, way) in enumerate(self._ways):
+            source, *between, target = way
+            top, bottom = places[source][1], places[target][1]
+            down = 1 if top < bottom else -1
+            begin, end = ports[number, 0], ports[number, 1]
+            points = [
+                (begin, top + down * _state_height(self._texts[source]) / 2),
+                (begin, top + down * reach[source]),
+            ]
+            for box in between:
+                x, y = places[box]
+                points += [(x, y - down * reach[box]), (x, y + down * reach[box])]
+            points += [
+                (end, bottom - down * reach[target]),
+                (end, bottom - down * _state_height(self._texts[target]) / 2),
+            ]
+            x, y = places[way[1]]
+            text = _broken(transition.label)
+            yield TransitionLine(transition, tuple(points), (x + 7, y), text)
 
-    def _band(self, box: int) -> float:
-        """Half the height of a box's layer, where lines run straight."""
-        layer = self._layers[self._layer_of(box)]
-        return max(self._heights[one] for one in layer) / 2
-
-    def _lines(self, x: dict[int, float], y: dict[int, float]) -> list[TransitionLine]:
-        ports = self._ports(x)
-        lines = []
-        for number, (one, way) in enumerate(self._ways):
-            down = 1 if y[way[0]] < y[way[-1]] else -1
-            first, last = (self._half(way[0]), self._half(way[-1]))
-            points = [(ports[number, 0], y[way[0]] + down * first)]
-            points.append((ports[number, 0], y[way[0]] + down * self._band(way[0])))
-            for box in way[1:-1]:
-                reach = self._band(box)
-                points += [(x[box], y[box] - down * reach), (x[box], y[box] + down * reach)]
-            points.append((ports[number, 1], y[way[-1]] - down * self._band(way[-1])))
-            points.append((ports[number, 1], y[way[-1]] - down * last))
-            text = _broken(one.label)
-            lines.append(TransitionLine(one, tuple(points), (x[way[1]] + 7, y[way[1]]), text))
-        return lines
-
-    def _half(self, state: int) -> float:
-        return (STATE_HEIGHT + LINE * (len(self._texts[state]) - 1)) / 2
-
-    def _ports(self, x: dict[int, float]) -> dict[tuple[int, int], float]:
+    def _ports(self, places: Sequence[Point]) -> dict[tuple[int, int], float]:
         """Positions on states' sides where each line begins (0) and ends (1)."""
-        sides: dict[tuple[int, bool], list[tuple[float, int, int]]] = {}
+        sides: defaultdict[tuple[int, bool], list[tuple[float, int, int]]] = defaultdict(list)
         for number, (_, way) in enumerate(self._ways):
             for end, state, beside in ((0, way[0], way[1]), (1, way[-1], way[-2])):
-                below = self._layer_of(beside) > self._layer_of(state)
-                sides.setdefault((state, below), []).append((x[beside], number, end))
+                below = self._boxes[beside].layer > self._boxes[state].layer
+                sides[state, below].append((places[beside][0], number, end))
         ports = {}
         for (state, _), arriving in sides.items():
-            arriving.sort()
             pitch = min(self._widths[state] / (len(arriving) + 1), 2 * PORT)
-            for index, (_, number, end) in enumerate(arriving):
-                ports[number, end] = x[state] + pitch * (index - (len(arriving) - 1) / 2)
+            for index, (_, number, end) in enumerate(sorted(arriving)):
+                ports[number, end] = places[state][0] + pitch * (index - (len(arriving) - 1) / 2)
         return ports
 
-    def _loop_lines(self, states: Sequence[AutomatonState]) -> list[TransitionLine]:
-        lines = []
-        for state, loops in self._loops.items():
-            middle, y = states[state].middle
-            for loop, side in zip(loops, (1, -1), strict=False):
-                edge = middle + side * states[state].width / 2
+    def _loop_lines(self, states: Sequence[AutomatonState]) -> Iterator[TransitionLine]:
+        for state in states:
+            x, y = state.middle
+            for loop, side in zip(self._loops[state.number], (1, -1), strict=False):
+                edge = x + side * state.width / 2
                 points = ((edge, y - 9), (edge + side * (LOOP - 8), y), (edge, y + 9))
-                text = _broken(loop.label)
-                at = (edge + side * (LOOP - 5), y)
-                lines.append(TransitionLine(loop, points, at, text, leftward=side < 0))
-        return lines
+                label_at = (edge + side * (LOOP - 5), y)
+                yield TransitionLine(loop, points, label_at, _broken(loop.label), leftward=side < 0)
+
+
+def _state_height(text: Sequence[str]) -> float:
+    return STATE_HEIGHT + LINE * (len(text) - 1)
 
 
 def _levels(automaton: Automaton) -> list[int]:
@@ -227,20 +224,14 @@ def _levels(automaton: Automaton) -> list[int]:
     States are numbered breadth-first from the start. Those in which the verdict is final come last,
     for nothing leads away from them.
     """
-    final = [fate != "open" for fate in automaton.fates]
-    order = sorted(range(len(final)), key=lambda state: (final[state], state))
-    rank = {state: number for number, state in enumerate(order)}
-    level = [0] * len(final)
-    for state in order:
-        for transition in automaton.transitions:
-            ends = {transition.source, transition.target}
-            if len(ends) == 2 and state in ends:
-                (other,) = ends - {state}
-                if rank[other] < rank[state]:
-                    level[state] = max(level[state], level[other] + 1)
+
+    def rank(state: int) -> tuple[bool, int]:
+        return automaton.fates[state] != "open", state
+
+    ends = [(transition.source, transition.target) for transition in automaton.transitions]
+    meeting = [*ends, *((target, source) for source, target in ends)]
+    level = [0] * len(automaton.fates)
+    for state in sorted(range(len(level)), key=rank):
+        above = (level[a] for a, b in meeting if b == state and rank(a) < rank(state))
+        level[state] = max(above, default=-1) + 1
     return level
-
-
-def _state_text(automaton: Automaton, state: int) -> tuple[str, ...]:
-    fate = automaton.fates[state]
-    return (str(state),) if fate == "open" else (str(state), f"{fate} for good")

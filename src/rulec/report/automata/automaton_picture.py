@@ -9,25 +9,14 @@ from typing import Literal
 
 from rulec.report.automata.automaton_layout import (
     LINE,
-    STATE_HEIGHT,
     AutomatonDrawing,
     AutomatonState,
     TransitionLine,
     draw,
 )
 from rulec.report.automata.automaton_model import Automaton, Fate
-from rulec.report.pictures.drawing.marks import (
-    MARGIN,
-    Area,
-    LabelText,
-    Mark,
-    Picture,
-    Point,
-    Polyline,
-    moved,
-    rectangle,
-)
-from rulec.report.pictures.drawing.text_metrics import text_width
+from rulec.report.pictures.drawing import canvas
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 
 HEAD = 8.0
 """The length of an arrow's head in px."""
@@ -52,14 +41,17 @@ def as_picture(automaton: Automaton, title: str) -> Picture:
     drawing = draw(automaton)
     accepted = {transition.accepted for transition in automaton.transitions}
     legend = [entry for entry in _LEGEND if entry[0] in accepted]
-    texts = [text_width([title]) * 1.1, *(text_width([text]) + 50 for _, text in legend)]
-    width = max(drawing.width, *texts) + 2 * MARGIN
-    height = drawing.height + 3 * MARGIN + LINE * (1 + len(legend))
+    texts = [
+        canvas.text_width([title]) * 1.1,
+        *(canvas.text_width([text]) + 50 for _, text in legend),
+    ]
+    width = max(drawing.width, *texts) + 2 * canvas.MARGIN
+    height = drawing.height + 3 * canvas.MARGIN + LINE * (1 + len(legend))
     right = (width - drawing.width) / 2
     marks = [
-        LabelText(title, (MARGIN, MARGIN + 6), style="strong"),
-        *(moved(mark, right, MARGIN + LINE) for mark in _marks(drawing, automaton)),
-        *_legend(legend, height - MARGIN - LINE * len(legend)),
+        LabelText(title, (canvas.MARGIN, canvas.MARGIN + 6), style="strong"),
+        *(canvas.moved(mark, right, canvas.MARGIN + LINE) for mark in _marks(drawing, automaton)),
+        *_legend(legend, height - canvas.MARGIN - LINE * len(legend)),
     ]
     return Picture(title, width, height, tuple(marks))
 
@@ -67,7 +59,7 @@ def as_picture(automaton: Automaton, title: str) -> Picture:
 def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[Mark]:
     first = drawing.states[0]
     x, y = first.middle
-    top = y - STATE_HEIGHT / 2 - LINE * (len(first.text) - 1) / 2
+    top = y - first.height / 2
     yield Polyline(((x, top - 28), (x, top - HEAD + 1)), "accepted")
     yield _head((x, top), (0, 1), accepted=True)
     for line in drawing.lines:
@@ -136,9 +128,9 @@ def _head(tip: Point, direction: tuple[int, int], *, accepted: bool) -> Area:
 def _state(state: AutomatonState, fate: Fate) -> Iterator[Mark]:
     x, y = state.middle
     half_width = state.width / 2
-    half_height = (STATE_HEIGHT + LINE * (len(state.text) - 1)) / 2
+    half_height = state.height / 2
     box = (x - half_width, y - half_height, x + half_width, y + half_height)
-    outline = rectangle(*box) if fate == "violated" else tuple(_rounded(*box))
+    outline = canvas.corners(box) if fate == "violated" else tuple(_rounded(*box))
     yield Area((outline,), _STYLES[fate])
     yield from _text(state.text, state.middle, "middle")
 
@@ -168,5 +160,7 @@ def _text(
 def _legend(entries: Sequence[tuple[bool, str]], top: float) -> Iterator[Mark]:
     for number, (accepted, text) in enumerate(entries):
         y = top + LINE * number
-        yield Polyline(((MARGIN, y), (MARGIN + 34, y)), "accepted" if accepted else "rejected")
-        yield LabelText(text, (MARGIN + 42, y))
+        yield Polyline(
+            ((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), "accepted" if accepted else "rejected"
+        )
+        yield LabelText(text, (canvas.MARGIN + 42, y))

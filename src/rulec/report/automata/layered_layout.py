@@ -8,60 +8,53 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 SWEEPS = 24
 
 
 @dataclass(frozen=True, slots=True)
 class LayoutBox:
-    """Extent of a box left and right of its links' arrival point."""
+    """A box in a layer: its extent left and right of where links arrive, and its height."""
 
+    layer: int
     left: float
     right: float
+    height: float
 
 
-def arrange(
-    layers: Sequence[Sequence[int]],
-    boxes: Mapping[int, LayoutBox],
-    links: Sequence[tuple[int, int]],
-) -> dict[int, float]:
-    """The place of every box across its layer.
+def arrange(boxes: Sequence[LayoutBox], links: Sequence[tuple[int, int]]) -> list[float]:
+    """The place of every box across its layer, from 0: where its links arrive.
 
-    Args:
-        layers: the boxes of each layer, by their numbers.
-        boxes: their sizes, margins included.
-        links: pairs of boxes of neighbouring layers, the one of the earlier layer first.
-
-    Returns:
-        For each box where its links arrive, from 0.
+    ``links`` are pairs of boxes, by number, of neighbouring layers, the earlier layer first. Boxes
+    have their margins.
     """
-    above: dict[int, list[int]] = {box: [] for box in boxes}
-    below: dict[int, list[int]] = {box: [] for box in boxes}
+    above: list[list[int]] = [[] for _ in boxes]
+    below: list[list[int]] = [[] for _ in boxes]
     for first, second in links:
         below[first].append(second)
         above[second].append(first)
-    order = _ordered([list(layer) for layer in layers], above, below)
-    return _placed(order, boxes, above, below)
+    layers: list[list[int]] = [[] for _ in range(1 + max(box.layer for box in boxes))]
+    for number, box in enumerate(boxes):
+        layers[box.layer].append(number)
+    return _placed(_ordered(layers, above, below), boxes, above, below)
 
 
 def _ordered(
-    layers: list[list[int]], above: Mapping[int, list[int]], below: Mapping[int, list[int]]
+    layers: list[list[int]], above: Sequence[Sequence[int]], below: Sequence[Sequence[int]]
 ) -> list[list[int]]:
     best, fewest = layers, _crossings(layers, below)
-    current = [list(layer) for layer in layers]
+    current = list(layers)
     for sweep in range(SWEEPS):
-        downward = sweep % 2 == 0
-        neighbours = above if downward else below
-        numbers = range(1, len(current)) if downward else range(len(current) - 2, -1, -1)
-        for number in numbers:
-            fixed = current[number - 1 if downward else number + 1]
-            place = {box: index for index, box in enumerate(fixed)}
+        step = 1 if sweep % 2 == 0 else -1
+        neighbours = above if step > 0 else below
+        for fixed, number in pairwise(range(len(current))[::step]):
+            place = {box: index for index, box in enumerate(current[fixed])}
             own = {box: index for index, box in enumerate(current[number])}
-            current[number].sort(key=lambda box: _mean(neighbours[box], place, own[box]))
+            current[number] = sorted(own, key=lambda box: _mean(neighbours[box], place, own[box]))
         crossings = _crossings(current, below)
         if crossings < fewest:
-            best, fewest = [list(layer) for layer in current], crossings
+            best, fewest = list(current), crossings
     return best
 
 
@@ -69,43 +62,37 @@ def _mean(boxes: Sequence[int], place: Mapping[int, float], otherwise: float) ->
     return sum(place[box] for box in boxes) / len(boxes) if boxes else otherwise
 
 
-def _crossings(layers: Sequence[Sequence[int]], below: Mapping[int, list[int]]) -> int:
+def _crossings(layers: Sequence[Sequence[int]], below: Sequence[Sequence[int]]) -> int:
     total = 0
     for upper, lower in pairwise(layers):
         place = {box: index for index, box in enumerate(lower)}
-        ends = [sorted(place[box] for box in below[first]) for first in upper]
-        for number, mine in enumerate(ends):
-            total += sum(
-                one > other for later in ends[number + 1 :] for one in mine for other in later
-            )
+        ends = ([place[target] for target in below[box]] for box in upper)
+        total += sum(a > b for left, right in combinations(ends, 2) for a in left for b in right)
     return total
 
 
 def _placed(
     layers: Sequence[Sequence[int]],
-    boxes: Mapping[int, LayoutBox],
-    above: Mapping[int, list[int]],
-    below: Mapping[int, list[int]],
-) -> dict[int, float]:
+    boxes: Sequence[LayoutBox],
+    above: Sequence[Sequence[int]],
+    below: Sequence[Sequence[int]],
+) -> list[float]:
     x: dict[int, float] = {}
     for layer in layers:
         x.update(_apart(layer, boxes, dict.fromkeys(layer, 0.0)))
     for sweep in range(SWEEPS):
-        downward = sweep % 2 == 0
-        for layer in layers if downward else reversed(layers):
-            wanted = {}
-            for box in layer:
-                first, second = (above, below) if downward else (below, above)
-                wanted[box] = _mean(first[box] or second[box], x, x[box])
-            x.update(_apart(layer, boxes, wanted))
-    left = min(x[box] - boxes[box].left for box in x)
-    return {box: value - left for box, value in x.items()}
+        first, second = (above, below) if sweep % 2 == 0 else (below, above)
+        for layer in layers if sweep % 2 == 0 else reversed(layers):
+            desired = {box: _mean(first[box] or second[box], x, x[box]) for box in layer}
+            x.update(_apart(layer, boxes, desired))
+    left = min(x[number] - box.left for number, box in enumerate(boxes))
+    return [x[number] - left for number in range(len(boxes))]
 
 
 def _apart(
-    layer: Sequence[int], boxes: Mapping[int, LayoutBox], wanted: Mapping[int, float]
+    layer: Sequence[int], boxes: Sequence[LayoutBox], desired: Mapping[int, float]
 ) -> dict[int, float]:
-    """Places nearest to those wanted, in order and without overlaps.
+    """Places nearest to those desired, in order and without overlaps.
 
     Least squares under an order: pool adjacent violators.
     """
@@ -115,7 +102,7 @@ def _apart(
         offsets.append(reach)
     pools: list[tuple[float, int]] = []
     for box, offset in zip(layer, offsets, strict=True):
-        total, count = wanted[box] - offset, 1
+        total, count = desired[box] - offset, 1
         while pools and pools[-1][0] / pools[-1][1] > total / count:
             before, size = pools.pop()
             total, count = total + before, count + size

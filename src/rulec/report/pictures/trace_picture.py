@@ -5,30 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
-from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.report.pictures.drawing.axis_ticks import ticks
+from rulec.report.pictures.drawing import canvas
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Polyline
 from rulec.report.pictures.drawing.label_placement import Placing
-from rulec.report.pictures.drawing.marks import (
-    LINE_HEIGHT,
-    MARGIN,
-    WIDTH,
-    Area,
-    LabelText,
-    Mark,
-    Picture,
-    Polyline,
-    rectangle,
-)
-from rulec.report.pictures.drawing.text_metrics import CHARACTER, text_width
+from rulec.report.pictures.picture_captions import ticks
 from rulec.report.pictures.trace_ribbon import Ribbon, RibbonRow, extremes, in_words
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 
 WIDEST_TITLE = 34
 
 _ROW = 24.0
+_TOP = 4.0
 _COLOURS = 7
+_INDENT = 4 * canvas.CHARACTER
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,76 +31,75 @@ class _Axis:
     step_s: float
 
     def x(self, state: float) -> float:
-        return self.left + (WIDTH - MARGIN - self.left) * state / self.states
+        return self.left + (canvas.WIDTH - canvas.MARGIN - self.left) * state / self.states
 
 
 def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
     """The picture, with the violations in words below it."""
     trace = ribbon.trace
     titles = [_title(row) for row in ribbon.rows]
-    axis = _Axis(MARGIN + text_width(titles) + 10, len(trace.states), trace.step_s)
-    number = len(ribbon.violations)
+    left = canvas.MARGIN + canvas.text_width(titles) + 10
+    axis = _Axis(left, len(trace.states), trace.step_s)
+    flags, top = _flags(ribbon, axis)
     marks: list[Mark] = []
-    flags, top = _flags(ribbon, axis, 4)
-    words: list[Mark] = []
+    labels: list[Mark] = []
     y = top
-    for row, text in zip(ribbon.rows, titles, strict=True):
-        words.append(LabelText(text, (axis.left - 10, y + _ROW / 2), "end"))
+    for row, title in zip(ribbon.rows, titles, strict=True):
+        labels.append(LabelText(title, (left - 10, y + _ROW / 2), "end"))
         marks += _segments(row, axis, y) if row.values else _curve(row, axis, y)
-        words += _values(row, axis, y) if row.values else []
+        labels += _values(row, axis, y) if row.values else []
         y += _ROW
-    marks += _violations(ribbon, axis, top)
-    marks += words
-    marks += [*flags, *_times(axis, y)]
-    y += 2 * LINE_HEIGHT + 8
-    columns = int((WIDTH - 2 * MARGIN) / CHARACTER)
+    marks += [*_violations(ribbon, axis, top), *labels, *flags, *_times(axis, y)]
+    explanations, bottom = _explanations(ribbon, rules, y + 2 * canvas.LINE_HEIGHT + 8)
+    return Picture(trace.id, canvas.WIDTH, bottom, (*marks, *explanations))
+
+
+def _explanations(
+    ribbon: Ribbon, rules: CompiledRulebook, y: float
+) -> tuple[list[LabelText], float]:
+    """The violations in words from ``y`` downwards, and their lower end."""
     by_name = {rule.name: rule for rule in rules.rules}
     explained: set[str] = set()
+    labels: list[LabelText] = []
     for n, violation in enumerate(ribbon.violations[:MOST_VIOLATIONS], 1):
         rule = by_name[violation.rule]
-        when = "" if violation.step is None else f", at {violation.step * trace.step_s:g} s"
-        told = [("ink", f"{in_a_line(violation, rule, rules.name)}{when}")]
-        if rule.name not in explained:
-            told.append(("faint", rule.says))
-            explained.add(rule.name)
-        marks.append(LabelText(str(n), (MARGIN, y), style="strong"))
-        for style, text in told:
-            for line in wrap(text, columns - 4):
-                marks.append(LabelText(line, (MARGIN + 4 * CHARACTER, y), style=style))
-                y += LINE_HEIGHT
+        when = "" if violation.step is None else f", at {violation.step * ribbon.trace.step_s:g} s"
+        lines = [("ink", f"{in_a_line(violation, rule, rules.name)}{when}")]
+        lines += [("faint", rule.says)] if rule.name not in explained else []
+        explained.add(rule.name)
+        labels.append(LabelText(str(n), (canvas.MARGIN, y), style="strong"))
+        for style, text in lines:
+            at, width = (canvas.MARGIN + _INDENT, y), canvas.TEXT_WIDTH - _INDENT
+            paragraph = canvas.paragraph(text, at, width, style)
+            labels += paragraph
+            y += len(paragraph) * canvas.LINE_HEIGHT
         y += 4
-    if number > MOST_VIOLATIONS:
-        marks.append(
-            LabelText(f"and {number - MOST_VIOLATIONS:,} more", (MARGIN, y), style="faint")
-        )
-        y += LINE_HEIGHT
+    notes = []
+    if len(ribbon.violations) > MOST_VIOLATIONS:
+        notes.append(f"and {len(ribbon.violations) - MOST_VIOLATIONS:,} more")
     if ribbon.left_out:
-        more = f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)} of defaults left out"
-        marks.append(LabelText(more, (MARGIN, y), style="faint"))
-        y += LINE_HEIGHT
-    return Picture(trace.id, WIDTH, y, tuple(marks))
+        notes.append(f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)} of defaults left out")
+    for note in notes:
+        labels.append(LabelText(note, (canvas.MARGIN, y), style="faint"))
+        y += canvas.LINE_HEIGHT
+    return labels, y
 
 
-def _flags(ribbon: Ribbon, axis: _Axis, top: float) -> tuple[list[LabelText], float]:
+def _flags(ribbon: Ribbon, axis: _Axis) -> tuple[list[LabelText], float]:
     """Numbers of violations above their states, and the rows' upper end."""
     numbered = sorted(
         (ribbon.decisive(violation), n) for n, violation in enumerate(ribbon.violations, 1)
     )
     flags: list[LabelText] = []
     placing = Placing()
-    deepest = top
-    for state, group in groupby(numbered, key=lambda one: one[0]):
+    for state, group in groupby(numbered, key=lambda pair: pair[0]):
         numbers = [n for _, n in group]
         text = ", ".join(map(str, numbers[:4])) + (" …" if len(numbers) > 4 else "")
-        half = text_width([text]) / 2
-        x = min(max(axis.x(state), MARGIN + half), WIDTH - MARGIN - half)
-        for level in range(6):
-            words = LabelText(text, (x, top + level * LINE_HEIGHT + 8), "middle", "strong")
-            if placing.take(words):
-                flags.append(words)
-                deepest = max(deepest, words.at[1])
-                break
-    return flags, deepest + LINE_HEIGHT
+        half = canvas.text_width([text]) / 2
+        x = min(max(axis.x(state), canvas.MARGIN + half), canvas.WIDTH - canvas.MARGIN - half)
+        levels = (_TOP + level * canvas.LINE_HEIGHT + 8 for level in range(6))
+        flags += placing.first_free(LabelText(text, (x, y), "middle", "strong") for y in levels)
+    return flags, max((flag.at[1] for flag in flags), default=_TOP) + canvas.LINE_HEIGHT
 
 
 def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
@@ -127,13 +117,13 @@ def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
                 yield Polyline(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")
 
 
-def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
+def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Area]:
     for run in row.runs:
         if run.value is not None:
-            shape = rectangle(axis.x(run.first), y + 2, axis.x(run.last + 1), y + _ROW - 2)
+            box = (axis.x(run.first), y + 2, axis.x(run.last + 1), y + _ROW - 2)
             style = f"value{row.values.index(run.value) % _COLOURS}"
             when = f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
-            yield Area((shape,), style, f"{row.title}: {in_words(run.value)}, {when}")
+            yield canvas.filled(box, style, f"{row.title}: {in_words(run.value)}, {when}")
 
 
 def _values(row: RibbonRow, axis: _Axis, y: float) -> Iterator[LabelText]:
@@ -142,7 +132,7 @@ def _values(row: RibbonRow, axis: _Axis, y: float) -> Iterator[LabelText]:
         if run.value is not None:
             left, right = axis.x(run.first), axis.x(run.last + 1)
             text = in_words(run.value)
-            if text_width([text]) + 6 <= right - left:
+            if canvas.text_width([text]) + 6 <= right - left:
                 yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
 
 
@@ -168,7 +158,8 @@ def _times(axis: _Axis, y: float) -> Iterator[Mark]:
         x = axis.x(time / axis.step_s)
         yield Polyline(((x, y + 2), (x, y + 6)), "axis")
         text = f"{time:g} s" if time == 0 else f"{time:g}"
-        yield LabelText(text, (min(x, WIDTH - text_width([text]) / 2), y + 14), "middle", "faint")
+        x = min(x, canvas.WIDTH - canvas.text_width([text]) / 2)
+        yield LabelText(text, (x, y + 14), "middle", "faint")
 
 
 def _title(row: RibbonRow) -> str:

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import islice, product
 
-from rulec.report.pictures.drawing.marks import LabelText
-
-Rectangle = tuple[float, float, float, float]
-"""Left, top, right, bottom."""
+from rulec.report.pictures.drawing.canvas import LabelText, Rectangle
 
 _ROOM = 4.0
 """Between words and what is beside them, in px."""
@@ -45,13 +42,12 @@ class Placing:
         Of the large rooms that in the middle is tried first. None if no text fits anywhere.
         """
         ordered = sorted(rooms, key=_preference(rooms))
-        for text in texts:
-            for turned in (False, True):
-                for room in ordered:
-                    for words in _within(text, room, turned=turned):
-                        if self.take(words):
-                            return words
-        return None
+        choices = (
+            words
+            for text, turned, room in product(texts, (False, True), ordered)
+            for words in _within(text, room, turned=turned)
+        )
+        return next(filter(self.take, choices), None)
 
 
 def _preference(rooms: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool, float, float]]:

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
-from textwrap import wrap
 from typing import Literal, cast, get_args
 
-from rulec.report.pictures.drawing.html_viewer import as_page
-from rulec.report.pictures.drawing.marks import LINE_HEIGHT, MARGIN, LabelText, Picture, stacked
+from rulec.report.findings.source_excerpt import visible
+from rulec.report.pictures.drawing.canvas import LINE_HEIGHT, MARGIN, Picture, paragraph, stacked
 from rulec.report.pictures.drawing.png import as_png
-from rulec.report.pictures.drawing.svg import as_svg
-from rulec.report.pictures.drawing.text_metrics import CHARACTER
+from rulec.report.pictures.drawing.styles import as_css
+from rulec.report.pictures.drawing.svg import as_inline_svg, as_svg, styles_of
 
 Format = Literal["svg", "png", "html"]
+
+# The page may show itself and fetch nothing.
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+
+_SLIDER = """\
+<form id="time" hidden>
+<label for="slider">Time</label>
+<input id="slider" type="range" min="0" max="{last}" value="0" step="1">
+<output id="shown" for="slider"></output>
+<label><input id="all" type="checkbox"> all at once</label>
+</form>"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,16 +50,42 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
         RulecError: R0707 if a PNG cannot be made.
     """
     if form == "html":
-        return as_page(drawing.title, drawing.pictures, drawing.legend).encode()
+        return _as_page(drawing).encode()
     width = max(picture.width for picture in drawing.pictures)
-    lines = wrap(drawing.title, int((width - 2 * MARGIN) / CHARACTER))
-    words = tuple(
-        LabelText(line, (MARGIN, MARGIN + n * LINE_HEIGHT), style="strong")
-        for n, line in enumerate(lines)
-    )
-    head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, words)
+    lines = paragraph(drawing.title, (MARGIN, MARGIN), width - 2 * MARGIN, "strong")
+    head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, tuple(lines))
     below = [drawing.legend] if drawing.legend else []
     whole = stacked(drawing.title, [head, *drawing.pictures, *below])
-    if form == "png":
-        return as_png(whole, file)
-    return f"{as_svg(whole)}\n".encode()
+    return as_png(whole, file) if form == "png" else f"{as_svg(whole)}\n".encode()
+
+
+def _as_page(drawing: Drawing) -> str:
+    """One self-contained page, complete without its script."""
+    title = escape(visible(drawing.title))
+    below = [drawing.legend] if drawing.legend else []
+    frames = "\n".join(_figure(picture) for picture in drawing.pictures)
+    parts = [
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+        f"<title>{title}</title>",
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        '<meta name="color-scheme" content="light dark">',
+        f"<style>\n{as_css(styles_of([*drawing.pictures, *below]))}\n{_beside('page.css')}</style>",
+        f"</head>\n<body>\n<main>\n<h1>{title}</h1>",
+    ]
+    last = len(drawing.pictures) - 1
+    parts += [_SLIDER.format(last=last)] if last > 0 else []
+    parts.append(f'<div id="frames">\n{frames}\n</div>')
+    parts += [f"<aside>\n{as_inline_svg(legend)}\n</aside>" for legend in below]
+    parts += [f"<script>\n{_beside('slider.js')}</script>"] if last > 0 else []
+    return "\n".join([*parts, "</main>\n</body>\n</html>\n"])
+
+
+def _beside(name: str) -> str:
+    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+
+
+def _figure(picture: Picture) -> str:
+    name = escape(visible(picture.title), quote=True)
+    drawn = as_inline_svg(picture)
+    return f'<figure data-title="{name}" tabindex="0">\n{drawn}\n</figure>'

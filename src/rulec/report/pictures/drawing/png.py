@@ -13,7 +13,7 @@ from typing import Any
 
 from rulec.diagnostics import SourceLocation
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.pictures.drawing.marks import Area, LabelText, Mark, Picture, Point, Polyline
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import LIGHT, STYLES
 

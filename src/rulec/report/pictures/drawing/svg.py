@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from rulec.report.findings.source_excerpt import visible
-from rulec.report.pictures.drawing.marks import Area, LabelText, Mark, Picture, Point, Polyline
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.styles import as_css
 
 

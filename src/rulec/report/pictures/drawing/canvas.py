@@ -1,4 +1,4 @@
-"""Marks that a picture consists of: areas, lines and words, in px.
+"""What a picture consists of: areas, lines and words, in px.
 
 ``y`` grows downwards. A style is a name in ``styles.STYLES``; a tip is what a reader is told who
 points at a mark.
@@ -6,13 +6,16 @@ points at a mark.
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from textwrap import wrap
 from typing import Literal
 
-from rulec.report.pictures.drawing.text_metrics import text_width
-
 Point = tuple[float, float]
+
+Rectangle = tuple[float, float, float, float]
+"""Left, top, right, bottom."""
 
 WIDTH = 900.0
 """Of every picture, so that they can stand below each other."""
@@ -20,8 +23,14 @@ WIDTH = 900.0
 MARGIN = 14.0
 """Left free at the sides."""
 
+TEXT_WIDTH = WIDTH - 2 * MARGIN
+"""Between the margins."""
+
 LINE_HEIGHT = 16.0
 """From one line of text to the next."""
+
+CHARACTER = 7.3
+"""The width of a character, a little more than that of the usual fixed-width fonts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +62,8 @@ class LabelText:
     turned: bool = False
 
     @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Left, top, right and bottom, with room for one line."""
+    def bounds(self) -> Rectangle:
+        """The room that it takes, that of one line."""
         width, height = text_width([self.text]), LINE_HEIGHT - 2
         before = {"start": 0.0, "middle": width / 2, "end": width}[self.anchor]
         x, y = self.at
@@ -76,9 +85,31 @@ class Picture:
     marks: tuple[Mark, ...]
 
 
-def rectangle(left: float, top: float, right: float, bottom: float) -> tuple[Point, ...]:
-    """The corners of a rectangle."""
+def text_width(lines: Iterable[str]) -> float:
+    """The width of the widest line, whatever the fixed-width font."""
+    columns = (
+        sum(2 if unicodedata.east_asian_width(character) in "WF" else 1 for character in line)
+        for line in lines
+    )
+    return max(columns, default=0) * CHARACTER
+
+
+def paragraph(text: str, at: Point, width: float, style: str) -> list[LabelText]:
+    """A text broken to a width, with the middle of its first line at ``at``."""
+    lines = wrap(text, int(width / CHARACTER))
+    x, y = at
+    return [LabelText(line, (x, y + n * LINE_HEIGHT), style=style) for n, line in enumerate(lines)]
+
+
+def corners(rectangle: Rectangle) -> tuple[Point, ...]:
+    """The corners of a rectangle, as the ring of an area."""
+    left, top, right, bottom = rectangle
     return (left, top), (right, top), (right, bottom), (left, bottom)
+
+
+def filled(rectangle: Rectangle, style: str, tip: str = "") -> Area:
+    """A rectangle without holes."""
+    return Area((corners(rectangle),), style, tip)
 
 
 def moved(mark: Mark, right: float, down: float) -> Mark:
@@ -89,7 +120,7 @@ def moved(mark: Mark, right: float, down: float) -> Mark:
 
     match mark:
         case Area(rings):
-            return replace(mark, rings=tuple(there(ring) for ring in rings))
+            return replace(mark, rings=tuple(map(there, rings)))
         case Polyline(points):
             return replace(mark, points=there(points))
         case LabelText():

@@ -1,0 +1,88 @@
+"""What stands beside pictures: titles, legends, and numbers on axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING
+
+from rulec.report.pictures.drawing import canvas
+from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
+from rulec.report.pictures.drawing.styles import STYLES
+from rulec.report.text.count_text import shown_count
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.monitoring.verdict import Verdict
+    from rulec.partition import NavigationGraph
+    from rulec.planning import Maneuvers
+    from rulec.planning.ranking.cheapest import Maneuver
+
+_SWATCH = 26.0
+_GAP = 22.0
+
+
+def legend(entries: Sequence[tuple[str, str]], notes: Iterable[str]) -> Picture:
+    """Lay out swatches of styles with what they stand for, then notes."""
+    marks: list[Mark] = []
+    x, y = canvas.MARGIN, canvas.LINE_HEIGHT
+    for style, words in entries:
+        needed = _SWATCH + 6 + canvas.text_width([words])
+        if x > canvas.MARGIN and x + needed > canvas.WIDTH - canvas.MARGIN:
+            x, y = canvas.MARGIN, y + canvas.LINE_HEIGHT + 2
+        marks.append(_swatch(style, x, y))
+        marks.append(LabelText(words, (x + _SWATCH + 6, y)))
+        x += needed + _GAP
+    if entries:
+        y += canvas.LINE_HEIGHT + 4
+    for note in notes:
+        lines = canvas.paragraph(note, (canvas.MARGIN, y), canvas.TEXT_WIDTH, "faint")
+        marks += lines
+        y += len(lines) * canvas.LINE_HEIGHT
+    return Picture("", canvas.WIDTH, y + 2, tuple(marks))
+
+
+def _swatch(style: str, x: float, y: float) -> Mark:
+    if STYLES[style].fill or style == "goal":
+        return canvas.filled((x, y - 6, x + _SWATCH, y + 6), style)
+    return Polyline(((x, y), (x + _SWATCH, y)), style)
+
+
+def ticks(low: float, high: float, at_most: int) -> list[float]:
+    """Multiples of 1, 2 or 5 powers of ten within an interval."""
+    span = high - low
+    power = 10.0 ** floor(log10(span / at_most))
+    # The logarithm may be rounded down from a whole number, so that 10 would just not be enough.
+    step = next(power * unit for unit in (1, 2, 5, 10, 20) if span / (power * unit) <= at_most)
+    return [round(step * n, 9) + 0.0 for n in range(ceil(low / step), floor(high / step) + 1)]
+
+
+def scene_title(
+    graph: NavigationGraph, maneuvers: Maneuvers | None, maneuver: Maneuver | None, number: int
+) -> str:
+    """The scenario, and which maneuver is shown."""
+    name = graph.scenario.name
+    if maneuvers is None:
+        return f"{name}: {graph.nodes:,} cells in {len(graph.layers)} layers"
+    by = f"of {shown_count(maneuvers.satisfying)} that satisfy {maneuvers.rules.name}"
+    if maneuver is None:
+        return f"{name}: no maneuver satisfies {maneuvers.rules.name}"
+    margin = "" if maneuver.margin_s is None else f", margin {maneuver.margin_s:g} s"
+    return f"{name}: maneuver {number} {by}; cost {maneuver.cost:.4g} 1/s{margin}"
+
+
+def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int) -> str:
+    """The scenario, the size of its graph, and the number of maneuvers."""
+    counts = f"{graph.scenario.name}: {graph.nodes:,} nodes, {graph.edges:,} edges"
+    if found is None:
+        return f"{counts}, {shown_count(maneuvers)} maneuvers"
+    satisfying = f"{shown_count(maneuvers)} satisfying by {found.rules.name}"
+    return f"{counts}, {shown_count(found.traces)} maneuvers, {satisfying}"
+
+
+def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
+    """The trace and its verdict, ``only`` of some rules and objects."""
+    number = len(verdict.violations)
+    count = f"{number:,} violation{'s' * (number != 1)}" if number else "no violation"
+    chosen = f", only {', '.join(only)}" if only else ""
+    return f"{verdict.trace}: {count} by {rules.name}{chosen}"
