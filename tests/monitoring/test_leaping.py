@@ -8,8 +8,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.batch.machines.multi_step_tables import _lengths, is_cheaper, run_multi_step
-from rulec.monitoring.batch.machines.step_order import steps_of
+from rulec.monitoring.batch.machines.multi_step_tables import (
+    _lengths,
+    is_cheaper,
+    run_multi_step,
+    steps_of,
+)
 from rulec.monitoring.batch.machines.table_run import run
 from rulec.trace.trace_columns import layout_of, smallest_unsigned
 

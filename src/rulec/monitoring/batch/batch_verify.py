@@ -8,8 +8,6 @@ best.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -17,11 +15,15 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
-from rulec.monitoring.batch.columns.columnize import columnize
-from rulec.monitoring.batch.columns.value_encoding import UnencodableError
+from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
-from rulec.monitoring.batch.trace_groups import group_traces, under_common_names
-from rulec.monitoring.batch.trace_shapes import Names, Shape, shape_of, under_own_names
+from rulec.monitoring.batch.trace_groups import (
+    Shape,
+    group_traces,
+    shape_of,
+    under_common_names,
+    under_own_names,
+)
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state
@@ -41,6 +43,9 @@ _SHARED = 4
 """Where a state is met so many times, on average, what it means is worked out once."""
 
 Answer = Verdict | NotJudged
+
+_Placed = tuple[int, Trace]
+"""A trace, and its place among all."""
 
 
 def verify_many(
@@ -67,98 +72,22 @@ def verify_chunk(
 ) -> list[Answer]:
     """Answers for some traces, together from ``fewest`` of one shape on."""
     answers: list[Answer | None] = [None] * len(items)
-    shapes: dict[Shape, list[int]] = {}
+    shapes: dict[Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
         if isinstance(item, Trace):
             try:
-                shapes.setdefault(shape_of(item), []).append(place)
+                shapes.setdefault(shape_of(item), []).append((place, item))
             except (TypeError, AttributeError, KeyError):
                 continue  # it is no trace, which ``verify`` will say
-    for places in shapes.values():
-        if len(places) >= fewest or _are_long(items, places):
-            _verify_group(items, places, rulebook, answers)
+    for alike in shapes.values():
+        n_states = sum(len(trace.states or ()) for _, trace in alike)
+        if len(alike) >= fewest or n_states >= _LONG:
+            framed = [(place, trace) for place, trace in alike if _is_framed(trace)]
+            _verify_group(framed, rulebook, answers)
     return [
         verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
-
-
-def _are_long(items: Sequence[Trace | RulecError], places: Sequence[int]) -> bool:
-    """Tell whether few traces have enough states to be verified together."""
-    traces = [items[place] for place in places]
-    return sum(len(trace.states or ()) for trace in traces if isinstance(trace, Trace)) >= _LONG
-
-
-def _verify_group(
-    items: Sequence[Trace | RulecError],
-    places: Sequence[int],
-    rulebook: CompiledRulebook,
-    answers: list[Answer | None],
-) -> None:
-    """Answer for those traces of one shape that nothing is odd about."""
-    framed: list[tuple[int, Trace]] = []
-    for place in places:
-        trace = items[place]
-        if isinstance(trace, Trace) and _is_framed(trace):
-            framed.append((place, trace))
-    if not framed:
-        return
-    try:
-        rules = rules_for(framed[0][1], rulebook)
-    except RulecError:
-        return
-    group = _verify_grouped(framed, rules)
-    if group is None:
-        return
-    unread = set(chain.from_iterable(verdict.unread.tolist() for verdict in group.verdicts))
-    violations = violations_in(group.verdicts)
-    for number, place in enumerate(group.order):
-        if number not in unread:
-            where, trace = group.traces[place]
-            result = violations.get(number, ())
-            told = under_own_names(result, group.objects, tuple(trace.objects))
-            answers[where] = Verdict(trace.id, told)
-
-
-_Placed = tuple[int, Trace]
-
-
-@dataclass(frozen=True, slots=True)
-class _GroupVerdicts:
-    """Verdicts on a group's ``objects``, its traces and their order."""
-
-    verdicts: Sequence[VerdictColumns]
-    traces: Sequence[_Placed]
-    order: Sequence[int]
-    objects: Names
-
-
-def _verify_grouped(traces: Sequence[_Placed], rules: CompiledRulebook) -> _GroupVerdicts | None:
-    group = group_traces([trace for _, trace in traces])
-    cells = group.cells
-    if len(cells.states) * _SHARED > cells.layout.n_states:
-        if any(counts(fact.formula) for fact in rules.axioms):
-            return None
-        try:
-            columns = columnize(cells, rules.vocabulary, group.names)
-            verdicts = verify_columns(columns, rules)
-        except (UnencodableError, NotGivenError):
-            return None
-        return _GroupVerdicts(verdicts, traces, group.order, tuple(cells.objects))
-    cells = under_common_names(group)
-    scenes = cells.there or (cells.objects,) * len(cells.states)
-    refused = {
-        id(state)
-        for state, known, there in zip(group.cells.states, cells.states, scenes, strict=True)
-        if not _fits(known, cells.objects, there, rules)
-    }
-    if refused:
-        traces = [trace for trace in traces if refused.isdisjoint(map(id, trace[1].states))]
-        if not traces:
-            return None
-        group = group_traces([trace for _, trace in traces])
-        cells = under_common_names(group)
-    return _GroupVerdicts(verify_cells(cells, rules), traces, group.order, tuple(cells.objects))
 
 
 def _is_framed(trace: Trace) -> bool:
@@ -171,6 +100,47 @@ def _is_framed(trace: Trace) -> bool:
     return True
 
 
+def _verify_group(
+    traces: Sequence[_Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
+) -> None:
+    """Answer for those traces of one shape that nothing is odd about."""
+    if not traces:
+        return
+    try:
+        rules = rules_for(traces[0][1], rulebook)
+    except RulecError:
+        return
+    group = group_traces([trace for _, trace in traces])
+    if len(group.cells.states) * _SHARED > group.cells.layout.n_states:
+        if any(counts(axiom.formula) for axiom in rules.axioms):
+            return
+        try:
+            columns = columnize(group.cells, rules.vocabulary, group.names)
+            verdicts = verify_columns(columns, rules)
+        except (UnencodableError, NotGivenError):
+            return
+    else:
+        cells = under_common_names(group)
+        scenes = cells.there or (cells.objects,) * len(cells.states)
+        refused = {
+            id(state)
+            for state, renamed, scene in zip(group.cells.states, cells.states, scenes, strict=True)
+            if not _fits(renamed, cells.objects, scene, rules)
+        }
+        if refused:
+            traces = [placed for placed in traces if refused.isdisjoint(map(id, placed[1].states))]
+            if not traces:
+                return
+            group = group_traces([trace for _, trace in traces])
+            cells = under_common_names(group)
+        verdicts = verify_cells(cells, rules)
+    objects = tuple(group.cells.objects)
+    for number, violations in violations_in(verdicts, len(traces)):
+        place, trace = traces[group.order[number]]
+        own = under_own_names(violations, objects, tuple(trace.objects))
+        answers[place] = Verdict(trace.id, own)
+
+
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """Rulebook for traces of this shape. Raises RulecError if it cannot judge."""
     rules = rulebook_for_trace(trace, rulebook)
@@ -181,26 +151,30 @@ def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
 
 
 def _fits(
-    state: object, objects: Mapping[str, str], there: Mapping[str, str], rulebook: CompiledRulebook
+    state: object, objects: Mapping[str, str], scene: Mapping[str, str], rulebook: CompiledRulebook
 ) -> bool:
     if not isinstance(state, Mapping):
         return False
-    vocabulary = rulebook.vocabulary
     try:
-        check_state(state, objects, vocabulary, "")
-        view = StateView(state, there, vocabulary)
+        check_state(state, objects, rulebook.vocabulary, "")
+        view = StateView(state, scene, rulebook.vocabulary)
         check_counting_axioms(rulebook, 1, lambda _: view, str, None)
     except RulecError:
         return False
     return True
 
 
-def violations_in(verdicts: Sequence[VerdictColumns]) -> dict[int, list[Violation]]:
-    """Violations by trace, in the order of rules and objects."""
-    result: dict[int, list[Violation]] = {}
+def violations_in(
+    verdicts: Sequence[VerdictColumns], n_traces: int
+) -> Iterator[tuple[int, Sequence[Violation]]]:
+    """The violations of each trace that could be read, in the order of rules and objects."""
+    unread: set[int] = set().union(*[verdict.unread.tolist() for verdict in verdicts])
+    by_trace: dict[int, list[Violation]] = {}
     for verdict in verdicts:
         rule, objects = verdict.task.rule, verdict.task.objects
         for trace, step in zip(verdict.violated.tolist(), verdict.lost_at().tolist(), strict=True):
             violation = Violation(rule.name, rule.strength, objects, None if step < 0 else step)
-            result.setdefault(trace, []).append(violation)
-    return result
+            by_trace.setdefault(trace, []).append(violation)
+    for trace in range(n_traces):
+        if trace not in unread:
+            yield trace, by_trace.get(trace, ())

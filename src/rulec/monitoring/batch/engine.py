@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.monitoring.batch.cell_letters import CellLetterReader
+from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.column_reader import ColumnReader
 from rulec.monitoring.batch.joint_codes import joint_cells_of
-from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
-from rulec.monitoring.batch.verdict_columns import JointCells, VerdictColumns, verdict_columns
+from rulec.monitoring.batch.verdict_columns import (
+    JointCells,
+    RuleBinding,
+    VerdictColumns,
+    verdict_columns,
+)
+from rulec.monitoring.binding import bindings
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.trace.trace_columns import TraceCells, TraceColumns
+from rulec.vocabulary import Vocabulary
 
 
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[VerdictColumns]:
@@ -18,42 +26,79 @@ def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Ve
 
     Raises NotGivenError where a rule needs what is neither given nor has a default.
     """
-    vocabulary = rulebook.vocabulary
-    bindings = _bindings_of(columns, rulebook)
-    reader = ColumnReader(columns, vocabulary)
-    verdicts = [
-        verdict
-        for cells in joint_cells_of(reader, bindings, vocabulary)
-        for verdict in verdict_columns(cells)
-    ]
-    return _in_order(verdicts, bindings)
+    bound_rules = rule_bindings(columns, rulebook)
+    reader = ColumnReader(columns, rulebook.vocabulary)
+    return _verdicts(joint_cells_of(reader, bound_rules, rulebook.vocabulary), bound_rules)
 
 
 def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[VerdictColumns]:
     """Verdicts on traces as cells, whose states have passed ``check_state``."""
-    bindings = _bindings_of(traces, rulebook)
-    reader = CellLetterReader(traces, rulebook.vocabulary)
-    together: dict[tuple[int, int | None], list[RuleBinding]] = {}
-    for binding in bindings:
-        together.setdefault(binding.stretch, []).append(binding)
-    verdicts: list[VerdictColumns] = []
-    for group in together.values():
-        letters = [reader.letters(binding) for binding in group]
-        verdicts += verdict_columns(JointCells(traces.layout, traces.cells, group, letters))
-    return _in_order(verdicts, bindings)
+    bound_rules = rule_bindings(traces, rulebook)
+    by_stretch: dict[tuple[int, int | None], list[tuple[RuleBinding, list[int]]]] = {}
+    all_letters = _letters_by_cell(traces, bound_rules, rulebook.vocabulary)
+    for binding, letters in zip(bound_rules, all_letters, strict=True):
+        by_stretch.setdefault(binding.stretch, []).append((binding, letters))
+    joint = (
+        JointCells(traces.layout, traces.cells, *zip(*group, strict=True))
+        for group in by_stretch.values()
+    )
+    return _verdicts(joint, bound_rules)
 
 
-def _bindings_of(
+def rule_bindings(
     traces: TraceColumns | TraceCells, rulebook: CompiledRulebook
 ) -> list[RuleBinding]:
-    n_steps = traces.layout.n_steps
-    return list(
-        rule_bindings(rulebook.rules, rulebook.vocabulary, traces.objects, traces.present, n_steps)
-    )
+    """All bindings of rules to objects, in the order in which verdicts list violations."""
+    present, n_steps = traces.present, traces.layout.n_steps
+    return [
+        # All traces have the steps that ``present`` speaks of.
+        RuleBinding(
+            rule,
+            binding.objects,
+            binding.first,
+            None if present.keys().isdisjoint(binding.objects.values()) else binding.last,
+        )
+        for rule in rulebook.rules
+        for binding in bindings(rule, rulebook.vocabulary, traces.objects, present, n_steps)
+    ]
 
 
-def _in_order(
-    verdicts: Sequence[VerdictColumns], bindings: Sequence[RuleBinding]
+def _verdicts(
+    joint: Iterable[JointCells], bound_rules: Sequence[RuleBinding]
 ) -> list[VerdictColumns]:
+    verdicts = chain.from_iterable(map(verdict_columns, joint))
     by_binding = {verdict.task: verdict for verdict in verdicts}
-    return [by_binding[binding] for binding in bindings]
+    return [by_binding[binding] for binding in bound_rules]
+
+
+def _letters_by_cell(
+    traces: TraceCells, bound_rules: Sequence[RuleBinding], vocabulary: Vocabulary
+) -> list[list[int]]:
+    """For each binding the letter class of each cell; -1 where there is none to read.
+
+    Where an object of the binding is not there its machine does not run; any letter will do.
+    """
+    # States in which the same objects are there are read together.
+    scenes: dict[tuple[tuple[str, str], ...], list[int]] = {}
+    for cell, present in enumerate(traces.there or [traces.objects] * len(traces.states)):
+        scenes.setdefault(tuple(present.items()), []).append(cell)
+    all_letters = [[0] * len(traces.states) for _ in bound_rules]
+    for scene, cells in scenes.items():
+        objects = dict(scene)
+        states = [traces.states[cell] for cell in cells]
+        reader = LetterReader(states, vocabulary, str, objects=objects)
+        for binding, letters in zip(bound_rules, all_letters, strict=True):
+            if objects.keys() >= set(binding.objects.values()):
+                word = _word(binding, reader, 0, len(cells) - 1)
+                for cell, letter in zip(cells, word, strict=True):
+                    letters[cell] = letter
+    return all_letters
+
+
+def _word(binding: RuleBinding, reader: LetterReader, first: int, last: int) -> list[int]:
+    try:
+        return list(reader.word(binding.rule, binding.objects, first, last))
+    except RulecError:
+        if first == last:
+            return [-1]
+        return [_word(binding, reader, place, place)[0] for place in range(first, last + 1)]

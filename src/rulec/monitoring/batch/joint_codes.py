@@ -10,10 +10,9 @@ import numpy as np
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.automata.thresholds import scale
-from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError
-from rulec.monitoring.batch.rule_bindings import RuleBinding
-from rulec.monitoring.batch.verdict_columns import JointCells
-from rulec.trace.trace_columns import Array, smallest_unsigned
+from rulec.monitoring.batch.columns.column_reader import ColumnReader
+from rulec.monitoring.batch.verdict_columns import JointCells, RuleBinding
+from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
 from rulec.vocabulary import Enumeration, Vocabulary
 
 MOST_CELLS = 1 << 16
@@ -37,31 +36,24 @@ class _Digit:
     meanings: Array
 
 
-_Digits = Sequence[_Digit]
-"""The digits of the letters of a binding's machine, in its order."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class _Alphabet:
-    """Letter classes of a machine, and the ``meanings`` of its reads."""
+class _ReadBinding:
+    """A binding, the digits of its machine's letters, and the classes of these letters."""
 
-    letters: Array
-    meanings: Sequence[Array]
+    binding: RuleBinding
+    digits: Sequence[_Digit]
+    classes: Array
 
+    def classes_at(self, varying: Mapping[_Key, Array], n_codes: int) -> Array:
+        """For each code the class of the letter that the machine reads.
 
-def _alphabet(machine: MealyMonitor, vocabulary: Vocabulary) -> _Alphabet:
-    meanings = [
-        np.arange(read.size)
-        if isinstance(read, NumberRead)
-        else np.array([read.digit(value) for value in _values(read.name, vocabulary)])
-        for read in machine.reads
-    ]
-    return _Alphabet(np.array(machine.letters), meanings)
-
-
-def _values(name: str, vocabulary: Vocabulary) -> Sequence[bool | str]:
-    declaration = vocabulary.declarations[name]
-    return declaration.values if isinstance(declaration, Enumeration) else (False, True)
+        ``varying`` has those of its digits that are not the same in all states.
+        """
+        numbers, stride = np.zeros(n_codes, dtype=np.int64), 1
+        for digit, read in zip(self.digits, self.binding.rule.machine.reads, strict=True):
+            numbers += stride * digit.meanings.take(varying.get(digit.key, digit.values))
+            stride *= read.size
+        return self.classes.take(numbers)
 
 
 def joint_cells_of(
@@ -73,51 +65,70 @@ def joint_cells_of(
     """
     together: dict[_Key, list[RuleBinding]] = {}
     for binding in bindings:
-        together.setdefault((frozenset(binding.objects.values()), *binding.stretch), []).append(
-            binding
-        )
+        key = (frozenset(binding.objects.values()), *binding.stretch)
+        together.setdefault(key, []).append(binding)
     # Rules have many bindings: a machine's letters become an array once.
-    rules = {binding.rule.name: binding.rule for binding in bindings}
-    known = {name: _alphabet(rule.machine, vocabulary) for name, rule in rules.items()}
+    machines = {binding.rule.name: binding.rule.machine for binding in bindings}
+    classes = {name: np.array(machine.letters) for name, machine in machines.items()}
+    meanings = {name: _meanings(machine, vocabulary) for name, machine in machines.items()}
+    layout = reader.columns.layout
     for group in together.values():
-        alphabets = [known[binding.rule.name] for binding in group]
-        all_digits = [
-            _digits_of(binding, reader, alphabet)
-            for binding, alphabet in zip(group, alphabets, strict=True)
+        read_bindings = [
+            _ReadBinding(
+                binding,
+                _digits_of(binding, reader, meanings[binding.rule.name]),
+                classes[binding.rule.name],
+            )
+            for binding in group
         ]
-        if _size(_columns(all_digits)) <= MOST_CELLS:
-            yield _joint_cells(reader, group, all_digits, alphabets)
+        if _size(_columns(read_bindings)) <= MOST_CELLS:
+            yield _joint_cells(layout, read_bindings)
             continue
-        for binding, digits, alphabet in zip(group, all_digits, alphabets, strict=True):
-            if _size(_columns([digits])) <= MOST_CELLS:
-                yield _joint_cells(reader, [binding], [digits], [alphabet])
+        for read_binding in read_bindings:
+            if _size(_columns([read_binding])) <= MOST_CELLS:
+                yield _joint_cells(layout, [read_binding])
             else:
-                yield _class_cells(reader, binding, digits, alphabet)
+                yield _class_cells(layout, read_binding)
 
 
-def _digits_of(binding: RuleBinding, reader: ColumnReader, alphabet: _Alphabet) -> _Digits:
+def _meanings(machine: MealyMonitor, vocabulary: Vocabulary) -> list[Array]:
+    """For each read the digit that each number in a column stands for."""
+    meanings = []
+    for read in machine.reads:
+        if isinstance(read, NumberRead):
+            meanings.append(np.arange(read.size))
+        else:
+            declaration = vocabulary.declarations[read.name]
+            values: Sequence[bool | str] = (
+                declaration.values if isinstance(declaration, Enumeration) else (False, True)
+            )
+            meanings.append(np.array([read.digit(value) for value in values]))
+    return meanings
+
+
+def _digits_of(
+    binding: RuleBinding, reader: ColumnReader, all_meanings: Sequence[Array]
+) -> list[_Digit]:
     digits = []
-    for read, meanings in zip(binding.rule.machine.reads, alphabet.meanings, strict=True):
+    for read, meanings in zip(binding.rule.machine.reads, all_meanings, strict=True):
         if isinstance(read, NumberRead):
             items = tuple([binding.objects[variable] for variable in scale(read).variables])
             key: _Key = (read.terms, read.thresholds, scale(read).variables, items)
             digits.append(_Digit(key, read.size, reader.digits(read, binding.objects), meanings))
-            continue
-        items = tuple([binding.objects[variable] for variable in read.variables])
-        values = reader.values(read.name, items)
-        if values is None:
-            raise NotGivenError(read.name, items)
-        column = values if isinstance(values, np.ndarray) else int(values)
-        digits.append(_Digit((read.name, items), len(meanings), column, meanings))
+        else:
+            items = tuple([binding.objects[variable] for variable in read.variables])
+            values = reader.given(read.name, items)
+            column = values if isinstance(values, np.ndarray) else int(values)
+            digits.append(_Digit((read.name, items), len(meanings), column, meanings))
     return digits
 
 
-def _columns(all_digits: Sequence[_Digits]) -> Mapping[_Key, _Digit]:
+def _columns(read_bindings: Sequence[_ReadBinding]) -> Mapping[_Key, _Digit]:
     """All that is read and is not the same in all states."""
     return {
         digit.key: digit
-        for digits in all_digits
-        for digit in digits
+        for read_binding in read_bindings
+        for digit in read_binding.digits
         if isinstance(digit.values, np.ndarray)
     }
 
@@ -126,64 +137,41 @@ def _size(columns: Mapping[_Key, _Digit]) -> int:
     return prod(digit.size for digit in columns.values())
 
 
-def _joint_cells(
-    reader: ColumnReader,
-    bindings: Sequence[RuleBinding],
-    all_digits: Sequence[_Digits],
-    alphabets: Sequence[_Alphabet],
-) -> JointCells:
-    columns = _columns(all_digits)
+def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> JointCells:
+    columns = _columns(read_bindings)
+    size = _size(columns)
     strides: dict[_Key, int] = {}
+    cells = np.zeros(layout.n_states, dtype=smallest_unsigned(size))
     stride = 1
-    for key, digit in columns.items():
-        strides[key] = stride
-        stride *= digit.size
-    layout = reader.columns.layout
-    cells = np.zeros(layout.n_states, dtype=smallest_unsigned(stride))
     for key, digit in columns.items():
         assert isinstance(digit.values, np.ndarray)
         part = digit.values.astype(cells.dtype, copy=False)
-        cells += part * cells.dtype.type(strides[key]) if strides[key] > 1 else part
-    codes = np.arange(stride)
-    if stride > _BYTE:
+        cells += part * cells.dtype.type(stride) if stride > 1 else part
+        strides[key] = stride
+        stride *= digit.size
+    codes = np.arange(size)
+    if size > _BYTE:
         # Few of the combinations occur.
-        codes = np.flatnonzero(np.bincount(cells, minlength=stride))
-        numbers = np.zeros(stride, dtype=smallest_unsigned(len(codes)))
+        codes = np.flatnonzero(np.bincount(cells, minlength=size))
+        numbers = np.zeros(size, dtype=smallest_unsigned(len(codes)))
         numbers[codes] = np.arange(len(codes))
         cells = numbers.take(cells)
     varying = {key: codes // strides[key] % digit.size for key, digit in columns.items()}
-    letters = [
-        alphabet.letters.take(_numbers(binding.rule.machine, digits, varying, len(codes))).tolist()
-        for binding, digits, alphabet in zip(bindings, all_digits, alphabets, strict=True)
-    ]
-    return JointCells(layout, cells, bindings, letters)
-
-
-def _numbers(
-    machine: MealyMonitor, digits: _Digits, varying: Mapping[_Key, Array], n_codes: int
-) -> Array:
-    """For each code the letter that the machine reads.
-
-    ``varying`` has those of its digits that are not the same in all states. They are numbers below
-    the size of what is read.
-    """
-    numbers, stride = np.zeros(n_codes, dtype=np.int64), 1
-    for digit, read in zip(digits, machine.reads, strict=True):
-        numbers += stride * digit.meanings.take(varying.get(digit.key, digit.values))
-        stride *= read.size
-    return numbers
-
-
-def _class_cells(
-    reader: ColumnReader, binding: RuleBinding, digits: _Digits, alphabet: _Alphabet
-) -> JointCells:
-    """Cells that are letter classes, for a machine with very many letters."""
-    layout, machine = reader.columns.layout, binding.rule.machine
-    given = {digit.key: digit.values for digit in digits if isinstance(digit.values, np.ndarray)}
-    numbers = _numbers(machine, digits, given, layout.n_states)
-    # One more than the class, so that what is impossible is a cell, too.
-    n_cells = len(machine.successors[0]) + 1
-    cells = (alphabet.letters - IMPOSSIBLE).astype(smallest_unsigned(n_cells))
     return JointCells(
-        layout, cells.take(numbers), [binding], [range(IMPOSSIBLE, n_cells + IMPOSSIBLE)]
+        layout,
+        cells,
+        [read_binding.binding for read_binding in read_bindings],
+        [read_binding.classes_at(varying, len(codes)).tolist() for read_binding in read_bindings],
+    )
+
+
+def _class_cells(layout: Layout, read_binding: _ReadBinding) -> JointCells:
+    """Cells that are letter classes, for a machine with very many letters."""
+    # One more than the class, so that what is impossible is a cell, too.
+    n_cells = len(read_binding.binding.rule.machine.successors[0]) + 1
+    columns = {key: np.asarray(digit.values) for key, digit in _columns([read_binding]).items()}
+    cells = read_binding.classes_at(columns, layout.n_states) - IMPOSSIBLE
+    letters = range(IMPOSSIBLE, n_cells + IMPOSSIBLE)
+    return JointCells(
+        layout, cells.astype(smallest_unsigned(n_cells)), [read_binding.binding], [letters]
     )

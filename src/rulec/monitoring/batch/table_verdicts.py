@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.batch_verify import (
-    Answer,
-    rules_for,
-    verify_chunk,
-    violations_in,
-)
+from rulec.monitoring.batch.batch_verify import Answer, rules_for, verify_chunk, violations_in
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
-from rulec.monitoring.batch.columns.value_encoding import UnencodableError
+from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.engine import verify_columns
-from rulec.monitoring.batch.trace_shapes import under_own_names
+from rulec.monitoring.batch.trace_groups import under_own_names
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
@@ -76,13 +70,12 @@ def _verify_group(
     objects = dict(zip(group.objects, group.types, strict=True))
     step_s = float(presence.step_s[group.traces[0]])
     rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-    if any(counts(fact.formula) for fact in rules.axioms):
+    if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
     verdicts = verify_columns(columnize_block(group, rules.vocabulary), rules)
-    unread = set(chain.from_iterable(verdict.unread.tolist() for verdict in verdicts))
-    violations = violations_in(verdicts)
-    for number, trace in enumerate(group.traces.tolist()):
-        if number not in unread:
-            own = violations.get(number)
-            told = under_own_names(own, group.objects, presence.objects_of(trace)) if own else ()
-            answers[trace] = Verdict(presence.names[trace], told)
+    traces = group.traces.tolist()
+    for number, violations in violations_in(verdicts, len(traces)):
+        trace = traces[number]
+        own = presence.objects_of(trace) if violations else ()
+        violations = under_own_names(violations, group.objects, own)
+        answers[trace] = Verdict(presence.names[trace], violations)

@@ -1,4 +1,4 @@
-"""Groups of traces of one shape, as cells of shared states."""
+"""Groups of traces that are alike but for their objects' names, as cells of shared states."""
 
 from __future__ import annotations
 
@@ -10,13 +10,24 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.trace_shapes import Names, renamed_state
 from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceCells, layout_of, smallest_unsigned
 
-StateIdentity: TypeAlias = int
-"""The ``id`` of a state, which is a dictionary and so no key itself, while its trace lives."""
+Shape: TypeAlias = tuple[object, ...]
+
+Names: TypeAlias = tuple[str, ...]
+"""The objects of a trace, in its order."""
+
+_PLAIN = frozenset((bool, int, float, str))
+
+
+def shape_of(trace: Trace) -> Shape:
+    """Shape of a trace: step, object types in order, presence; no names."""
+    places = {name: place for place, name in enumerate(trace.objects)}
+    stretches = [(places[name], stretch) for name, stretch in trace.present.items()]
+    return trace.step_s, tuple(trace.objects.values()), tuple(sorted(stretches))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +62,7 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     now = list(chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of]))
     whose = list(chain.from_iterable(map(repeat, names, steps_of)))
     places: Sequence[int]
-    ids: list[StateIdentity] = list(map(id, states))
+    ids = list(map(id, states))
     if len(set(ids)) == len(ids):
         places, numbers = range(len(ids)), np.arange(len(ids))
     elif len(scenes) == 1 and are_alike:
@@ -64,18 +75,16 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     step = np.arange(layout.n_states) - before[trace]
     cells = np.empty(layout.n_states, dtype=smallest_unsigned(len(places)))
     cells[layout.starts[step] + trace] = numbers
-    there = () if len(scenes) == 1 else tuple([scenes[now[place]] for place in places])
-    distinct = tuple([states[place] for place in places])
-    own_names = () if are_alike else [whose[place] for place in places]
     shared = TraceCells(
         layout=layout,
         cells=cells,
-        states=distinct,
+        states=tuple([states[place] for place in places]),
         objects=example.objects,
         present=example.present,
-        there=there,
+        there=() if len(scenes) == 1 else tuple([scenes[now[place]] for place in places]),
         step_s=example.step_s,
     )
+    own_names = () if are_alike else [whose[place] for place in places]
     return TraceGroup(shared, order.tolist(), own_names)
 
 
@@ -86,26 +95,71 @@ def _distinct(keys: Sequence[Hashable]) -> tuple[Sequence[int], NDArray[np.int64
     return list(places.values()), np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
 
 
-def under_common_names(group: TraceGroup) -> TraceCells:
-    """Cells of a group, their objects renamed; None for a refused state."""
-    if not group.names:
-        return group.cells
-    renaming = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
-    states: Any = map(renamed_state, group.cells.states, map(renaming.__getitem__, group.names))
-    return replace(group.cells, states=tuple(states))
-
-
 def _scenes(trace: Trace, n_steps: int) -> tuple[list[Mapping[str, str]], list[int]]:
     """Distinct sets of objects present together, and their index by step."""
     changes = {0, n_steps}
     for first, last in trace.present.values():
         changes |= {first, last + 1}
-    scenes: dict[tuple[str, ...], Mapping[str, str]] = {}
-    places: dict[tuple[str, ...], int] = {}
+    scenes: list[Mapping[str, str]] = []
+    places: dict[Names, int] = {}
     steps: list[int] = []
     for step, change in pairwise(sorted(changes)):
-        there = present_in(step, trace.objects, trace.present)
-        names = tuple(there)
-        scenes.setdefault(names, there)
-        steps += [places.setdefault(names, len(places))] * (change - step)
-    return list(scenes.values()), steps
+        objects = present_in(step, trace.objects, trace.present)
+        place = places.setdefault(tuple(objects), len(scenes))
+        if place == len(scenes):
+            scenes.append(objects)
+        steps += [place] * (change - step)
+    return scenes, steps
+
+
+def under_common_names(group: TraceGroup) -> TraceCells:
+    """Cells of a group, their objects renamed; None for a refused state."""
+    if not group.names:
+        return group.cells
+    renaming = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
+    states: Any = map(_renamed_state, group.cells.states, map(renaming.__getitem__, group.names))
+    return replace(group.cells, states=tuple(states))
+
+
+def _renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
+    """State with its objects renamed; None if that is not possible."""
+    if type(state) is not dict:
+        return None
+    result = {
+        name: value if type(value) in _PLAIN else _renamed(value, names)
+        for name, value in state.items()
+    }
+    return None if None in result.values() else result
+
+
+def _renamed(values: object, names: Mapping[str, str]) -> dict[str, Any] | None:
+    """Values by object; None if about anything else, or unusual."""
+    if type(values) is not dict:
+        return None
+    result = {}
+    for item, value in values.items():
+        inner = value if type(value) in _PLAIN else _renamed(value, names)
+        if inner is None or item not in names:
+            return None
+        result[names[item]] = inner
+    return result
+
+
+def under_own_names(
+    violations: Sequence[Violation], objects: Names, own: Names
+) -> tuple[Violation, ...]:
+    """Violations with the group's object names replaced by a trace's own."""
+    if not violations or objects == own:
+        return tuple(violations)
+    names = dict(zip(objects, own, strict=True))
+    return tuple(
+        [
+            Violation(
+                violation.rule,
+                violation.strength,
+                {variable: names[item] for variable, item in violation.binding.items()},
+                violation.step,
+            )
+            for violation in violations
+        ]
+    )

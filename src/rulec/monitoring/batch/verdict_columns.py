@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_alone
 from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, run
-from rulec.monitoring.batch.rule_bindings import RuleBinding
 from rulec.trace.trace_columns import Array, Layout
 from rulec.value_display import short_repr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RuleBinding:
+    """Rule bound to ``objects`` from step ``first`` to ``last`` (inclusive).
+
+    ``last`` is None for each trace's own end. Bindings are compared by identity: they are keys.
+    """
+
+    rule: CompiledRule
+    objects: Mapping[str, str]
+    first: int
+    last: int | None
+
+    @property
+    def stretch(self) -> tuple[int, int | None]:
+        """The first and the last step."""
+        return self.first, self.last
 
 
 @dataclass(frozen=True, slots=True, eq=False)

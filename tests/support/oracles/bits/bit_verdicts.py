@@ -11,9 +11,9 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Atom, Comparison, Proposition
-from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError
-from rulec.monitoring.batch.columns.kleene_columns import Mask
-from rulec.monitoring.batch.rule_bindings import RuleBinding, rule_bindings
+from rulec.monitoring.batch.columns.column_reader import ColumnReader, Mask, NotGivenError
+from rulec.monitoring.batch.engine import rule_bindings
+from rulec.monitoring.batch.verdict_columns import RuleBinding
 from rulec.trace.trace_columns import Array, TraceColumns, layout_of
 from support.oracles.bits.trace_planes import Across
 
@@ -27,10 +27,7 @@ def verify_on_bits(
     """
     reading = ColumnReader(columns, rulebook.vocabulary)
     together: dict[tuple[object, ...], Across] = {}
-    n_steps = columns.layout.n_steps
-    for task in rule_bindings(
-        rulebook.rules, rulebook.vocabulary, columns.objects, columns.present, n_steps
-    ):
+    for task in rule_bindings(columns, rulebook):
         # What is read of the same objects on the same stretch is packed into bits once.
         key = (*sorted(task.objects.items()), task.stretch)
         if key not in together:

@@ -8,12 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.columns.value_encoding import (
-    UnencodableError,
-    column_dtype,
-    encode_values,
-)
-from rulec.monitoring.batch.trace_shapes import Names
+from rulec.monitoring.batch.columns.columnize import UnencodableError, column_dtype, encode_values
+from rulec.monitoring.batch.trace_groups import Names
 from rulec.trace.formats.block_presence import NOBODY, BlockPresence
 from rulec.trace.formats.table_blocks import Block, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of
@@ -56,35 +52,30 @@ def _group(block: Block, presence: BlockPresence, traces: NDArray[np.int64]) -> 
     rank = np.full(len(block), -1)
     rank[traces] = np.arange(len(traces))
     rows = np.flatnonzero(rank[presence.trace] >= 0)
-    state = layout.starts[presence.step[rows]] + rank[presence.trace[rows]]
-    there = slice(presence.starts[traces[0]], presence.starts[traces[0] + 1])
-    names, types = tuple(presence.objects[there]), presence.types[there]
-    stretches = presence.stretches[there]
+    objects = slice(presence.starts[traces[0]], presence.starts[traces[0] + 1])
     return BlockGroup(
         block=block,
         presence=presence,
         traces=traces,
         layout=layout,
         rows=rows,
-        state=state,
-        objects=names,
-        types=types,
-        stretches=stretches,
+        state=layout.starts[presence.step[rows]] + rank[presence.trace[rows]],
+        objects=tuple(presence.objects[objects]),
+        types=presence.types[objects],
+        stretches=presence.stretches[objects],
     )
 
 
 def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
-    """The group as columns. Raises OddError as ``gathered`` does."""
+    """The group as columns. Raises UnencodableError."""
     columns: dict[Key, Array] = {}
     for name in group.block.table.names:
         column = group.block.columns[name]
-        told = column.given[group.rows]
-        if not told.any():
-            continue
-        declaration = vocabulary.declarations.get(name)
-        if declaration is None:
-            raise UnencodableError
-        columns |= _by_objects(column, told, declaration, group, vocabulary)
+        given = column.given[group.rows]
+        if given.any():
+            if name not in vocabulary.declarations:
+                raise UnencodableError
+            columns |= _by_objects(column, given, vocabulary.declarations[name], group, vocabulary)
     present = {
         name: (first, last)
         for name, (first, last) in zip(group.objects, group.stretches.tolist(), strict=True)
@@ -97,45 +88,46 @@ def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
 
 def _by_objects(
     column: Column,
-    told: NDArray[np.bool_],
+    given: NDArray[np.bool_],
     declaration: Declaration,
     group: BlockGroup,
     vocabulary: Vocabulary,
 ) -> dict[Key, Array]:
-    """Columns of a name's values by the objects that they describe."""
-    rows, state = group.rows[told], group.state[told]
-    about = [group.presence.item[rows], group.presence.other[rows]]
-    n_parameters = len(declaration.parameters)
-    if any((one == NOBODY).any() for one in about[:n_parameters]):
-        raise UnencodableError
-    if any((one != NOBODY).any() for one in about[n_parameters:]):
-        raise UnencodableError
+    """Columns of a name's values by the objects that they describe.
+
+    ``given`` tells which of the group's rows have a value.
+    """
+    rows, state = group.rows[given], group.state[given]
     n_objects, n_states = len(group.objects), group.layout.n_states
-    which = np.zeros(len(rows), dtype=np.int64)
-    for place in about[:n_parameters]:
-        which = which * n_objects + place
-    result = np.flatnonzero(np.bincount(which))
-    if len(result) * n_states > len(group.rows) * _MOST_EMPTY:
+    n_parameters = len(declaration.parameters)
+    # The objects of each row as one number, their places being its digits.
+    chosen = np.zeros(len(rows), dtype=np.int64)
+    for parameter, items in enumerate((group.presence.item[rows], group.presence.other[rows])):
+        if ((items == NOBODY) if parameter < n_parameters else (items != NOBODY)).any():
+            raise UnencodableError
+        if parameter < n_parameters:
+            chosen = chosen * n_objects + items
+    choices = np.flatnonzero(np.bincount(chosen))
+    if len(choices) * n_states > len(group.rows) * _MOST_EMPTY:
         raise UnencodableError
-    number = np.zeros(int(result[-1]) + 1, dtype=np.int64)
-    number[result] = np.arange(len(result))
+    line_of = np.zeros(int(choices[-1]) + 1, dtype=np.int64)
+    line_of[choices] = np.arange(len(choices))
     values = _values(column, rows, declaration)
-    cells = number[which] * n_states + state
-    table = np.zeros(len(result) * n_states, dtype=values.dtype)
-    table[cells] = values
-    is_told = np.zeros(len(table), dtype=bool)
-    is_told[cells] = True
-    if np.count_nonzero(is_told) != len(cells):
-        raise UnencodableError  # something is told twice
+    cells = line_of[chosen] * n_states + state
+    lines = np.zeros((len(choices), n_states), dtype=values.dtype)
+    lines.ravel()[cells] = values
+    are_given = np.zeros(lines.shape, dtype=bool)
+    are_given.ravel()[cells] = True
+    if np.count_nonzero(are_given) != len(cells):
+        raise UnencodableError  # something is said twice
     columns: dict[Key, Array] = {}
-    lines = zip(table.reshape(-1, n_states), is_told.reshape(-1, n_states), strict=True)
-    for one, (line, was_told) in zip(result.tolist(), lines, strict=True):
-        places = [one // n_objects, one % n_objects][2 - n_parameters :] if n_parameters else []
-        for place, parameter in zip(places, declaration.parameters, strict=True):
-            if not vocabulary.is_subtype(group.types[place], parameter):
+    for choice, line, is_given in zip(choices.tolist(), lines, are_given, strict=True):
+        places = divmod(choice, n_objects)[2 - n_parameters :] if n_parameters else ()
+        for place, kind in zip(places, declaration.parameters, strict=True):
+            if not vocabulary.is_subtype(group.types[place], kind):
                 raise UnencodableError
-        if not was_told.all():
-            _fill(line, ~was_told, places, declaration, group)
+        if not is_given.all():
+            _fill(line, ~is_given, places, declaration, group)
         columns[declaration.name, tuple([group.objects[place] for place in places])] = line
     return columns
 

@@ -1,30 +1,63 @@
-"""Reader of columns: values, numbers and counts as digits of letters."""
+"""Reader of columns: values, numbers and counts as digits of letters.
+
+Truth is that of Kleene's strong three-valued logic, as ``StateView`` has it for one state.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from fractions import Fraction
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
-from rulec.logic.fold import fold
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import ObjectBinding
-from rulec.monitoring.batch.columns.kleene_columns import (
-    KLEENE_COLUMNS,
-    UNKNOWN,
-    Mask,
-    Truth,
-    known,
-)
-from rulec.monitoring.batch.columns.sum_thresholds import Summand, digits_of_sum
+from rulec.monitoring.batch.columns.sum_thresholds import digits_of_sum
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
 
 _SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+
+
+Mask = NDArray[np.bool_] | np.bool_
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Truth:
+    """Truth known to be true, and known to be false, as masks."""
+
+    true: Mask
+    false: Mask
+
+
+UNKNOWN = Truth(np.False_, np.False_)
+
+
+def known(values: Mask) -> Truth:
+    """Truth that is known in every state."""
+    return Truth(values, ~values)
+
+
+def _equivalence(left: Truth, right: Truth) -> Truth:
+    return Truth(
+        (left.true & right.true) | (left.false & right.false),
+        (left.true & right.false) | (left.false & right.true),
+    )
+
+
+KLEENE_COLUMNS: Algebra[Truth] = Algebra(
+    proposition=lambda _: UNKNOWN,
+    constant=lambda value: known(np.bool_(value)),
+    negation=lambda operand: Truth(operand.false, operand.true),
+    conjunction=lambda left, right: Truth(left.true & right.true, left.false | right.false),
+    disjunction=lambda left, right: Truth(left.true | right.true, left.false & right.false),
+    equivalence=_equivalence,
+)
+"""The operators; what a proposition is depends on the columns."""
 
 
 class NotGivenError(Exception):
@@ -49,15 +82,22 @@ class ColumnReader:
 
         The default of an enumeration is its place among the declared values.
         """
-        result = self.columns.values.get((name, items))
-        if result is not None:
-            return result
+        column = self.columns.values.get((name, items))
+        if column is not None:
+            return column
         declaration = self._vocabulary.declarations[name]
-        if isinstance(declaration, Enumeration) and declaration.default is not None:
-            return declaration.values.index(declaration.default)
         default = declaration.default
+        if isinstance(declaration, Enumeration):
+            return None if default is None else declaration.values.index(default)
         assert not isinstance(default, str), "only an enumeration's default is a value's name"
         return default
+
+    def given(self, name: str, items: tuple[str, ...]) -> Array | bool | float:
+        """Column of a name, or its default. Raises NotGivenError."""
+        values = self.values(name, items)
+        if values is None:
+            raise NotGivenError(name, items)
+        return values
 
     def digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
         """Number of thresholds passed in each state. Raises NotGivenError."""
@@ -71,11 +111,10 @@ class ColumnReader:
         n_states = self.columns.layout.n_states
         ready = scale(read)
         if ready.quantity is None:
-            return digits_of_sum(read, self._summands(read.terms, bound), n_states)
+            summands = [(factor, self._summand(term, bound)) for factor, term in read.terms]
+            return digits_of_sum(read, summands, n_states)
         items = tuple([bound[argument] for argument in ready.quantity.arguments])
-        numbers = self.values(ready.quantity.name, items)
-        if numbers is None:
-            raise NotGivenError(ready.quantity.name, items)
+        numbers = self.given(ready.quantity.name, items)
         if not isinstance(numbers, np.ndarray):
             return np.full(n_states, ready.digit(numbers), dtype=np.uint8)
         digits = np.zeros(n_states, dtype=np.uint8)
@@ -83,49 +122,33 @@ class ColumnReader:
             digits += numbers >= floor
         return digits
 
-    def _summands(
-        self, terms: tuple[tuple[Fraction, ltl.Term], ...], bound: ObjectBinding
-    ) -> list[Summand]:
-        """Columns of a sum's terms, with their coefficients. Raises NotGivenError."""
-        summands: list[Summand] = []
-        for coefficient, term in terms:
-            if isinstance(term, ltl.QuantityTerm):
-                items = tuple([bound[argument] for argument in term.arguments])
-                numbers = self.values(term.name, items)
-                if numbers is None:
-                    raise NotGivenError(term.name, items)
-                summands.append((coefficient, numbers))
-            else:
-                summands.append((coefficient, self._counted(term, bound)))
-        return summands
+    def _summand(self, term: ltl.Term, bound: ObjectBinding) -> Array | float:
+        """Value of a sum's term. Raises NotGivenError."""
+        if isinstance(term, ltl.Count):
+            return self._counted(term, bound)
+        return self.given(term.name, tuple([bound[variable] for variable in term.arguments]))
 
     def _counted(self, count: ltl.Count, bound: ObjectBinding) -> Array:
         """Value of a count in each state. Raises NotGivenError if not known."""
-        n_states = self.columns.layout.n_states
-        total: Array = np.zeros(n_states, dtype=np.int64)
+        total: Array = np.zeros(self.columns.layout.n_states, dtype=np.int64)
         for name, kind in self.columns.objects.items():
-            if not self._vocabulary.is_subtype(kind, count.type):
-                continue
-            truth = self._truth(count.body, {**bound, count.variable: name})
-            there = self._there(name)
-            total += truth.true & there
-            if np.any(there & ~(truth.true | truth.false)):
-                raise self._missing(count, {**bound, count.variable: name})
+            if self._vocabulary.is_subtype(kind, count.type):
+                inner = {**bound, count.variable: name}
+                truth = self._truth(count.body, inner)
+                there = self._there(name)
+                total += truth.true & there
+                if np.any(there & ~(truth.true | truth.false)):
+                    raise self._missing(count, inner)
         return total
 
     def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
         """Error for the first missing value that a count's body reads."""
-        for atom in ltl.atoms_of(count.body):
-            if isinstance(atom, ltl.Atom):
-                items = tuple([bound[variable] for variable in atom.arguments])
-                if self.values(atom.name, items) is None:
-                    return NotGivenError(atom.name, items)
-                continue
-            for _, term in atom.terms:
-                if isinstance(term, ltl.QuantityTerm):
-                    items = tuple([bound[variable] for variable in term.arguments])
-                    if self.values(term.name, items) is None:
-                        return NotGivenError(term.name, items)
+        for part in ltl.atoms_of(count.body):
+            for read in (part,) if isinstance(part, ltl.Atom) else [term for _, term in part.terms]:
+                if not isinstance(read, ltl.Count):
+                    items = tuple([bound[variable] for variable in read.arguments])
+                    if self.values(read.name, items) is None:
+                        return NotGivenError(read.name, items)
         return NotGivenError(next(names_in(count)), ())
 
     def _there(self, name: str) -> Mask:

@@ -7,13 +7,20 @@ from contextlib import suppress
 from operator import itemgetter
 from typing import Any
 
-from rulec.monitoring.batch.columns.value_encoding import UnencodableError, encode_values
-from rulec.monitoring.batch.trace_shapes import Names
-from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns
-from rulec.vocabulary import Declaration, Vocabulary
+import numpy as np
+
+from rulec.automata.thresholds import EXACT_IN_FLOATS
+from rulec.monitoring.batch.trace_groups import Names
+from rulec.monitoring.state_validation import NUMBERS, TRUTHS
+from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
 _NOT_GIVEN = object()
 _EMPTY: Mapping[str, Any] = {}
+
+
+class UnencodableError(Exception):
+    """State with an invalid, missing or unusual value."""
 
 
 def columnize(
@@ -141,3 +148,33 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
 
 def _places(values: Sequence[Any]) -> list[int]:
     return [place for place, value in enumerate(values) if value is _NOT_GIVEN]
+
+
+def column_dtype(declaration: Declaration) -> np.dtype[Any]:
+    """The numbers that the column of a name holds: see ``TraceColumns``."""
+    if isinstance(declaration, Enumeration):
+        return smallest_unsigned(len(declaration.values))
+    return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
+
+
+def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:
+    """Encode values. Raises UnencodableError for invalid values and unusual types."""
+    kinds = set(map(type, values))
+    if isinstance(declaration, Enumeration):
+        places = {value: place for place, value in enumerate(declaration.values)}
+        if kinds != {str} or not places.keys() >= set(values):
+            raise UnencodableError
+        return np.fromiter(map(places.__getitem__, values), column_dtype(declaration), len(values))
+    if isinstance(declaration, Signal):
+        if kinds != TRUTHS:
+            raise UnencodableError
+        return np.array(values, dtype=bool)
+    if not kinds <= NUMBERS:
+        raise UnencodableError
+    whole = [value for value in values if type(value) is int] if int in kinds else []
+    if any(abs(value) > EXACT_IN_FLOATS for value in whole):
+        raise UnencodableError
+    numbers = np.array(values, dtype=np.float64)
+    if not np.isfinite(numbers).all():
+        raise UnencodableError
+    return numbers

@@ -7,14 +7,14 @@ state and every such number, where that leads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
-from itertools import repeat
+from itertools import pairwise, repeat
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.machines.step_order import Step
-from rulec.trace.trace_columns import Array
+from rulec.trace.trace_columns import Array, Layout
 
 Rows = tuple[tuple[int, ...], ...]
 """A number for each letter, for each state."""
@@ -27,6 +27,27 @@ _LONGEST = 16
 
 _WORTH = 4
 """So many look-ups pay for one entry of a table."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Step of ``n_traces`` traces, ``n_continuing`` of them with a next one."""
+
+    n_traces: int
+    n_continuing: int
+    part: slice
+
+
+def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
+    """Steps from first to last (inclusive), or to each trace's end."""
+    starts = layout.starts.tolist()
+    steps = range(first, layout.n_steps if last is None else last + 1)
+    # No trace goes on after the last of these steps.
+    traces = [*(starts[step + 1] - starts[step] for step in steps), 0]
+    return [
+        Step(n_traces, n_continuing, slice(starts[step], starts[step] + n_traces))
+        for step, (n_traces, n_continuing) in zip(steps, pairwise(traces), strict=True)
+    ]
 
 
 def is_cheaper(n_states: int, n_letters: int, n_traces: int) -> bool:

@@ -12,8 +12,13 @@ from numpy.typing import NDArray
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.monitoring.batch.machines.chunked_run import run_alone, visited
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.batch.machines.multi_step_tables import Rows, is_cheaper, run_multi_step
-from rulec.monitoring.batch.machines.step_order import Step, steps_of
+from rulec.monitoring.batch.machines.multi_step_tables import (
+    Rows,
+    Step,
+    is_cheaper,
+    run_multi_step,
+    steps_of,
+)
 from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
 
 _BYTE = 256
