@@ -177,7 +177,7 @@ def test_conflicts_are_about_all_bindings():
 
 
 def findings_of(formulas):
-    names = "rstu"[: len(formulas)]
+    names = "rstuv"[: len(formulas)]
     analyzed = dict(zip(names, sides(formulas, [X], ["stutter"] * len(formulas)), strict=True))
     analyzed = {
         name: type(one)(one.rulebook, one.axioms, renamed(one.rule, name), one.law)
@@ -205,6 +205,14 @@ def test_pairs_come_first_and_groups_hold_no_such_pair():
     group = [near_or_far, always(no(NEAR)), always(no(FAR)), always(implies(P, P))]
     ((_, message),) = findings_of(group)
     assert message.startswith("rules `r`, `s` and `t` cannot all be kept at all")
+
+
+def test_a_group_is_left_with_the_rules_that_its_conflict_needs():
+    near_or_far = always(Binary(BinaryOperator.OR, NEAR, FAR))
+    needless = [always(implies(NEAR, P)), always(implies(FAR, P))]
+    group = [needless[0], near_or_far, always(no(NEAR)), needless[1], always(no(FAR))]
+    ((_, message),) = findings_of(group)
+    assert message.startswith("rules `s`, `t` and `v` cannot all be kept at all")
 
 
 def test_notes_are_in_the_words_of_the_rules():

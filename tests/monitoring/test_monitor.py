@@ -131,6 +131,25 @@ def test_an_interrupted_step_is_none(monkeypatch):
     assert len(judge.violations) == 1
 
 
+def test_what_an_interrupted_step_has_noted_was_none():
+    class Interrupted(Monitor):
+        def __setattr__(self, name, value):
+            if name == "_now" and vars(self).get("_violations"):
+                raise KeyboardInterrupt
+            super().__setattr__(name, value)
+
+    judge = monitor(NEVER_FAR)
+    judge.step({"place": {"a": "near"}}, CAR)
+    judge.__class__ = Interrupted
+    with pytest.raises(KeyboardInterrupt):
+        judge.step({"place": {"a": "far"}}, CAR)
+    judge.__class__ = Monitor
+    assert judge.violations == ()
+    judge.step({"place": {"a": "near"}}, CAR)
+    judge.step({"place": {"a": "far"}}, CAR)
+    assert [violation.step for violation in judge.violations] == [2]
+
+
 @pytest.mark.parametrize(
     ("state", "objects", "code"),
     [

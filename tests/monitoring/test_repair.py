@@ -161,6 +161,25 @@ def test_states_with_other_ways_out_have_lines_of_their_own():
     assert [one["state"] for one in data] == [0, 2]
 
 
+TURNS = """rulebook turns
+semantics finite
+signal q, r default false
+hard rule turns { require always ((q or r) and (q implies weak next not q)) }
+"""
+
+
+def test_only_the_last_change_is_free_to_lead_elsewhere():
+    # With `r` in state 0, what is said of state 2 would not do: `q` there is free only behind `r`.
+    rules = compile_rulebook(parse_rulebook(TURNS), step_s=Fraction(1))
+    trace = Trace("t", 1.0, {}, ({}, {"r": True}, {}))
+    (violation,) = verify(trace, rules).violations
+    text = report.as_text(explain(violation, trace, rules)).splitlines()
+    assert [line.strip() for line in text[-2:]] == [
+        "kept if state 0 says: q",
+        "and if state 2 says: q or r",
+    ]
+
+
 def test_states_are_those_of_the_trace_where_an_object_comes_late():
     near = {"place": {"a": "near"}}
     trace = Trace("t", 1.0, CARS, ({}, {}, near, {}, near), present={"a": (2, 4), "b": (0, 1)})
