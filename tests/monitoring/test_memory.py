@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.encoding.breakpoints import breakpoints_of
+from rulec.monitoring.online.encoding.encoded_values import breakpoints_of
 from rulec.monitoring.online.encoding.state_shape import StateShape
 from rulec.monitoring.online.rule_group import CacheSize
 from rulec.monitoring.online.running_monitor import Monitor

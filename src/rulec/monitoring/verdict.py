@@ -1,10 +1,11 @@
-"""Verdicts as data."""
+"""Verdicts as data, and what of a running trace affects later ones."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, TypeAlias
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import Strength
@@ -63,3 +64,22 @@ class NotJudged:
 
     trace: str | None
     error: RulecError
+
+
+RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
+"""A rule's name, and the objects that its variables stand for."""
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedState:
+    """Machine states of objects that stay, and the permanent violations.
+
+    ``settled`` are rules for objects that stay that are among the ``violations``.
+    """
+
+    states: Mapping[RuleFor, int] = field(default_factory=lambda: MappingProxyType({}))
+    settled: frozenset[RuleFor] = frozenset()
+    violations: tuple[Violation, ...] = ()
+
+
+NO_PAST = CarriedState()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
+from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.planning.partition_choice import SUPPLIED
 from rulec.planning.product.graph_instances import GraphInstance, instances
 from rulec.rulebook.rulebook_model import Strength

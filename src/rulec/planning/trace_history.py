@@ -13,11 +13,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.replay import replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.online.snapshot_file import read_saved
 from rulec.monitoring.state_validation import check_objects
+from rulec.monitoring.verdict import CarriedState
 from rulec.planning.planning_messages import UNFITTING_PAST
 from rulec.planning.product.graph_instances import HARD
 from rulec.rulebook.rulebook_model import Strength

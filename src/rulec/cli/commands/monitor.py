@@ -58,9 +58,9 @@ def command(
     could not be judged. With --save the trace is not over, and what is pending is no violation.
     """
     # Monitors and the reader of states, 60 ms: not for --help.
+    from rulec.monitoring.online.replay import answer
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
-    from rulec.monitoring.online.stream_answers import answer
     from rulec.report.verdicts import monitor_json, monitor_lines
     from rulec.trace.formats.live_states import read_live
 

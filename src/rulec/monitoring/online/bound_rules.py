@@ -103,10 +103,11 @@ class BoundRules:
             pass
         if len(self._readers) >= MOST_SHAPES:
             self._readers.clear()
-        about = (self.objects, self._rulebook.vocabulary, self.groups.breakpoints)
         self._readers[names] = None
         with suppress(LookupError, TypeError):
-            self._readers[names] = GroupLetters(StateShape(names, *about), self._bindings, *about)
+            vocabulary, breakpoints = self._rulebook.vocabulary, self.groups.breakpoints
+            shape = StateShape(names, self.objects, vocabulary, breakpoints)
+            self._readers[names] = GroupLetters(shape, self._bindings)
         return self._readers[names]
 
     def _careful_letters(self, state: State, number: int, place: SourceLocation | None) -> Letters:

@@ -10,9 +10,9 @@ from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.online.encoding.breakpoints import Breakpoints
 from rulec.monitoring.online.encoding.encoded_values import (
     MISSING,
+    Breakpoints,
     Encoded,
     encoded_default,
     values_at,
@@ -22,7 +22,7 @@ from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State
-from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Enumeration
 
 MOST = 1 << 12
 """States of the world, and letters of each group in them, kept before all are forgotten."""
@@ -42,30 +42,15 @@ class GroupLetters:
     """
 
     def __init__(
-        self,
-        shape: StateShape,
-        groups: Sequence[tuple[RuleGroup, Sequence[Items]]],
-        objects: Mapping[str, str],
-        vocabulary: Vocabulary,
-        breakpoints: Breakpoints,
+        self, shape: StateShape, groups: Sequence[tuple[RuleGroup, Sequence[Items]]]
     ) -> None:
         self.shape = shape
-        self._readers = [
-            _GroupReader(
-                group,
-                bindings,
-                shape=shape,
-                objects=objects,
-                vocabulary=vocabulary,
-                breakpoints=breakpoints,
-            )
-            for group, bindings in groups
-        ]
+        self._readers = [_GroupReader(group, bindings, shape) for group, bindings in groups]
         read = set[tuple[str, Items]]().union(*[reader.read for reader in self._readers])
         # Whatever is read is looked at when a letter is made of it for the first time.
         self._unread = list[tuple[int, slice, frozenset[object]]]()
         for (name, items), (part, place) in shape.places.items():
-            declaration = vocabulary.declarations[name]
+            declaration = shape.vocabulary.declarations[name]
             if isinstance(declaration, Enumeration) and (name, items) not in read:
                 values = frozenset([*declaration.values, MISSING])
                 self._unread.append((part, slice(place, place + 1), values))
@@ -126,19 +111,10 @@ class _LetterTable(dict[Any, int]):
 class _GroupReader:
     """Reader of a group's letters; ``read`` are the values it looks at."""
 
-    def __init__(
-        self,
-        group: RuleGroup,
-        bindings: Sequence[Items],
-        *,
-        shape: StateShape,
-        objects: Mapping[str, str],
-        vocabulary: Vocabulary,
-        breakpoints: Breakpoints,
-    ) -> None:
+    def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:
         self.read = set[tuple[str, Items]]()
         self._group = group
-        self._breakpoints = breakpoints
+        self._breakpoints = shape.breakpoints
         self._n_bindings = len(bindings)
         self._not_given: dict[MonitorInput, Any] = {}
         self._world: list[tuple[MonitorInput, int, int]] = []
@@ -150,12 +126,13 @@ class _GroupReader:
             about = [tuple([binding[place] for place in read.places]) for binding in bindings]
             if read.name is None:
                 self._own.append(read)
-                self._columns.append(_sum_column(read, about, objects, vocabulary))
+                self._columns.append(_sum_column(read, about, shape))
                 whole.append(None)
                 continue
             if read.name not in shape.names:
-                default = encoded_default(vocabulary.declarations[read.name], breakpoints)
-                self._not_given[read] = read.digit(default, breakpoints)
+                declaration = shape.vocabulary.declarations[read.name]
+                default = encoded_default(declaration, shape.breakpoints)
+                self._not_given[read] = read.digit(default, shape.breakpoints)
                 continue
             self.read.update((read.name, items) for items in about)
             places = [shape.places[read.name, items] for items in about]
@@ -205,18 +182,13 @@ def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
     return lambda _, parts: pick(parts[part])
 
 
-def _sum_column(
-    read: MonitorInput,
-    about: Sequence[Items],
-    objects: Mapping[str, str],
-    vocabulary: Vocabulary,
-) -> _ReadColumn:
+def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
     number = read.number
     assert number is not None
     bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
 
     def column(state: State, _: Sequence[Encoded]) -> Sequence[int]:
-        view = StateView(state, objects, vocabulary)
+        view = StateView(state, shape.objects, shape.vocabulary)
         totals = [weighted_sum(number.terms, binding, view) for binding in bindings]
         if any(isinstance(value, Unknown) for value in totals):
             raise LookupError

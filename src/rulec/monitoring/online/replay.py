@@ -1,4 +1,4 @@
-"""Replay of recorded traces: a monitor takes their states one by one."""
+"""Monitors of recorded traces, and of streams with unreadable states."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ from collections.abc import Container, Mapping
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
 from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.online.monitor_state import SoFar
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.state_validation import check_objects, check_state
-from rulec.trace import State, Trace
+from rulec.trace import Trace
+from rulec.trace.formats.live_states import LiveState
 from rulec.trace.trace_validation import check_trace
 
 
@@ -25,16 +28,28 @@ def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
         present = present_in(number, trace.objects, trace.present)
-        monitor.step(_restricted_to(present, state), present, trace.place)
+        restricted = {name: _restricted_to(present, value) for name, value in state.items()}
+        monitor.step(restricted, present, trace.place)
     return monitor
 
 
-def _restricted_to(objects: Container[str], state: State) -> State:
+def _restricted_to(objects: Container[str], value: Any) -> Any:
     """The values of the world and of these objects."""
-    return {name: _of(objects, value) for name, value in state.items()}
-
-
-def _of(objects: Container[str], value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
-    return {name: _of(objects, inner) for name, inner in value.items() if name in objects}
+    return {
+        name: _restricted_to(objects, inner) for name, inner in value.items() if name in objects
+    }
+
+
+def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError:
+    """Take a step; an error is an answer too.
+
+    ``item`` may be, in place of a state, the error that kept it from being read.
+    """
+    if isinstance(item, RulecError):
+        return item
+    try:
+        return monitor.step(item.state, item.objects, item.place)
+    except RulecError as error:
+        return error

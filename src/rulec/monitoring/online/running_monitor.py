@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -11,7 +11,6 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.letter_reader import NO_OBJECTS
 from rulec.monitoring.online.bound_rules import BoundRules
-from rulec.monitoring.online.carried_state import CarriedState
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
     SoFar,
@@ -21,10 +20,10 @@ from rulec.monitoring.online.monitor_state import (
     take_step,
 )
 from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
-from rulec.monitoring.online.snapshot import from_data, step_in, to_data
+from rulec.monitoring.online.snapshot import from_data, restored, to_data
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import CarriedState, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
 
@@ -157,9 +156,15 @@ class Monitor:
         n_before = current.n_violations
         same = bound_rules is current.bound_rules and after.n_violations == n_before
         if same and known is not None:
-            after = cache.remember(known, number, current=current, after=after, changes=changes)
+            after = cache.remember(known, number, current, (after, changes))
         if after.n_violations > n_before:
-            self._note_violations(n_before, number, changes)
+            # What an interrupted step has noted was none.
+            del self._violations[n_before:]
+            self._violations += [
+                self._violation(change, None if change.ended else number)
+                for change in changes
+                if change.verdict == "violated"
+            ]
         # All at once: whatever interrupts this, the state has been taken or it has not.
         self._now = after, number, changes, cache
         return SoFar(number, after.verdict, after.rules, changes)
@@ -198,9 +203,10 @@ class Monitor:
         Raises:
             RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
         """
-        monitor = cls(rulebook, step_in(snapshot, rulebook, place))
+        saved, step_s = from_data(snapshot, rulebook, place)
+        monitor = cls(rulebook, step_s)
         groups = monitor._now[0].bound_rules.groups
-        number, current, violations = from_data(snapshot, rulebook, groups, place)
+        number, current, violations = restored(saved, rulebook, groups, place)
         monitor._now, monitor._violations = (current, number, (), TransitionCache()), violations
         return monitor
 
@@ -211,17 +217,6 @@ class Monitor:
     def __repr__(self) -> str:
         so_far = self.so_far
         return f"Monitor({self._rulebook.name}, state={so_far.state}, verdict={so_far.verdict!r})"
-
-    def _note_violations(
-        self, n_before: int, number: int, changes: Sequence[VerdictChange]
-    ) -> None:
-        # What an interrupted step has noted was none.
-        del self._violations[n_before:]
-        self._violations += [
-            self._violation(change, None if change.ended else number)
-            for change in changes
-            if change.verdict == "violated"
-        ]
 
     def _violation(self, change: VerdictChange, number: int | None) -> Violation:
         strength = self._strengths[change.rule]

@@ -15,10 +15,10 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
-from rulec.monitoring.online.bound_rules import BoundRule, BoundRules
+from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge
 from rulec.monitoring.online.monitor_state import MonitorState, initial_state, state_at
-from rulec.monitoring.online.rule_group import GroupNode, RuleGroups
+from rulec.monitoring.online.rule_group import RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
@@ -78,20 +78,19 @@ def to_data(
         "step_s": None if step_s is None else str(step_s),
         "states": number + 1,
         "objects": dict(current.bound_rules.objects),
-        "rules": [_rule_to_data(rule, current.nodes) for rule in current.bound_rules.rules],
+        "rules": [
+            {
+                "rule": rule.prepared.name,
+                "bindings": [
+                    {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
+                    for items, edge in zip(rule.bindings, rule.edges(current.nodes), strict=True)
+                ],
+            }
+            for rule in current.bound_rules.rules
+        ],
         "violations": [
             {"rule": violation.rule, "binding": dict(violation.binding), "step": violation.step}
             for violation in violations
-        ],
-    }
-
-
-def _rule_to_data(bound_rule: BoundRule, nodes: Sequence[GroupNode]) -> dict[str, Any]:
-    return {
-        "rule": bound_rule.prepared.name,
-        "bindings": [
-            {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
-            for items, edge in zip(bound_rule.bindings, bound_rule.edges(nodes), strict=True)
         ],
     }
 
@@ -114,42 +113,13 @@ def fingerprint(rulebook: CompiledRulebook) -> str:
     return hashlib.sha256(json.dumps(rules, sort_keys=True).encode()).hexdigest()
 
 
-def step_in(data: Any, rulebook: CompiledRulebook, place: SourceLocation | None) -> Fraction | None:
-    """Step (s) of a saved monitor, checked against the rulebook.
-
-    Raises:
-        RulecError: R0510.
-    """
-    return _checked(data, rulebook, place)[1]
-
-
 def from_data(
-    data: Any, rulebook: CompiledRulebook, groups: RuleGroups, place: SourceLocation | None
-) -> tuple[int, MonitorState, list[Violation]]:
-    """Last state's number, monitor state and violations of a saved monitor.
-
-    Raises:
-        RulecError: R0510 if this is no saved monitor, one of another rulebook or damaged.
-    """
-    saved, _ = _checked(data, rulebook, place)
-    try:
-        check_objects(saved.objects, rulebook.vocabulary)
-        bound_rules = BoundRules(rulebook, groups, saved.objects)
-        if saved.states == 0 and not saved.objects and not saved.violations:
-            return -1, initial_state(bound_rules), []
-        edges = _edges(saved, bound_rules)
-        rules = {rule.name: rule for rule in rulebook.rules}
-        violations = [_violation(violation, saved.states, rules) for violation in saved.violations]
-    except (LookupError, ValueError, RulecError):
-        raise _refused("this saved monitor is damaged", place) from None
-    violated_rules = {violation.rule for violation in violations}
-    current = state_at(bound_rules, edges, violated_rules, len(violations))
-    return saved.states - 1, current, violations
-
-
-def _checked(
     data: Any, rulebook: CompiledRulebook, place: SourceLocation | None
 ) -> tuple[SavedMonitor, Fraction | None]:
+    """A saved monitor, and its step (s).
+
+    Raises RulecError R0510 if this is no saved monitor, one of another rulebook or damaged.
+    """
     try:
         header = msgspec.convert(data, _Header)
     except msgspec.ValidationError as problem:
@@ -175,6 +145,31 @@ def _checked(
     if saved.states < 0 or (step_s is not None and step_s <= 0):
         raise _refused("this saved monitor is damaged", place)
     return saved, step_s
+
+
+def restored(
+    saved: SavedMonitor,
+    rulebook: CompiledRulebook,
+    groups: RuleGroups,
+    place: SourceLocation | None,
+) -> tuple[int, MonitorState, list[Violation]]:
+    """Last state's number, monitor state and violations of a saved monitor.
+
+    Raises RulecError R0510 if it is damaged.
+    """
+    try:
+        check_objects(saved.objects, rulebook.vocabulary)
+        bound_rules = BoundRules(rulebook, groups, saved.objects)
+        if saved.states == 0 and not saved.objects and not saved.violations:
+            return -1, initial_state(bound_rules), []
+        edges = _edges(saved, bound_rules)
+        rules = {rule.name: rule for rule in rulebook.rules}
+        violations = [_violation(violation, saved.states, rules) for violation in saved.violations]
+    except (LookupError, ValueError, RulecError):
+        raise _refused("this saved monitor is damaged", place) from None
+    violated_rules = {violation.rule for violation in violations}
+    current = state_at(bound_rules, edges, violated_rules, len(violations))
+    return saved.states - 1, current, violations
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:

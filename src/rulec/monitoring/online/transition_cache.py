@@ -7,7 +7,7 @@ from typing import Any
 
 from rulec.monitoring.online.bound_rules import KnownState
 from rulec.monitoring.online.encoding.state_shape import StateKey, StateShape
-from rulec.monitoring.online.monitor_state import MonitorState, VerdictChange
+from rulec.monitoring.online.monitor_state import MonitorState, StepResult
 from rulec.monitoring.online.rule_group import GroupNode
 
 MOST = 1 << 12
@@ -38,20 +38,15 @@ class TransitionCache:
         self.key: StateKey = _key_of_none
 
     def remember(
-        self,
-        known: KnownState,
-        number: int,
-        *,
-        current: MonitorState,
-        after: MonitorState,
-        changes: tuple[VerdictChange, ...],
+        self, known: KnownState, number: int, current: MonitorState, step: StepResult
     ) -> MonitorState:
         """Keep the step from ``current`` by the state with this number.
 
         Returns:
-            The monitor's state with the same nodes that is kept already, or ``after``; to profit
+            The monitor's state with the same nodes that is kept already, or the step's; to profit
             from what is kept behind it, go on from this one.
         """
+        after, changes = step
         if number < self._rests_until:
             return after
         if self._n_tried >= TRIAL:

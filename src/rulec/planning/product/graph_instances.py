@@ -11,9 +11,8 @@ from rulec.automata.thresholds import exact
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.binding import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
-from rulec.monitoring.online.carried_state import NO_PAST, CarriedState
 from rulec.monitoring.state_validation import StateValidator, check_objects
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph

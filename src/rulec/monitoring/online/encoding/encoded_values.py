@@ -1,17 +1,26 @@
-"""Encoders that check values and reduce numbers to breakpoints."""
+"""Encoders that check values, and reduce numbers to the breakpoints that they reach."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 from typing import Any, Final, TypeAlias
 
-from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.online.encoding.breakpoints import Breakpoints
+from rulec.automata.axiom_instances import counts
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
+from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.vocabulary import Declaration, Quantity, Signal
+
+Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
+"""By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
+
+The first is the least number that may be told apart by them, the last the first one beyond.
+"""
 
 Encoded: TypeAlias = tuple[Any, ...]
 """Values of an enumeration or a signal as they are, and of a quantity their digits.
@@ -29,6 +38,34 @@ Encoder: TypeAlias = Callable[[tuple[Any, ...]], Encoded]
 Raises a LookupError or a TypeError if one does not fit the declaration or needs a closer look;
 values of an enumeration may be wrong.
 """
+
+
+def breakpoints_of(rulebook: CompiledRulebook) -> Breakpoints:
+    """The breakpoints of a vocabulary's quantities under all rules together."""
+    floors: dict[str, set[float]] = {
+        name: set()
+        for name, declaration in rulebook.vocabulary.declarations.items()
+        if isinstance(declaration, Quantity)
+    }
+    all_matter = set[str]()
+    for rule in rulebook.rules:
+        for read in rule.machine.reads:
+            if isinstance(read, NumberRead):
+                threshold_scale = scale(read)
+                if threshold_scale.quantity is None:
+                    all_matter.update(threshold_scale.names)
+                else:
+                    floors[threshold_scale.quantity.name].update(threshold_scale.floors)
+    if any(counts(axiom.formula) for axiom in rulebook.axioms):
+        all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
+    # Beyond, whole numbers and floats are no longer told apart by the same floors.
+    most = float(EXACT_IN_FLOATS)
+    return {
+        name: None
+        if name in all_matter
+        else (-most, *sorted([floor for floor in own if -most < floor < most]), most)
+        for name, own in floors.items()
+    }
 
 
 def encoder_of(declaration: Declaration, breakpoints: Breakpoints) -> Encoder:

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import scale
-from rulec.monitoring.online.encoding.breakpoints import Breakpoints
+from rulec.monitoring.online.encoding.encoded_values import Breakpoints
 from rulec.vocabulary import Enumeration, Vocabulary
 
 DigitWeight: TypeAlias = Callable[[Any], int]

@@ -10,14 +10,15 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.monitoring.online.encoding.breakpoints import Breakpoints
 from rulec.monitoring.online.encoding.encoded_values import (
+    Breakpoints,
     Encoded,
     encoded_default,
     encoder_of,
     values_at,
 )
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary.object_choices import choices
 
 Items: TypeAlias = tuple[str, ...]
 """Objects, in the order of parameters or of a rule's variables."""
@@ -48,27 +49,27 @@ class StateShape:
         breakpoints: Breakpoints,
     ) -> None:
         declarations = [vocabulary.declarations[name] for name in names]
+        self.objects, self.vocabulary, self.breakpoints = objects, vocabulary, breakpoints
         self.names = frozenset(names)
         self.places: dict[tuple[str, Items], tuple[int, int]] = {}
         self.sizes: list[int] = []
         self._n_names = len(names)
         self._parts: list[_EncodePart] = []
         for alike in _about_the_world(declarations):
-            values = values_at([declaration.name for declaration in alike])
-            encode = _encoded(values, alike[0], breakpoints)
+            given = values_at([declaration.name for declaration in alike])
+            encode = _encoded(given, alike[0], breakpoints)
             self._add(encode, [(declaration.name, ()) for declaration in alike])
         self.n_world = len(self._parts)
         for declaration in declarations:
-            if declaration.parameters:
+            if kinds := declaration.parameters:
                 fitting = [
-                    tuple(
-                        [name for name, own in objects.items() if vocabulary.is_subtype(own, kind)]
-                    )
-                    for kind in declaration.parameters
+                    tuple([item for (item,) in choices([kind], objects, vocabulary)])
+                    for kind in kinds
                 ]
                 encode = _of_objects(declaration, fitting, breakpoints)
-                items = [(declaration.name, chosen) for chosen in _distinct(fitting)]
-                self._add(_inside(declaration.name, encode), items)
+                all_items = choices(kinds, objects, vocabulary)
+                values = [(declaration.name, items) for items in all_items]
+                self._add(_inside(declaration.name, encode), values)
         self.key: StateKey = self.encode
         self.key_of: Callable[[tuple[Encoded, ...]], Hashable] = lambda encoded: encoded
         if len(self._parts) == 1:
@@ -145,16 +146,6 @@ def _about_the_world(declarations: Sequence[Declaration]) -> Iterator[list[Decla
     for declaration in of_world:
         if isinstance(declaration, Quantity):
             yield [declaration]
-
-
-def _distinct(fitting: Sequence[Items], before: Items = ()) -> Iterator[Items]:
-    """Every choice of distinct objects, one from each."""
-    if not fitting:
-        yield before
-        return
-    for item in fitting[0]:
-        if item not in before:
-            yield from _distinct(fitting[1:], (*before, item))
 
 
 def _encoded(
