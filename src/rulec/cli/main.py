@@ -92,7 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return ExitStatus.NOT_ANSWERED
     except RulecError as error:
         # Its text and colours, 7 ms: not for `rulec --help`.
-        from rulec.report.text.console import print_diagnostics
+        from rulec.report.findings.diagnostics_text import print_diagnostics
 
         print_diagnostics(error.diagnostics)
         return ExitStatus.NOT_ANSWERED

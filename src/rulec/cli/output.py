@@ -11,8 +11,10 @@ from typing import IO
 from rulec.cli.exit_status import ExitStatus
 from rulec.diagnostics import Diagnostic
 from rulec.files import written_whole
+from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
-from rulec.report.text.console import print_diagnostics, print_result, wants_color
+from rulec.report.text.console import print_result
+from rulec.report.text.terminal_text import wants_color
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import rulec
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.report.text.console import print_diagnostics
+from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.settings import search_path
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.output import counted
 from rulec.files import MAX_SOURCE_BYTES
-from rulec.report.text.console import print_aside, print_diagnostics, print_result, wants_color
+from rulec.report.findings.diagnostics_text import print_diagnostics
+from rulec.report.text.console import print_aside, print_result
 from rulec.report.text.text_diff import as_diff, for_terminal
 from rulec.settings import search_path
 
@@ -75,8 +76,7 @@ def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
         if diff:
             text = as_diff(file.name, file.before.decode(), file.after.decode())
             if sys.stdout.isatty():
-                shown = for_terminal(text, color=wants_color(sys.stdout))
-                print_result(shown.removesuffix("\n"))
+                print_result(for_terminal(text))
             else:
                 sys.stdout.buffer.write(text.encode())
         elif check:

@@ -17,7 +17,8 @@ from rulec.cli.options.shared_options import (
 )
 from rulec.cli.project import open_session
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.report.text.console import Complaints, print_result
+from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import print_result
 
 
 @click.command()

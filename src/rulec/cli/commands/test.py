@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,12 +11,8 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import at_option, only_sources, rulebooks_argument
 from rulec.cli.project import answer_or_print, open_session
-from rulec.report.text.console import (
-    print_aside,
-    print_diagnostics,
-    print_result,
-    wants_color,
-)
+from rulec.report.findings.diagnostics_text import print_diagnostics
+from rulec.report.text.console import print_aside, print_result
 
 if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
@@ -95,7 +90,7 @@ def command(
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
     if runs or output_format != "full":
-        print_result(render(runs, covered, output_format, color=wants_color(sys.stdout)))
+        print_result(render(runs, covered, output_format))
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_aside(f"rulec: {sentence}")

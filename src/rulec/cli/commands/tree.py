@@ -9,7 +9,8 @@ import click
 from rulec.cli.options.shared_options import at_option, json_option, only_sources
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.project import open_session
-from rulec.report.text.console import page_width, print_result, wants_color
+from rulec.report.text.console import page_width, print_result
+from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 

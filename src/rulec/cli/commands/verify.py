@@ -30,7 +30,8 @@ from rulec.cli.options.shared_options import (
 from rulec.cli.project import read_machines
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.report.text.console import Complaints, print_result, progress
+from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import print_result, progress
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook

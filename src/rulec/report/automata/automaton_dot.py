@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 
 from rulec.report.automata.automaton_model import Automaton, Fate
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import visible
 
 WIDEST = 32
 """Labels are broken at so many characters."""

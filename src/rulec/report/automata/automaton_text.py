@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from textwrap import wrap
 
-import click
-
 from rulec.report.automata.automaton_model import Automaton, Transition
+from rulec.report.text.terminal_text import styled, table_lines
 
 WORDS = {True: "accepted", False: "rejected"}
 
@@ -30,7 +28,7 @@ def as_text(automaton: Automaton, width: int) -> str:
     for state, fate in enumerate(automaton.fates):
         if fate != "open":
             final = wrap(f"state {state}: {_FINAL[fate]}", width, subsequent_indent="  ")
-            lines += [click.style(line, fg=_COLORS[fate]) for line in final]
+            lines += [styled(line, _COLORS[fate]) for line in final]
             continue
         lines.append(f"state {state}")
         lines += _leaving(
@@ -44,7 +42,7 @@ def as_text(automaton: Automaton, width: int) -> str:
 _COLORS = {"violated": "red", "satisfied": "green"}
 
 
-def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[str]:
+def _leaving(transitions: list[Transition], state: int, width: int) -> list[str]:
     ordered = [transition for transition in transitions if not transition.otherwise]
     ordered += [transition for transition in transitions if transition.otherwise]
     targets = [
@@ -53,11 +51,10 @@ def _leaving(transitions: list[Transition], state: int, width: int) -> Iterator[
     ]
     room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
     labels = [_broken(transition.label, room) for transition in ordered]
-    widest = max(len(line) for lines in labels for line in lines)
-    column = max(map(len, targets))
+    rows = []
     for transition, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
-        yield f"  {first:<{widest}}   {target:<{column}}   {WORDS[transition.accepted]}"
-        yield from (f"  {line}" for line in rest)
+        rows += [(first, target, WORDS[transition.accepted]), *((line, "", "") for line in rest)]
+    return table_lines(rows, indent="  ", gap="   ")
 
 
 def _broken(label: str, room: int) -> list[str]:

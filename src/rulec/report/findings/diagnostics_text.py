@@ -2,15 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import groupby
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.report.findings.source_excerpt import Underline, excerpt_lines, visible
+from rulec.report.findings.source_excerpt import Underline, excerpt_lines
+from rulec.report.text.console import print_aside
+from rulec.report.text.terminal_text import styled, visible, wants_color
 
-_BOLD, _RESET = "\x1b[1m", "\x1b[0m"
-_COLORS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "frame": "\x1b[1;34m"}
+_FRAME = "bold blue"
+_STYLES = {"error": "bold red", "warning": "bold yellow"}
+
+_Paint = Callable[[str, str], str]
+"""Text and style -> styled text."""
+
+
+def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
+    """Print errors and warnings on standard error, with their number."""
+    if diagnostics:
+        text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
+        print_aside(text.rstrip("\n"))
+
+
+class Complaints:
+    """Errors about many inputs: the first of each kind shown, others counted."""
+
+    def __init__(self, most: int = 10) -> None:
+        self._most = most
+        self._seen: Counter[str] = Counter()
+
+    def add(self, error: RulecError) -> None:
+        """Show an error, or count it after many of its kind."""
+        for diagnostic in error.diagnostics:
+            self._seen[diagnostic.code] += 1
+            if self._seen[diagnostic.code] <= self._most:
+                print_diagnostics([diagnostic], summary=False)
+
+    def close(self) -> None:
+        """Say how many have not been shown."""
+        for code, count in self._seen.items():
+            if count > self._most:
+                print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
 
 
 def render_diagnostics(
@@ -19,26 +55,14 @@ def render_diagnostics(
     """All diagnostics and a line that counts them; empty text for none.
 
     Control characters in messages and in the shown lines are escaped, so that a hostile file cannot
-    drive the terminal. ``color`` adds ANSI colours.
+    drive the terminal. ``color`` adds escape sequences of its own.
     """
     every = list(diagnostics)
     if not every:
         return ""
-    paint = _Paint(color)
+    paint = partial(styled, color=color)
     blocks = ["\n".join(_block(diagnostic, paint)) for diagnostic in every]
     return "\n\n".join([*blocks, _summary(every)] if summary else blocks) + "\n"
-
-
-class _Paint:
-    """Colours a piece of text, or leaves it alone."""
-
-    def __init__(self, color: bool) -> None:
-        self._color = color
-
-    def __call__(self, style: str, text: str) -> str:
-        if not self._color or not text:
-            return text
-        return f"{_COLORS.get(style, _BOLD)}{text}{_RESET}"
 
 
 def _summary(every: Sequence[Diagnostic]) -> str:
@@ -51,20 +75,20 @@ def _summary(every: Sequence[Diagnostic]) -> str:
 
 
 def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
-    head = paint(diagnostic.severity, f"{diagnostic.severity}[{diagnostic.code}]")
-    yield f"{head}{paint('bold', ': ' + visible(diagnostic.message))}"
+    severity = _STYLES[diagnostic.severity]
+    head = paint(f"{diagnostic.severity}[{diagnostic.code}]", severity)
+    yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
     width = _number_width(diagnostic)
     gutter = " " * width
     for position, (file, marks) in enumerate(_by_file(diagnostic)):
         arrow = "-->" if position == 0 else ":::"
-        yield f"{gutter}{paint('frame', arrow)} {visible(_address(file, marks[0]))}"
+        yield f"{gutter}{paint(arrow, _FRAME)} {visible(_address(file, marks[0]))}"
         shown = [mark for mark in marks if mark.place.line is not None and _worth_showing(mark)]
         if not shown:
             continue
-        yield paint("frame", f"{gutter} |")
-        for left, text, style in _lines(shown, diagnostic.severity):
-            number = paint("frame", f"{left:>{width}} |")
-            yield f"{number} {paint(style, text)}".rstrip()
+        yield paint(f"{gutter} |", _FRAME)
+        for left, text, style in _lines(shown, severity):
+            yield f"{paint(f'{left:>{width}} |', _FRAME)} {paint(text, style)}".rstrip()
     # Without a line there is no underlined place for it to stand beside.
     unplaced = (
         ""
@@ -74,7 +98,7 @@ def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
     notes = (("note", note) for note in diagnostic.notes)
     for word, text in (("note", unplaced), ("help", diagnostic.help), *notes):
         if text:
-            yield f"{gutter} {paint('frame', '=')} {paint('bold', word + ':')} {visible(text)}"
+            yield f"{gutter} {paint('=', _FRAME)} {paint(f'{word}:', 'bold')} {visible(text)}"
 
 
 def _worth_showing(mark: Underline) -> bool:
@@ -110,9 +134,9 @@ def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str
     for number, group in groupby(in_order, key=lambda mark: mark.place.line):
         assert number is not None, "places without a line are not shown"
         if before is not None and number > before + 1:
-            yield "", "...", "frame"
+            yield "", "...", _FRAME
         before = number
         texts = list(excerpt_lines(list(group)))
-        yield str(number), texts[0][0], "plain" if severity else ""
+        yield str(number), texts[0][0], "bold"
         for text, sign in texts[1:]:
-            yield "", text, severity if sign == "^" else "frame"
+            yield "", text, severity if sign == "^" else _FRAME

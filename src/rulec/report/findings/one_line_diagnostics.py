@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rulec.diagnostics import Diagnostic
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import visible
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rulec.diagnostics.source_text import SourceLocation
+from rulec.report.text.terminal_text import cell_width, visible
 
 MAX_WIDTH = 100
 """Terminal columns of a shown line; a longer one is cut around the place."""
 
 TAB = 4
 _LEAD = 30
-_REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,31 +22,6 @@ class Underline:
     place: SourceLocation
     words: str
     sign: str
-
-
-def visible(text: str) -> str:
-    """Escape control characters, line ends and reordering marks in a text."""
-    return text if text.isprintable() else "".join(_shown(character) for character in text)
-
-
-def _shown(character: str) -> str:
-    if character.isprintable():
-        return character
-    code = ord(character)
-    category = unicodedata.category(character)
-    if category in ("Cc", "Cs", "Zl", "Zp") or character in _REORDERING or character == "\ufeff":
-        return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
-    return character
-
-
-def _width(shown: str) -> int:
-    """Terminal columns: two for wide East Asian characters, none for combining ones."""
-    total = 0
-    for character in shown:
-        if unicodedata.category(character) in ("Mn", "Me", "Cf"):
-            continue
-        total += 2 if unicodedata.east_asian_width(character) in "WF" else 1
-    return total
 
 
 def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
@@ -60,9 +34,9 @@ def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
     for mark in marks:
         start = (mark.place.column or 1) - 1 - first
         end = _end_column(mark.place, len(excerpt)) - 1 - first
-        begin = len(before) + _width("".join(cells[: max(0, start)]))
+        begin = len(before) + cell_width("".join(cells[: max(0, start)]))
         inside = cells[max(0, start) : max(0, end)]
-        length = max(1, _width("".join(inside)))
+        length = max(1, cell_width("".join(inside)))
         words = f" {visible(mark.words)}" if mark.words else ""
         yield " " * begin + mark.sign * length + words, mark.sign
 
@@ -80,7 +54,7 @@ def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, 
     # A hostile line may have millions of characters: look only at what can be shown.
     start = max(0, column - MAX_WIDTH)
     cells = [_cell(one) for one in excerpt[start : column + MAX_WIDTH]]
-    widths = [_width(cell) for cell in cells]
+    widths = [cell_width(cell) for cell in cells]
     whole = start == 0 and len(excerpt) == len(cells)
     if whole and sum(widths) <= MAX_WIDTH:
         return cells, 0, False, False
@@ -101,4 +75,4 @@ def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, 
 
 
 def _cell(character: str) -> str:
-    return " " * TAB if character == "\t" else _shown(character)
+    return " " * TAB if character == "\t" else visible(character)

@@ -7,7 +7,7 @@ from itertools import groupby
 
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import table_lines, visible
 
 MOST_NAMED = 6
 """So many objects' relations fit on a line of text; JSON has them all."""
@@ -33,11 +33,7 @@ def cell_lines(graph: NavigationGraph, maneuver: Maneuver) -> list[str]:
             graph.layers, maneuver.nodes, envelope(graph, maneuver.nodes), strict=True
         )
     ]
-    widths = [max(len(row[column]) for row in rows) for column in range(4)]
-    return [
-        "   " + "  ".join(map(str.ljust, row, widths)).rstrip()  # as wide as the widest
-        for row in rows
-    ]
+    return table_lines(rows, indent="   ")
 
 
 def relations_in_time(graph: NavigationGraph, maneuver: Maneuver, objects: Collection[str]) -> str:

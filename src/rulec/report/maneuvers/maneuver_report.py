@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-import click
-
 from rulec.monitoring.verdict import Violation
 from rulec.planning import Maneuvers
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.maneuvers import (
     homotopy_classes,
     probabilities,
@@ -20,6 +17,7 @@ from rulec.report.maneuvers import (
 from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
 from rulec.report.maneuvers.maneuver_lines import cell_lines, in_a_line
 from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import styled, visible
 
 MOST_VIOLATIONS = 6
 """So many of the past's are named in text; JSON has them all."""
@@ -41,7 +39,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         *_scene(maneuvers),
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(maneuvers.traces)}",
-        f"satisfying  {click.style(shown_count(maneuvers.satisfying), bold=True)} by {by}",
+        f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
         *_violated_before(maneuvers.violated_before or ()),
         *_by_default(maneuvers.by_default),
         *probabilities.summary(graph.scenario),

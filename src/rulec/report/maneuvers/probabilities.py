@@ -9,8 +9,8 @@ from math import prod
 from rulec.planning.probability.alternative_predictions import AlternativeCounts
 from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 from rulec.planning.probability.violation_events import MOST_WORLDS
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import table_lines, visible
 from rulec.scenario import Scenario
 
 MOST_BINDINGS = 3
@@ -21,8 +21,7 @@ def lines(chances: RuleProbabilities) -> list[str]:
     """The probabilities that are below 1, a line each."""
     rows = [("nobody hits ego", _shown(chances.clear)), ("every hard rule", _shown(chances.hard))]
     rows += [(rule.rule.name, _of_rule(rule)) for rule in chances.rules if rule.kept != 1]
-    width = max(len(name) for name, _ in rows)
-    return [f"   {name:{width}}  {what}" for name, what in rows]
+    return table_lines(rows, indent="   ")
 
 
 def summary(scenario: Scenario) -> Iterator[str]:

@@ -8,6 +8,7 @@ from rulec.planning import Maneuvers, RulePruning
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.maneuvers.ranked_maneuvers import when_lost
 from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import table_lines
 
 HEAD = ("rule", "violated by", "alone by", "for example")
 
@@ -15,18 +16,7 @@ HEAD = ("rule", "violated by", "alone by", "for example")
 def table(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     """A line for each rule that prunes maneuvers; names of the others."""
     rows = [HEAD, *(_row(maneuvers, pruning) for pruning in prunings if pruning.violating)]
-    widths = [max(len(row[column]) for row in rows) for column in range(3)]
-    lines = [
-        "  ".join(
-            [
-                row[0].ljust(widths[0]),
-                row[1].rjust(widths[1]),
-                row[2].rjust(widths[2]),
-                row[3],
-            ]
-        )
-        for row in rows
-    ]
+    lines = table_lines(rows, right=(1, 2))
     idle = [pruning.rule.name for pruning in prunings if not pruning.violating]
     if idle:
         lines.append(f"violated by none: {', '.join(idle)}")

@@ -9,9 +9,9 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import Violation
 from rulec.planning import Maneuvers, RankedManeuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.maneuvers import maneuver_lines
 from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import visible
 
 MOST_VIOLATIONS = 20
 """So many are shown for a maneuver; JSON has them all."""

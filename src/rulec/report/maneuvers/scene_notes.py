@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from rulec.planning import Maneuvers
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import visible
 from rulec.scenario import Account
 
 

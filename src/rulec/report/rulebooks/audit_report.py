@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
-from textwrap import fill, wrap
-
-import click
+from textwrap import fill
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
+from rulec.report.text.terminal_text import fact_lines, styled, visible
 
 Compared = Mapping[str, AuditChanges]
 """Rulebook -> what has changed since an older audit of it."""
@@ -75,17 +73,16 @@ def law_of(audit: Audit) -> str:
 def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     title = f": {audit.title}" if audit.title else ""
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
-    blocks = [
-        click.style(visible(f"{audit.rulebook}{title}"), bold=True) + "\n" + _rows(rows, width)
-    ]
+    head = styled(visible(f"{audit.rulebook}{title}"), "bold")
+    blocks = ["\n".join([head, *fact_lines(rows, width)])]
     for kind, audit_findings in groupby(audit.findings, key=lambda finding: finding.kind):
         blocks.append(
-            f"{click.style(kind, bold=True)}: {KINDS[kind]}\n{_lines(list(audit_findings), width)}"
+            f"{styled(kind, 'bold')}: {KINDS[kind]}\n{_lines(list(audit_findings), width)}"
         )
     for book, articles in groupby(audit.articles, key=lambda article: article.book):
-        title = f"{click.style('provisions', bold=True)} cited in {book}, and the rules they are in"
+        title = f"{styled('provisions', 'bold')} cited in {book}, and the rules they are in"
         rows = [(article.cite, ", ".join(article.rules)) for article in articles]
-        blocks.append(f"{title}\n{_rows(rows, width)}")
+        blocks.append("\n".join([title, *fact_lines(rows, width)]))
     if compared is not None:
         blocks.append(_changes_as_text(compared))
     return "\n\n".join(blocks)
@@ -95,20 +92,8 @@ def _lines(audit_findings: Sequence[AuditFinding], width: int) -> str:
     if not any(audit_finding.note for audit_finding in audit_findings):
         names = ", ".join(visible(audit_finding.name) for audit_finding in audit_findings)
         return fill(names, width, initial_indent="  ", subsequent_indent="  ")
-    return _rows(
-        [(audit_finding.name, audit_finding.note) for audit_finding in audit_findings], width
-    )
-
-
-def _rows(rows: Sequence[tuple[str, str]], width: int) -> str:
-    """Two columns, the second one wrapped."""
-    column = max(len(visible(name)) for name, _ in rows)
-    lines: list[str] = []
-    for name, text in rows:
-        first, *rest = wrap(visible(text), max(20, width - column - 4)) or [""]
-        lines.append(f"  {visible(name):<{column}}  {first}".rstrip())
-        lines += [f"{'':{column + 4}}{line}" for line in rest]
-    return "\n".join(lines)
+    facts = [(audit_finding.name, audit_finding.note) for audit_finding in audit_findings]
+    return "\n".join(fact_lines(facts, width))
 
 
 def _changes_as_text(compared: AuditChanges) -> str:
@@ -117,7 +102,7 @@ def _changes_as_text(compared: AuditChanges) -> str:
         for sign, audit_findings in (("+", compared.appeared), ("-", compared.vanished))
         for audit_finding in audit_findings
     ]
-    title = click.style("changed", bold=True)
+    title = styled("changed", "bold")
     return f"{title}: + is new, - is gone\n" + "\n".join(
         f"  {line}" for line in lines or ["nothing"]
     )

@@ -6,12 +6,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-import click
-
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_display import TraceTable
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.trace_table_text import as_lines
 
 WIDTH = 100
@@ -50,7 +48,7 @@ def is_worth_a_block(pair: RulePair) -> bool:
 
 def _head(rulebook_diff: RulebookDiff) -> str:
     first, second = rulebook_diff.first, rulebook_diff.second
-    title = click.style(f"{first.name} compared to {second.name}", bold=True)
+    title = styled(f"{first.name} compared to {second.name}", "bold")
     days = f"the law of {first.at}"
     if first.at != second.at:
         days = f"{first.name} is the law of {first.at}, {second.name} that of {second.at}"
@@ -96,8 +94,8 @@ def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
 
 
 def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
-    name = click.style(pair.name, bold=True)
-    words = click.style(visible(verdict(pair, rulebook_diff)), fg=COLOURS[pair.relation])
+    name = styled(pair.name, "bold")
+    words = styled(visible(verdict(pair, rulebook_diff)), COLOURS[pair.relation])
     yield f"{name}: {words}"
     types = about_types(pair, rulebook_diff)
     if types:
@@ -129,7 +127,7 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
         f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
         for rule in rules
     ]
-    title = click.style(f"only in {has}", bold=True)
+    title = styled(f"only in {has}", "bold")
     return "\n".join([title, *lines])
 
 
@@ -139,7 +137,7 @@ def _settings(rulebook_diff: RulebookDiff) -> str:
         f"{setting.second} in {rulebook_diff.second.name}"
         for setting in rulebook_diff.settings
     ]
-    return "\n".join([click.style("set otherwise", bold=True), *map(visible, lines)])
+    return "\n".join([styled("set otherwise", "bold"), *map(visible, lines)])
 
 
 def only_why(one_sided: OneSided, lacks: str) -> str:

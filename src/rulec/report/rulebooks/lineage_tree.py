@@ -20,9 +20,9 @@ from rulec.analysis.lineage.rule_lineage import (
     LineageStep,
     RuleHistory,
 )
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.rule_provenance import provenance
+from rulec.report.text.terminal_text import visible
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 

@@ -6,16 +6,14 @@ from collections import Counter
 from collections.abc import Sequence
 from textwrap import fill
 
-import click
-
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.diff_csv import table as csv_table
 from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
+from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.rulebook.rulebook_model import Strength
 
 SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
@@ -114,13 +112,8 @@ def _as_text(comparison_matrix: ComparisonMatrix) -> str:
 
 
 def _columns(rows: Sequence[Sequence[str]]) -> str:
-    shown = [[visible(cell) for cell in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in shown
-    ]
-    return "\n".join([click.style(lines[0], bold=True), *lines[1:]])
+    head, *lines = table_lines([[visible(cell) for cell in row] for row in rows])
+    return "\n".join([styled(head, "bold"), *lines])
 
 
 def _letters(rule: SharedRule, names: Sequence[str]) -> list[str]:

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import wrap
 
-import click
-
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.constant_folding import fold_constants
 from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
@@ -18,9 +16,9 @@ from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.guard_text import GuardWording
+from rulec.report.text.terminal_text import fact_lines, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import WitnessTrace
@@ -136,14 +134,9 @@ def _formula(rule: Rule, width: int) -> list[str]:
 
 def head(rule: Rule, rulebook: str, width: int) -> str:
     """Title, origin and own sentence of the rule."""
-    lines = [click.style(_title(rule), bold=True)]
+    lines = [styled(_title(rule), "bold")]
     facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
-    column = max((len(name) for name, _ in facts), default=0)
-    for name, value in facts:
-        first, *rest = wrap(visible(value), max(20, width - column - 4)) or [""]
-        lines.append(f"{INDENT}{name:<{column}}  {first}")
-        lines += [f"{INDENT}{'':<{column}}  {line}" for line in rest]
-    return "\n".join(lines)
+    return "\n".join([*lines, *fact_lines(facts, width)])
 
 
 def _title(rule: Rule) -> str:
@@ -199,7 +192,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
         ("automaton", _indented(automaton.split("\n"))),
         ("shortest traces", _indented(list(_examples(page)))),
     ]
-    blocks = [f"{click.style(title, bold=True)}\n{text}" for title, text in sections]
+    blocks = [f"{styled(title, 'bold')}\n{text}" for title, text in sections]
     return "\n\n".join([head(page.rule, rulebook, width), *blocks])
 
 

@@ -13,8 +13,6 @@ def render(
     runs: Sequence[ExampleRun],
     covered: Sequence[Sequence[RuleCoverage]] | None,
     output_format: str,
-    *,
-    color: bool,
 ) -> str:
     """Write runs as ``full``, ``json`` or ``junit``, with coverage unless None."""
     match output_format:
@@ -29,4 +27,4 @@ def render(
 
             return as_junit(runs, covered)
         case _:
-            return as_text(runs, covered, color)
+            return as_text(runs, covered)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-
-import click
 
 from rulec.automata.thresholds import exact
 from rulec.book_tests.edge_coverage import RuleCoverage, UncoveredEdge, percent
@@ -15,7 +14,7 @@ from rulec.logic.constant_folding import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import render_diagnostics
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import styled, visible, wants_color
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
 
@@ -23,9 +22,7 @@ MOST_MISSING = 5
 """So many missing edges of a rule are shown; JSON has them all."""
 
 
-def as_text(
-    runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None, color: bool
-) -> str:
+def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
     """A line for each example, details of failures, and the numbers."""
     lines = [_line(outcome, run.rulebook.name) for run in runs for outcome in run.outcomes]
     problems = [
@@ -35,7 +32,8 @@ def as_text(
         if not outcome.passed
     ]
     if problems:
-        lines += ["", render_diagnostics(problems, color, summary=False).rstrip("\n"), ""]
+        details = render_diagnostics(problems, wants_color(sys.stdout), summary=False)
+        lines += ["", details.rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):
             lines += [
@@ -91,11 +89,7 @@ def shortcomings(
 
 
 def _line(example_outcome: ExampleOutcome, rulebook: str) -> str:
-    verdict = (
-        click.style("pass", fg="green")
-        if example_outcome.passed
-        else click.style("FAIL", fg="red", bold=True)
-    )
+    verdict = styled("pass", "green") if example_outcome.passed else styled("FAIL", "bold red")
     return f"{verdict}  {visible(f'{rulebook} {example_outcome.rule.name}/{example_outcome.name}')}"
 
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import sys
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import get_terminal_size
 from time import monotonic
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 import click
 
-from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
-from rulec.report.findings.diagnostics_text import render_diagnostics
+from rulec.report.text.terminal_text import wants_color
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -26,11 +23,6 @@ REFRESH_S = 0.2
 
 PAGE_WIDTH = 100
 """The width of a text that goes to no terminal."""
-
-
-def wants_color(stream: TextIO) -> bool:
-    """Test for a terminal without a request for plain text (no-color.org)."""
-    return stream.isatty() and not os.environ.get("NO_COLOR")
 
 
 def page_width() -> int:
@@ -59,35 +51,6 @@ def put_result(text: str, output: str | None) -> None:
     with written_whole(Path(output)) as stream:
         stream.write(f"{click.unstyle(text)}\n".encode())
     print_result(f"wrote {output}")
-
-
-def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
-    """Print errors and warnings on standard error, with their number."""
-    if not diagnostics:
-        return
-    text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
-    print_aside(text.rstrip("\n"))
-
-
-class Complaints:
-    """Errors about many inputs: the first of each kind shown, others counted."""
-
-    def __init__(self, most: int = 10) -> None:
-        self._most = most
-        self._seen: Counter[str] = Counter()
-
-    def add(self, error: RulecError) -> None:
-        """Show an error, or count it after many of its kind."""
-        for diagnostic in error.diagnostics:
-            self._seen[diagnostic.code] += 1
-            if self._seen[diagnostic.code] <= self._most:
-                print_diagnostics([diagnostic], summary=False)
-
-    def close(self) -> None:
-        """Say how many have not been shown."""
-        for code, count in self._seen.items():
-            if count > self._most:
-                print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
 
 
 def print_aside(text: str) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from textwrap import shorten
 from typing import Any
 
 from msgspec import UNSET, UnsetType
 
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.json_document import JsonDocument, as_indented
+from rulec.report.text.terminal_text import table_lines, visible
 
 LONGEST_TITLE = 90
 
@@ -35,18 +36,19 @@ class ListingDocument(JsonDocument, frozen=True, kw_only=True):
 
 def as_text(kinds: Mapping[str, Sequence[Listed]]) -> str:
     """Write a line for each name, below its kind if several."""
-    width = max((len(one.name) for listed in kinds.values() for one in listed), default=0)
+    rows = [
+        (visible(item.name), visible(shorten(item.title, LONGEST_TITLE, placeholder=" …")))
+        for listed in kinds.values()
+        for item in listed
+    ]
+    table = iter(table_lines(rows))
     blocks = []
     for kind, listed in kinds.items():
-        lines = [visible(f"{one.name:<{width}}  {_short(one.title)}").rstrip() for one in listed]
+        lines = list(islice(table, len(listed)))
         if len(kinds) > 1:
             lines = [kind, *(f"  {line}" for line in lines or ["none"])]
         blocks.append("\n".join(lines))
     return "\n".join(blocks)
-
-
-def _short(title: str) -> str:
-    return shorten(title, LONGEST_TITLE, placeholder=" …")
 
 
 def as_json(kinds: Mapping[str, Sequence[Listed]]) -> str:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import visible
 
 _SIGNS = re.compile(r"[\\`*_{}\[\]<>#|~!&]")
 _START = re.compile(r"\s*([-+=]|\d+(?=[.)]))")

@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from difflib import unified_diff
 
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import styled, visible
 
-_RESET = "\x1b[0m"
-_COLORS = {"---": "\x1b[1m", "+++": "\x1b[1m", "@@": "\x1b[36m", "-": "\x1b[31m", "+": "\x1b[32m"}
+_STYLES = {"---": "bold", "+++": "bold", "@@": "cyan", "-": "red", "+": "green"}
 
 
 def as_diff(name: str, before: str, after: str) -> str:
@@ -20,9 +19,9 @@ def as_diff(name: str, before: str, after: str) -> str:
     )
 
 
-def for_terminal(diff: str, *, color: bool) -> str:
+def for_terminal(diff: str) -> str:
     """The diff for display: no character can drive the terminal."""
-    return "".join(f"{_shown(line, color)}\n" for line in diff.removesuffix("\n").split("\n"))
+    return "\n".join(map(_shown, diff.removesuffix("\n").split("\n")))
 
 
 def _lines(text: str) -> list[str]:
@@ -30,7 +29,6 @@ def _lines(text: str) -> list[str]:
     return re.findall(r"[^\n]*\n|[^\n]+", text)
 
 
-def _shown(line: str, color: bool) -> str:
-    text = visible(line.replace("\t", "    "))
-    paint = next((_COLORS[start] for start in _COLORS if line.startswith(start)), "")
-    return f"{paint}{text}{_RESET}" if color and paint else text
+def _shown(line: str) -> str:
+    style = next((_STYLES[start] for start in _STYLES if line.startswith(start)), "")
+    return styled(visible(line.replace("\t", "    ")), style)

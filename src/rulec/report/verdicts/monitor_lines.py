@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import click
-
 from rulec.monitoring.online.four_valued import FourValued
 from rulec.monitoring.online.monitor_state import SoFar, VerdictChange
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import styled, visible
 
 MOST_CHANGES = 20
 """So many fit on a line; JSON has them all."""
 
-_COLORS: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
+_STYLES: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
 
 
 def as_text(so_far: SoFar) -> str:
@@ -21,7 +19,7 @@ def as_text(so_far: SoFar) -> str:
     changes = [visible(_change(change)) for change in so_far.changes[:MOST_CHANGES]]
     if len(so_far.changes) > len(changes):
         changes.append(f"and {len(so_far.changes) - len(changes):,} more")
-    verdict = click.style(so_far.verdict, fg=_COLORS.get(so_far.verdict))
+    verdict = styled(so_far.verdict, _STYLES.get(so_far.verdict, ""))
     return f"{so_far.state}: {'; '.join([verdict, *changes])}"
 
 

@@ -11,7 +11,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.violation_tally import ViolationTally
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import Verdict
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4
@@ -72,16 +72,16 @@ def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     defaults = judged.by_default(tally.words or frozenset())
     rules = [rule for rule in judged.rules.rules if rule.name in tally.first_s]
     titles = [shorten(_title(rule), LONGEST_RULE, placeholder=" …]") for rule in rules]
-    width = max(len("violated"), *map(len, titles))
-    yield ""
-    yield f"{'violated':<{width}}  {'':4}  {'drives':>7}  {'first':>8}  by"
+    rows = [("violated", "", " drives", "   first", "by")]
     for rule, title in zip(rules, titles, strict=True):
         times = tally.first_s[rule.name]
         who = sorted(times, key=lambda ego: times[ego])
-        first = f"{min(times.values()):g} s"
         share = f"{len(times)}/{tally.judged}"
-        row = f"{title:<{width}}  {rule.strength}  {share:>7}  {first:>8}  {_vehicles(who)}"
-        yield row
+        rows.append((title, rule.strength, share, f"{min(times.values()):g} s", _vehicles(who)))
+    heads, *lines = table_lines(rows, right=(2, 3))
+    yield from ("", heads)
+    for rule, line in zip(rules, lines, strict=True):
+        yield line
         if defaults[rule.name]:
             yield f"  by default: {_some(defaults[rule.name])}"
 

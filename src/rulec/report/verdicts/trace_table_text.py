@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 
 from rulec.analysis.trace_display import TraceTable
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts.violation_table import shown
 
 MOST_ROWS = 8
@@ -40,13 +40,9 @@ def left_out(table: TraceTable) -> list[str]:
 def as_lines(table: TraceTable, indent: str) -> list[str]:
     """The table with a line below its head."""
     whole = [("state", titles(table)), *rows(table)]
-    width = max(len(title) for title, _ in whole)
-    widths = [max(len(cells[n]) for _, cells in whole) for n in range(len(table.columns))]
-    lines = []
-    for title, cells in whole:
-        padded = "  ".join(cell.ljust(size) for cell, size in zip(cells, widths, strict=True))
-        lines.append(f"{indent}{title:<{width}}   {padded}".rstrip())
-    lines.insert(1, f"{indent}{'─' * (width + 1 + sum(widths) + 2 * len(widths))}")
+    lines = table_lines(
+        [(f"{title} ", *cells) for title, cells in whole], indent=indent, ruled=(0,)
+    )
     rest = left_out(table)
     words = f"by default: {', '.join(rest)}" if rest else ""
     return lines + [f"{indent}{line}" for line in wrap(words, WIDTH - len(indent))]

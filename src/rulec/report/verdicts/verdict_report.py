@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import click
-
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import Verdict, Violation
-from rulec.report.findings.source_excerpt import visible
+from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts import violation_table
 
 MOST_VIOLATIONS = 20
@@ -30,11 +28,11 @@ def as_text(
     ``every_part`` of it is wanted.
     """
     if not verdict.violations:
-        return f"{visible(verdict.trace)}: {click.style('satisfied', fg='green')}"
+        return f"{visible(verdict.trace)}: {styled('satisfied', 'green')}"
     word = (
-        click.style("satisfied, but for soft rules", fg="yellow")
+        styled("satisfied, but for soft rules", "yellow")
         if verdict.satisfied
-        else click.style("violated", fg="red")
+        else styled("violated", "red")
     )
     rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]

@@ -9,13 +9,11 @@ from itertools import groupby
 from operator import itemgetter
 from textwrap import wrap
 
-import click
-
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.text.guard_text import GuardWording, runs
+from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 
@@ -51,20 +49,15 @@ def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
     decisive = explanation.states.index(explanation.decisive)
     table = _table(explanation, decisive, every_part)
     columns = [
-        (head(explanation.states, places), *table.values[places[0]]) for places in table.columns
-    ]
-    widths = [max(len(cell) for cell in cells) for cells in columns]
-    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), WIDTH - len(INDENT))]
-    for row, title in enumerate(["state", *table.titles]):
-        cells = [
-            (click.style(cells[row], bold=True) if decisive in places else cells[row])
-            + " " * (width - len(cells[row]))
-            for places, cells, width in zip(table.columns, columns, widths, strict=True)
+        [
+            styled(cell, "bold" if decisive in places else "")
+            for cell in (head(explanation.states, places), *table.values[places[0]])
         ]
-        lines.append(f"{INDENT}{title.ljust(table.title_width)}   {'  '.join(cells)}".rstrip())
-        if row in (0, table.n_facts):
-            rule = "─" * (table.title_width + 1 + sum(widths) + 2 * len(widths))
-            lines.append(f"{INDENT}{rule}")
+        for places in table.columns
+    ]
+    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), WIDTH - len(INDENT))]
+    rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
+    lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
     return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation)])
 
 

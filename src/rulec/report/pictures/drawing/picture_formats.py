@@ -8,11 +8,11 @@ from html import escape
 from pathlib import Path
 from typing import Literal, cast, get_args
 
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.pictures.drawing.canvas import LINE_HEIGHT, MARGIN, Picture, paragraph, stacked
 from rulec.report.pictures.drawing.png import as_png
 from rulec.report.pictures.drawing.styles import as_css
 from rulec.report.pictures.drawing.svg import as_inline_svg, as_svg, styles_of
+from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "html"]
 

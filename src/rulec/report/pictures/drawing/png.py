@@ -12,10 +12,10 @@ from itertools import pairwise
 from typing import Any
 
 from rulec.diagnostics import SourceLocation
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import LIGHT, STYLES
+from rulec.report.text.terminal_text import visible
 
 DOTS_PER_PX = 2
 """So that it can be printed."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from html import escape
 
-from rulec.report.findings.source_excerpt import visible
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.styles import as_css
+from rulec.report.text.terminal_text import visible
 
 
 def as_svg(picture: Picture) -> str:

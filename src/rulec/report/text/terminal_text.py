@@ -1,0 +1,101 @@
+"""Text for terminals: without control characters, coloured, in columns."""
+
+from __future__ import annotations
+
+import os
+import sys
+import unicodedata
+from collections.abc import Sequence
+from textwrap import wrap
+from typing import TextIO
+
+from click import unstyle
+
+_REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
+
+
+def visible(text: str) -> str:
+    """Escape control characters, line ends and reordering marks in a text."""
+    return text if text.isprintable() else "".join(map(_shown, text))
+
+
+def _shown(character: str) -> str:
+    if character.isprintable():
+        return character
+    code = ord(character)
+    category = unicodedata.category(character)
+    if category in ("Cc", "Cs", "Zl", "Zp") or character in _REORDERING or character == "\ufeff":
+        return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
+    return character
+
+
+def wants_color(stream: TextIO) -> bool:
+    """Test for a terminal without a request for plain text (no-color.org)."""
+    return stream.isatty() and not os.environ.get("NO_COLOR")
+
+
+def styled(text: str, style: str, color: bool | None = None) -> str:
+    """A text in a style of rich's, such as ``bold red``.
+
+    ``color``: may there be escape sequences? As standard output wants it, if None.
+    """
+    if not text or not (wants_color(sys.stdout) if color is None else color):
+        return text
+    # 30 ms, and for terminals alone.
+    from rich.color import ColorSystem
+    from rich.style import Style
+
+    return Style.parse(style).render(text, color_system=ColorSystem.STANDARD)
+
+
+def cell_width(text: str) -> int:
+    """Columns of a terminal that a text takes, whatever its style."""
+    if text.isascii() and "\x1b" not in text:
+        return len(text)
+    # 7 ms, and seldom needed.
+    from rich.cells import cell_len
+
+    return cell_len(unstyle(text))
+
+
+def table_lines(
+    rows: Sequence[Sequence[str]],
+    *,
+    indent: str = "",
+    gap: str = "  ",
+    right: Sequence[int] = (),
+    ruled: Sequence[int] = (),
+) -> list[str]:
+    """Rows with aligned columns, a line each.
+
+    Args:
+        rows: equally many cells in each, which may be styled.
+        indent: what every line begins with.
+        gap: what stands between columns.
+        right: the columns that are aligned on the right.
+        ruled: the rows below which a line is drawn.
+    """
+    columns = list(zip(*rows, strict=True))
+    measured = columns if right or ruled else columns[:-1]
+    widths = [max(map(cell_width, column)) for column in measured]
+    rule = indent + "─" * (sum(widths) + len(gap) * (len(widths) - 1))
+    lines = []
+    for number, row in enumerate(rows):
+        cells = list(row)
+        for column, width in enumerate(widths):
+            blank = " " * (width - cell_width(cells[column]))
+            cells[column] = blank + row[column] if column in right else row[column] + blank
+        lines.append(f"{indent}{gap.join(cells)}".rstrip())
+        if number in ruled:
+            lines.append(rule)
+    return lines
+
+
+def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
+    """Names with texts beside them, which are broken to lines of a width."""
+    room = max(20, width - max((cell_width(visible(name)) for name, _ in facts), default=0) - 4)
+    rows = []
+    for name, text in facts:
+        first, *rest = wrap(visible(text), room) or [""]
+        rows += [(visible(name), first), *(("", line) for line in rest)]
+    return table_lines(rows, indent="  ")
