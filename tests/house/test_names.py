@@ -34,11 +34,8 @@ KEPT = {
 """At most ten of them stay, with their reasons."""
 
 REPEATED_MODULES = {
-    "formulas": "syntax/{tree,building,printer} are three passes over one tree",
-    "items": "likewise",
-    "rules": "likewise",
-    "files": "likewise; and rulec.files reads and writes them",
     "maneuvers": "cli/commands has a file for each verb",
+    "tree": "likewise",
     "verify": "likewise",
 }
 

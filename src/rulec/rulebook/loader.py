@@ -180,7 +180,7 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
     """
     asked = Source("<vocabulary>", name)
     vocabularies = Vocabularies(tuple(search_path))
-    use = tree.UseLine(tree.Name(name, Span(asked, 0, len(name))))
+    use = tree.UseLine(tree.Name(name, span=Span(asked, 0, len(name))))
     file = vocabularies.read(use, None)
     if file is None or vocabularies.mistakes:
         raise RulecError(vocabularies.mistakes)

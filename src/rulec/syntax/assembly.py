@@ -7,7 +7,7 @@ from typing import Final, Literal, TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.building import Clause, RuleHead
+from rulec.syntax.building.rules import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 from rulec.syntax.messages.whole_file import (
     EXPECTED_BEGINNING,

@@ -49,6 +49,16 @@ class ParseNode:
     start: int
     end: int
 
+    def leaves(self, kind: str) -> list[ParseLeaf]:
+        """The tokens of a kind directly below."""
+        return [leaf for leaf in self.children if leaf.kind == kind and isinstance(leaf, ParseLeaf)]
+
+    def branches(self, *kinds: str) -> list[ParseNode]:
+        """The matched rules of some kinds directly below."""
+        return [
+            node for node in self.children if node.kind in kinds and isinstance(node, ParseNode)
+        ]
+
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:

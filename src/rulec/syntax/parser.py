@@ -8,9 +8,10 @@ from types import ModuleType
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
-from rulec.syntax import building, tree
+from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
-from rulec.syntax.building import Clause, NodeValues
+from rulec.syntax.building import formulas, items, rules
+from rulec.syntax.building.values import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
@@ -73,7 +74,7 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     source = checked(Source(name, text))
     tokens = scan(source)
     reader = _Reader(source, tokens)
-    formula = reader.read("formula", Piece("formula", 0, len(tokens)), building.formula)
+    formula = reader.read("formula", Piece("formula", 0, len(tokens)), formulas.formula)
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula
@@ -138,7 +139,7 @@ class _Reader:
         return Span(self.source, token.start, token.end)
 
     def item(self, piece: Piece) -> Part:
-        return self.read("item", piece, building.item) or self._broken(piece)
+        return self.read("item", piece, items.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:
         words = self.tokens[piece.first : piece.last]
@@ -147,38 +148,36 @@ class _Reader:
         names_one = first in (*DECLARATION_WORDS, *_NAMING_PROVISIONS)
         nameless = names_one and (len(words) < 2 or words[1].text in _BEHIND_NAME)
         span = span_of(self.source, self.tokens, piece)
-        return tree.BrokenItem(frozenset(names), span, first, nameless)
+        return tree.BrokenItem(frozenset(names), first, nameless, span=span)
 
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
-        head = self.read("rule_head", pieces.head, building.rule_head)
+        span = span_of(self.source, self.tokens, pieces)
+        head_span = span_of(self.source, self.tokens, pieces.head)
+        head = self.read("rule_head", pieces.head, rules.rule_head)
         parts = [
             self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
             for part in pieces.body
         ]
         if head is None:
-            return tree.BrokenItem(
-                frozenset(), span_of(self.source, self.tokens, pieces.head), "rule"
-            )
-        span = span_of(self.source, self.tokens, pieces)
-        head_span = span_of(self.source, self.tokens, pieces.head)
+            return tree.BrokenItem(frozenset(), "rule", span=head_span)
         readable = pieces.head.then is None
         rule, mistakes = assemble_rule(head, parts, span, head_span, complete=readable)
         self.mistakes.extend(mistakes)
         return rule
 
-    def _clause(self, piece: Piece) -> tuple[str, Clause | None, Span]:
+    def _clause(self, piece: Piece) -> tuple[str, rules.Clause | None, Span]:
         keyword = self.tokens[piece.first].text
         span = self._first_token(piece)
         if piece.kind == "junk":
             self.mistakes.append(_messages().unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
-        return keyword, self.read("clause", piece, building.clause), span
+        return keyword, self.read("clause", piece, rules.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.ExampleItem | None:
-        head = self.read("example_head", pieces.head, building.example_head)
-        states = [self.read("state", piece, building.state) for piece in pieces.states]
+        head = self.read("example_head", pieces.head, rules.example_head)
+        states = [self.read("state", piece, rules.state) for piece in pieces.states]
         if head is None or not states or None in states:
             return None
         span = span_of(self.source, self.tokens, pieces)
         good = cast("list[tree.ExampleState]", states)
-        return tree.ExampleItem(head.accepts, tuple(good), head.label, head.objects, span)
+        return tree.ExampleItem(head.accepts, tuple(good), head.label, head.objects, span=span)

@@ -72,7 +72,7 @@ def _check_parameter(
         first = values[0].item.name
         scope = Scope(symbols, constants, {}, [])
         try:
-            parameter(tree.AtomUse(first, (), first.span), scope, number)
+            parameter(tree.AtomUse(first, span=first.span), scope, number)
         except TooDeepError:
             scope.report(rule_messages.too_deep("parameter", first))
         except TooLargeError:

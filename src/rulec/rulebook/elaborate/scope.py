@@ -145,7 +145,7 @@ class Scope:
                 return None
             if readings:
                 head, variable = readings[0]
-                return self._checked(use, head, (tree.Name(variable, use.span),))
+                return self._checked(use, head, (tree.Name(variable, span=use.span),))
         if not self.constants.may_know(name) and not self.symbols.may_know(name):
             types = {variable: bound.type for variable, bound in self.variables.items()}
             others = [*self.constants.names(), *self.relations]

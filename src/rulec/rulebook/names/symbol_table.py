@@ -152,7 +152,7 @@ def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
     for name in symbols.type_spans.keys() & symbols.spans.keys():
         spans = (symbols.type_spans[name], symbols.spans[name])
         first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
-        symbols.twice("name", tree.Name(name, again), first)
+        symbols.twice("name", tree.Name(name, span=again), first)
 
 
 def _note_suspects(symbols: SymbolTable, file: tree.File) -> None:

@@ -6,10 +6,8 @@ from typing import Literal
 
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import amount, formula, parameters
-from rulec.syntax.building.values import NodeValues, branches, leaf_of, leaves
-from rulec.syntax.grammar import ParseLeaf, ParseNode
-
-_PROVISIONS = ("option", "param", "set", "define", "drop", "soften", "silent")
+from rulec.syntax.building.values import NodeValues
+from rulec.syntax.grammar import ParseNode
 
 
 def item(
@@ -17,69 +15,95 @@ def item(
 ) -> tree.FileLine | tree.HeaderLine | tree.Declaration | tree.Definition:
     """A header line, a declaration or a provision."""
     span = values.span(node)
+    names = values.names(node)
     match node.kind:
         case "rulebook_line":
-            return tree.FileLine("rulebook", values.name(leaf_of(node, "BOOK")), span)
+            return tree.FileLine("rulebook", *values.names(node, "BOOK"), span=span)
         case "vocabulary_line":
-            return tree.FileLine("vocabulary", values.name(leaf_of(node, "NAME")), span)
+            return tree.FileLine("vocabulary", *names, span=span)
         case "title_line":
-            return tree.TitleLine(values.text(node), span)
+            return tree.TitleLine(values.text(node), span=span)
         case "law_line":
-            dates = leaves(node, "DATE")
-            return tree.LawLine(values.text(node), values.date(dates[0]) if dates else "", span)
+            date = "".join(map(values.date, node.leaves("DATE")))
+            return tree.LawLine(values.text(node), date, span=span)
         case "use_line":
-            return tree.UseLine(values.name(leaf_of(node, "NAME")), span)
+            return tree.UseLine(*names, span=span)
         case "extends_line":
-            return tree.ExtendsLine(values.name(leaf_of(node, "BOOK")), span)
+            return tree.ExtendsLine(*values.names(node, "BOOK"), span=span)
         case "traffic_line":
-            return tree.TrafficLine("left" if leaves(node, "LEFT") else "right", span)
+            return tree.TrafficLine("left" if node.leaves("LEFT") else "right", span=span)
         case "semantics_line":
-            return tree.SemanticsLine("finite" if leaves(node, "FINITE") else "stutter", span)
+            return tree.SemanticsLine("finite" if node.leaves("FINITE") else "stutter", span=span)
         case "step_line":
-            (number,) = branches(node, "number")
-            return tree.StepLine(amount(values, number), span)
+            (number,) = node.branches("number")
+            return tree.StepLine(amount(values, number), span=span)
         case "priority_line":
-            signs = [leaf for leaf in node.children if isinstance(leaf, ParseLeaf)]
-            relations: list[Literal[">", "="]] = [
-                ">" if sign.kind == "GREATER" else "="
-                for sign in signs
-                if sign.kind in ("GREATER", "EQUALS")
-            ]
-            return tree.PriorityLine(values.names(node), tuple(relations), span)
-        case kind if kind.removesuffix("_item") in _PROVISIONS:
-            return definition(values, node)
+            signs: dict[str, Literal[">", "="]] = {"GREATER": ">", "EQUALS": "="}
+            relations = tuple(signs[leaf.kind] for leaf in node.children if leaf.kind in signs)
+            return tree.PriorityLine(names, relations, span=span)
+        case "type_item":
+            return tree.TypeItem(*names, span=span)
+        case "enumeration_item":
+            (values_node,) = node.branches("names")
+            heads, listed = parameters(values, node), values.names(values_node)
+            return tree.EnumerationItem(names[0], heads, listed, *names[1:], span=span)
+        case "signal_item":
+            signals = tuple(
+                tree.SignalHead(
+                    values.names(head)[0], parameters(values, head), span=values.span(head)
+                )
+                for head in node.branches("signal")
+            )
+            true, false = node.leaves("TRUE"), node.leaves("FALSE")
+            return tree.SignalItem(signals, bool(true) if true or false else None, span=span)
+        case "quantity_item":
+            return _quantity(values, node)
+        case "fact_item":
+            return tree.FactItem(value_of(values, node), span=span)
         case _:
-            return declaration(values, node)
+            return _definition(values, node)
 
 
-def definition(values: NodeValues, node: ParseNode) -> tree.Definition:
+def _quantity(values: NodeValues, node: ParseNode) -> tree.QuantityItem:
+    (name,), (unit,) = values.names(node), node.leaves("UNIT")
+    numbers = [values.number(leaf) for leaf in node.leaves("NUMBER")]
+    default = -numbers[0] if node.leaves("MINUS") else numbers[0] if numbers else None
+    return tree.QuantityItem(
+        name=name,
+        parameters=parameters(values, node),
+        unit=unit.text,
+        default=default,
+        span=values.span(node),
+        unit_span=values.span(unit),
+    )
+
+
+def _definition(values: NodeValues, node: ParseNode) -> tree.Definition:
     """Build an option, parameter or definition, or a change of one."""
     span = values.span(node)
     name, *others = values.names(node)
+    option = bool(node.leaves("ON"))
+    other = others[0] if others else None
     match node.kind:
         case "option_item":
-            return tree.OptionItem(name, bool(leaves(node, "ON")), span)
+            return tree.OptionItem(name, option, span=span)
         case "param_item":
-            dimension = others[0] if others else None
-            return tree.ParamItem(
-                name, dimension, value_of(values, node), _dates(values, node), span
-            )
+            value, dates = value_of(values, node), _dates(values, node)
+            return tree.ParamItem(name, other, value, dates, span=span)
+        case "set_item" if option or node.leaves("OFF"):
+            return tree.SetItem(name, option, span=span)
         case "set_item":
-            value = bool(leaves(node, "ON"))
-            if leaves(node, "ON") or leaves(node, "OFF"):
-                return tree.SetItem(name, value, None, span)
-            return tree.SetItem(name, value_of(values, node), _dates(values, node), span)
+            return tree.SetItem(name, value_of(values, node), _dates(values, node), span=span)
         case "define_item":
-            body, again = value_of(values, node), bool(leaves(node, "REDEFINE"))
-            return tree.DefineItem(name, parameters(values, node), body, again, span)
+            body, again = value_of(values, node), bool(node.leaves("REDEFINE"))
+            return tree.DefineItem(name, parameters(values, node), body, again, span=span)
         case "drop_item":
-            return tree.DropItem(name, values.text(node), span)
+            return tree.DropItem(name, values.text(node), span=span)
         case "soften_item":
-            because = values.text(node) if leaves(node, "STRING") else None
-            level = others[0] if others else None
-            return tree.SoftenItem(name, level, weight(values, node), because, span)
+            because = values.text(node) if node.leaves("STRING") else None
+            return tree.SoftenItem(name, other, weight(values, node), because, span=span)
         case _:
-            return tree.SilentItem(name, values.text(node), span)
+            return tree.SilentItem(name, values.text(node), span=span)
 
 
 def value_of(values: NodeValues, node: ParseNode) -> tree.Formula:
@@ -93,59 +117,19 @@ def value_of(values: NodeValues, node: ParseNode) -> tree.Formula:
 
 
 def _dates(values: NodeValues, node: ParseNode) -> tree.InForce | None:
-    result = branches(node, "in_force")
-    return in_force(values, result[0]) if result else None
+    return next((in_force(values, dates) for dates in node.branches("in_force")), None)
 
 
 def in_force(values: NodeValues, node: ParseNode) -> tree.InForce:
     """``in force from DATE until DATE``."""
-    dates = [values.date(leaf) for leaf in leaves(node, "DATE")]
-    since = dates.pop(0) if leaves(node, "FROM") else ""
-    return tree.InForce(since, dates[0] if dates else "", values.span(node))
+    dates = [values.date(leaf) for leaf in node.leaves("DATE")]
+    since = dates.pop(0) if node.leaves("FROM") else ""
+    return tree.InForce(since, *dates, span=values.span(node))
 
 
 def weight(values: NodeValues, node: ParseNode) -> tree.NumberLiteral | None:
     """The number behind ``weight``, if there is one."""
-    numbers = leaves(node, "NUMBER")
-    if not numbers:
-        return None
-    values.number(numbers[0])
-    return tree.NumberLiteral(numbers[0].text, "", values.span(numbers[0]))
-
-
-def declaration(values: NodeValues, node: ParseNode) -> tree.Declaration:
-    """A declaration."""
-    span = values.span(node)
-    names = values.names(node)
-    match node.kind:
-        case "type_item":
-            return tree.TypeItem(names[0], names[1] if len(names) > 1 else None, span)
-        case "enumeration_item":
-            (listed,) = branches(node, "names")
-            default = names[1] if len(names) > 1 else None
-            return tree.EnumerationItem(
-                names[0], parameters(values, node), values.names(listed), default, span
-            )
-        case "quantity_item":
-            numbers = leaves(node, "NUMBER")
-            number = values.number(numbers[0]) if numbers else None
-            if number is not None and leaves(node, "MINUS"):
-                number = -number
-            unit = leaf_of(node, "UNIT")
-            return tree.QuantityItem(
-                name=names[0],
-                parameters=parameters(values, node),
-                unit=unit.text,
-                default=number,
-                span=span,
-                unit_span=values.span(unit),
-            )
-        case "fact_item":
-            return tree.FactItem(value_of(values, node), span)
-        case _:
-            signals = tuple(
-                tree.SignalHead(values.names(head)[0], parameters(values, head), values.span(head))
-                for head in branches(node, "signal")
-            )
-            true, false = leaves(node, "TRUE"), leaves(node, "FALSE")
-            return tree.SignalItem(signals, bool(true) if true or false else None, span)
+    for number in node.leaves("NUMBER"):
+        values.number(number)
+        return tree.NumberLiteral(number.text, span=values.span(number))
+    return None

@@ -8,7 +8,7 @@ from typing import Literal
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import amount, atom, parameters
 from rulec.syntax.building.items import in_force, value_of, weight
-from rulec.syntax.building.values import NodeValues, branches, leaves
+from rulec.syntax.building.values import NodeValues
 from rulec.syntax.grammar import ParseLeaf, ParseNode
 
 _SCOPES: dict[str, tree.Scope] = {
@@ -48,30 +48,27 @@ Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
 def rule_head(values: NodeValues, node: ParseNode) -> RuleHead:
     """A rule's head."""
     name, *level = values.names(node)
-    hard, soft = leaves(node, "HARD"), leaves(node, "SOFT")
     return RuleHead(
-        strength="hard" if hard else "soft" if soft else None,
+        strength="hard" if node.leaves("HARD") else "soft" if node.leaves("SOFT") else None,
         name=name,
         variables=parameters(values, node),
         level=level[0] if level else None,
         weight=weight(values, node),
-        override=bool(leaves(node, "OVERRIDE")),
+        override=bool(node.leaves("OVERRIDE")),
     )
 
 
 def clause(values: NodeValues, node: ParseNode) -> Clause:
     """The value of a clause."""
+    last = node.children[-1]
     match node.kind:
         case "require_clause" | "when_clause":
             return value_of(values, node)
         case "unless_clause":
-            *_, last = node.children
-            scope = None
-            if isinstance(last, ParseLeaf):
-                scope = _SCOPES[last.kind]
-            return tree.Unless(value_of(values, node), scope, values.span(node))
+            scope = _SCOPES[last.kind] if isinstance(last, ParseLeaf) else None
+            return tree.Unless(value_of(values, node), scope, span=values.span(node))
         case "certainty_clause":
-            return node.children[1].text if isinstance(node.children[1], ParseLeaf) else ""
+            return last.text if isinstance(last, ParseLeaf) else ""
         case "in_force":
             return in_force(values, node)
         case _:
@@ -80,21 +77,22 @@ def clause(values: NodeValues, node: ParseNode) -> Clause:
 
 def example_head(values: NodeValues, node: ParseNode) -> ExampleHead:
     """An example's head."""
-    label = values.text(node).value if leaves(node, "STRING") else ""
-    return ExampleHead(bool(leaves(node, "ACCEPT")), label, parameters(values, node))
+    label = values.text(node).value if node.leaves("STRING") else ""
+    return ExampleHead(bool(node.leaves("ACCEPT")), label, parameters(values, node))
 
 
 def state(values: NodeValues, node: ParseNode) -> tree.ExampleState:
     """A state of an example."""
-    literals = tuple(_literal(values, branch) for branch in branches(node, "literal"))
-    return tree.ExampleState(literals, values.span(node))
+    literals = tuple(_literal(values, branch) for branch in node.branches("literal"))
+    return tree.ExampleState(literals, span=values.span(node))
 
 
 def _literal(values: NodeValues, node: ParseNode) -> tree.StateLiteral:
-    (use,) = branches(node, "atom")
+    (use,) = node.branches("atom")
     value: tree.NumberLiteral | tree.Minus | None = None
-    for number in branches(node, "number"):
+    for number in node.branches("number"):
         value = amount(values, number)
-        if leaves(node, "MINUS"):
-            value = tree.Minus(value, value.span)
-    return tree.StateLiteral(atom(values, use), bool(leaves(node, "NOT")), value, values.span(node))
+        if node.leaves("MINUS"):
+            value = tree.Minus(value, span=value.span)
+    negated = bool(node.leaves("NOT"))
+    return tree.StateLiteral(atom(values, use), negated, value, span=values.span(node))

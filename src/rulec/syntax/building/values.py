@@ -28,18 +28,13 @@ class NodeValues:
         """The characters of a node."""
         return Span(self.source, node.start, node.end)
 
-    def name(self, leaf: ParseLeaf) -> tree.Name:
-        """An identifier."""
-        return tree.Name(leaf.text, self.span(leaf))
-
-    def names(self, node: ParseNode) -> tuple[tree.Name, ...]:
+    def names(self, node: ParseNode, kind: str = "NAME") -> tuple[tree.Name, ...]:
         """The identifiers directly below a node."""
-        return tuple(self.name(leaf) for leaf in leaves(node, "NAME"))
+        return tuple(tree.Name(leaf.text, span=self.span(leaf)) for leaf in node.leaves(kind))
 
     def text(self, node: ParseNode) -> tree.Text:
         """The node's text in quotes, its escapes and characters checked."""
-        leaf = leaf_of(node, "STRING")
-        span = self.span(leaf)
+        leaf = node.leaves("STRING")[0]
         value: list[str] = []
         characters = enumerate(leaf.text[1:-1], leaf.start + 1)
         for position, character in characters:
@@ -54,7 +49,7 @@ class NodeValues:
                 self.mistakes.append(control_character(place))
             else:
                 value.append(character)
-        return tree.Text("".join(value), span)
+        return tree.Text("".join(value), span=self.span(leaf))
 
     def date(self, leaf: ParseLeaf) -> str:
         """ISO text of a date that exists."""
@@ -70,18 +65,3 @@ class NodeValues:
             self.mistakes.append(number_too_large(self.span(leaf)))
             return 0.0
         return number
-
-
-def leaves(node: ParseNode, kind: str) -> list[ParseLeaf]:
-    """The tokens of a kind directly below a node."""
-    return [child for child in node.children if isinstance(child, ParseLeaf) and child.kind == kind]
-
-
-def leaf_of(node: ParseNode, kind: str) -> ParseLeaf:
-    """The first of these; there must be one."""
-    return leaves(node, kind)[0]
-
-
-def branches(node: ParseNode, kind: str) -> list[ParseNode]:
-    """The matched rules of a kind directly below a node."""
-    return [child for child in node.children if isinstance(child, ParseNode) and child.kind == kind]
