@@ -6,7 +6,7 @@ import pytest
 from lark import Lark
 
 from rulec.resources import grammar_file
-from rulec.syntax.messages.expectations import in_words
+from rulec.syntax.messages.parse_context import in_words
 
 GRAMMAR = Lark(
     grammar_file("rulec.lark").read_text(encoding="utf-8"),

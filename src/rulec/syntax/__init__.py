@@ -4,7 +4,7 @@ The way through stands in the README beside this file.
 """
 
 from rulec.syntax.parser import parse, parse_formula
-from rulec.syntax.source_decoding import decode
+from rulec.syntax.scanner import decode
 from rulec.syntax.tree_printer import print_formula
 
 __all__ = ["decode", "parse", "parse_formula", "print_formula"]

@@ -9,13 +9,7 @@ from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
 from rulec.syntax.building.rules import Clause, RuleHead
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
-from rulec.syntax.messages.whole_file import (
-    EXPECTED_BEGINNING,
-    HOW_TO_BEGIN,
-    MISPLACED_LINE,
-    MISSING_PART,
-    given_twice,
-)
+from rulec.syntax.messages import whole_file
 
 Said = tuple[str, Clause | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
@@ -43,7 +37,7 @@ def assemble_rule(
             first = said.setdefault(part[0], part)
             if first is not part and part[0] != "unless":
                 what = "in force" if part[0] == "in" else part[0]
-                mistakes.append(given_twice(f"`{what}`", part[2], first[2]))
+                mistakes.append(whole_file.given_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
     if "require" not in said and complete and not head.override:
@@ -101,7 +95,9 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
         mistakes += _not_for_a_vocabulary(parts)
     else:
         for word, lines in once.items():
-            mistakes += [given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]]
+            mistakes += [
+                whole_file.given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]
+            ]
         mistakes += _used_twice(parts)
         said = {mistake.place for mistake in mistakes}
         mistakes += [diagnostic for diagnostic in _misplaced(parts) if diagnostic.place not in said]
@@ -154,7 +150,7 @@ def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:
         if isinstance(part, tree.UseLine):
             name = part.name.text
             if name in first:
-                yield given_twice(f"`use {name}`", part.span, first[name])
+                yield whole_file.given_twice(f"`use {name}`", part.span, first[name])
             first.setdefault(name, part.span)
 
 
@@ -163,7 +159,7 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     item: Part | None = None
     for part in parts[1:]:
         if isinstance(part, tree.FileLine):
-            yield MISPLACED_LINE.at(
+            yield whole_file.MISPLACED_LINE.at(
                 part.span,
                 f"`{part.kind} {part.name.text}` begins a second file in this one",
                 help="move it to a file of its own",
@@ -172,7 +168,7 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
         elif not isinstance(part, _Header):
             item = item or (None if isinstance(part, tree.BrokenItem) else part)
         elif item is not None:
-            yield MISPLACED_LINE.at(
+            yield whole_file.MISPLACED_LINE.at(
                 part.span,
                 "header lines stand before declarations and rules",
                 expected="expected a declaration or a rule",
@@ -185,7 +181,7 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     # One that has none of its own offers something to those that extend it.
     enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Definition
     if not any(isinstance(part, enough) for part in parts):
-        yield MISSING_PART.at(
+        yield whole_file.MISSING_PART.at(
             _start(parts[0].span),
             "the rulebook has no rule",
             help="a rule is written `hard rule NAME { require … }`",
@@ -195,7 +191,7 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
         if isinstance(part, tree.RuleItem | tree.Definition | _Header):
-            yield MISPLACED_LINE.at(
+            yield whole_file.MISPLACED_LINE.at(
                 _start(part.span),
                 "a vocabulary holds declarations only",
                 expected="expected a declaration",
@@ -204,7 +200,7 @@ def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 
 def _no_require(head: RuleHead, span: Span) -> Diagnostic:
-    return MISSING_PART.at(
+    return whole_file.MISSING_PART.at(
         span,
         f"rule `{head.name.text}` requires nothing",
         expected="expected a `require` clause in this rule",
@@ -213,11 +209,11 @@ def _no_require(head: RuleHead, span: Span) -> Diagnostic:
 
 
 def _no_file_line(first: Part) -> Diagnostic:
-    return MISSING_PART.at(
+    return whole_file.MISSING_PART.at(
         _start(first.span),
         "the file does not say what it is",
-        expected=EXPECTED_BEGINNING,
-        help=HOW_TO_BEGIN,
+        expected=whole_file.EXPECTED_BEGINNING,
+        help=whole_file.HOW_TO_BEGIN,
     )
 
 

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.syntax.keywords import (
-    CLAUSE_WORDS,
-    ITEM_WORDS,
-    OPERATOR_LETTERS,
-    OPERATOR_WORDS,
-    RESERVED,
-)
+from rulec.syntax import keywords
 
 CONSTANTS: Final = ("false", "true")
-STRUCTURE_WORDS: Final = tuple(sorted(ITEM_WORDS))
-CLAUSES: Final = tuple(sorted(CLAUSE_WORDS))
-OPERATORS: Final = tuple(sorted(OPERATOR_WORDS | OPERATOR_LETTERS))
+STRUCTURE_WORDS: Final = tuple(sorted(keywords.ITEM_WORDS))
+CLAUSES: Final = tuple(sorted(keywords.CLAUSE_WORDS))
+OPERATORS: Final = tuple(sorted(keywords.OPERATOR_WORDS | keywords.OPERATOR_LETTERS))
 JOINING_WORDS: Final = tuple(
-    sorted(RESERVED - {*STRUCTURE_WORDS, *CLAUSES, *OPERATORS, *CONSTANTS})
+    sorted(keywords.RESERVED - {*STRUCTURE_WORDS, *CLAUSES, *OPERATORS, *CONSTANTS})
 )
 """The small words of headers and declarations: ``is one of``, ``default``, ``in``, …."""
 
@@ -28,7 +22,7 @@ DATE: Final = r"\b\d{4}-\d{2}-\d{2}\b"
 NUMBER: Final = r"(?<!\w)\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
 _UNIT: Final = r"[^\W\d]\w*(?:\^-?\d+)?(?:/[^\W\d]\w*(?:\^-?\d+)?)*"
 NUMBER_WITH_UNIT: Final = (
-    rf"({NUMBER})([^\S\n]*)([%°]|(?!(?:{'|'.join(sorted(RESERVED - {'step'}))})\b){_UNIT})"
+    rf"({NUMBER})([^\S\n]*)([%°]|(?!(?:{'|'.join(sorted(keywords.RESERVED - {'step'}))})\b){_UNIT})"
 )
 """A number and the unit behind it on the same line: groups 1 and 3."""
 RULE_NAME: Final = r"\b(rule)(\s+)([^\W\d]\w*)"

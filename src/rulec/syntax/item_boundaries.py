@@ -5,13 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rulec.diagnostics import nearest_name
-from rulec.syntax.keywords import (
-    CLAUSE_WORDS,
-    ITEM_WORDS,
-    OPERATOR_WORDS,
-    RESERVED,
-    RULE_WORDS,
-)
+from rulec.syntax import keywords
 from rulec.syntax.scanner import Token
 
 _COMPLETE_WORDS = frozenset(("true", "false", "throughout", "initially"))
@@ -60,7 +54,7 @@ class Landmarks:
         return (
             0 <= index < len(self.tokens)
             and self.tokens[index].kind == "word"
-            and self.tokens[index].text not in RESERVED
+            and self.tokens[index].text not in keywords.RESERVED
         )
 
     def _is_number(self, index: int) -> bool:
@@ -72,12 +66,12 @@ class Landmarks:
             return False
         token = self.tokens[index]
         if token.kind == "word":
-            return token.text in RESERVED and token.text not in _COMPLETE_WORDS
+            return token.text in keywords.RESERVED and token.text not in _COMPLETE_WORDS
         return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
 
     def begins_rule(self, index: int) -> bool:
         """``hard``, ``soft``, ``override``, ``rule``, or a misspelt word before ``rule``."""
-        if self.is_word(index, *RULE_WORDS, "override", "rule"):
+        if self.is_word(index, *keywords.RULE_WORDS, "override", "rule"):
             return True
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
@@ -87,9 +81,9 @@ class Landmarks:
         if token.kind != "word":
             return False
         follows_on = self.wants_more(index - 1) and not token.first
-        if token.text in ITEM_WORDS:
+        if token.text in keywords.ITEM_WORDS:
             return not follows_on and not self._is_part_of_item(index)
-        if token.text in RESERVED or self.goes_on(index):
+        if token.text in keywords.RESERVED or self.goes_on(index):
             return False
         if not self.wants_more(index - 1):
             return token.first or self._begins_enumeration(index, "one")
@@ -104,7 +98,7 @@ class Landmarks:
         token = self.tokens[index]
         if token.text == "rule":
             return not token.first or self._heads_a_rule(index - 1)
-        if token.text in RULE_WORDS:
+        if token.text in keywords.RULE_WORDS:
             return self.is_word(index - 1, "override")
         if token.text == "extends":
             # `type car extends vehicle` is a mistake about the type.
@@ -131,12 +125,12 @@ class Landmarks:
         glued = glued and not self.is_word(index + 1, "weight")
         if not glued or not self._in_formula(index - 1):
             return glued
-        return nearest_name(self.tokens[index].text, ITEM_WORDS) is not None
+        return nearest_name(self.tokens[index].text, keywords.ITEM_WORDS) is not None
 
     def _in_formula(self, index: int) -> bool:
         """Tell whether a formula may go on behind a token."""
         token = self.tokens[index]
-        return token.text in _FORMULA_SIGNS or self.is_word(index, *OPERATOR_WORDS)
+        return token.text in _FORMULA_SIGNS or self.is_word(index, *keywords.OPERATOR_WORDS)
 
     def begins_item_inside(self, index: int) -> bool:
         """Tell whether an item begins here although braces are still open.
@@ -148,15 +142,15 @@ class Landmarks:
         if token.kind != "word":
             return False
         if self.is_word(index + 1, "rule") and (self._heads_a_rule(index) or token.first):
-            return not self.is_word(index - 1, "override", *RULE_WORDS)
+            return not self.is_word(index - 1, "override", *keywords.RULE_WORDS)
         if not token.first or self._heads_a_rule(index - 1):
             return False
-        if token.text in ITEM_WORDS:
+        if token.text in keywords.ITEM_WORDS:
             return not self.wants_more(index - 1) or self.is_name(index + 1)
         return self._begins_enumeration(index)
 
     def _heads_a_rule(self, index: int) -> bool:
-        return self.is_word(index, *RULE_WORDS, "override", "drop", "soften")
+        return self.is_word(index, *keywords.RULE_WORDS, "override", "drop", "soften")
 
     def begins_misspelt(self, index: int) -> bool:
         """Tell whether a misspelt keyword begins a line here."""
@@ -168,7 +162,7 @@ class Landmarks:
     def begins_clause(self, index: int) -> bool:
         """Tell whether a clause begins at a token."""
         token = self.tokens[index]
-        if token.kind != "word" or token.text not in CLAUSE_WORDS:
+        if token.kind != "word" or token.text not in keywords.CLAUSE_WORDS:
             return self._begins_in_force(index)
         if token.first or not self.wants_more(index - 1):
             return True

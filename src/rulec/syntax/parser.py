@@ -15,14 +15,8 @@ from rulec.syntax.building.values import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
-from rulec.syntax.messages.whole_file import (
-    EMPTY_FILE,
-    EXPECTED_BEGINNING,
-    HOW_TO_BEGIN,
-    not_a_rulebook,
-)
-from rulec.syntax.scanner import Token, scan
-from rulec.syntax.source_decoding import checked
+from rulec.syntax.messages import whole_file
+from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
 
 MAX_PIECE = 10_000
@@ -48,8 +42,11 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     except RulecError as error:
         return _NOTHING, error.diagnostics
     if not tokens:
-        empty = EMPTY_FILE.at(
-            Span(source, 0, 0), "the file is empty", expected=EXPECTED_BEGINNING, help=HOW_TO_BEGIN
+        empty = whole_file.EMPTY_FILE.at(
+            Span(source, 0, 0),
+            "the file is empty",
+            expected=whole_file.EXPECTED_BEGINNING,
+            help=whole_file.HOW_TO_BEGIN,
         )
         return _NOTHING, (empty,)
     reader = _Reader(source, tokens)
@@ -59,7 +56,7 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         for part in splitter.split()
     ]
     if _is_something_else(parts):
-        return _NOTHING, (not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
+        return _NOTHING, (whole_file.not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
     file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))

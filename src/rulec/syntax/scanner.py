@@ -1,4 +1,4 @@
-"""Coarse scanner that never fails, for finding pieces of a file.
+"""From bytes to a text, and a coarse scanner that never fails, for finding pieces of it.
 
 It knows strings, comments and line starts; the grammar decides what the tokens mean.
 """
@@ -8,8 +8,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.file_messages import FILE_TOO_LARGE
+from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
 
 MAX_TOKENS = 1_000_000
 """Far above what a file of the permitted size holds, far below what would exhaust memory."""
@@ -29,6 +30,35 @@ _TOKEN = re.compile(
     """,
     re.VERBOSE,
 )
+
+
+def decode(name: str, data: bytes) -> Source:
+    """The text of a rulebook file; a byte order mark is dropped.
+
+    Raises:
+        RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
+    """
+    _check_size(name, len(data))
+    return decoded(name, data)
+
+
+def checked(source: Source) -> Source:
+    """The source, if it can be a rulebook's text.
+
+    Raises:
+        RulecError: too large, or it holds a null character.
+    """
+    _check_size(source.name, len(source.text))
+    return without_null(source)
+
+
+def _check_size(name: str, size: int) -> None:
+    if size > MAX_SOURCE_BYTES:
+        raise FILE_TOO_LARGE.error(
+            SourceLocation(name),
+            f"the file is too large: at most {MAX_SOURCE_BYTES:,} bytes are read",
+            help="split it into several rulebooks",
+        )
 
 
 class Token(NamedTuple):

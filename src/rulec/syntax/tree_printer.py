@@ -1,25 +1,11 @@
-"""Printing of formulas and clauses of the syntax tree.
-
-They have the fewest parentheses or those written.
-
-Reading what is printed gives the same tree back.
-"""
+"""Printing of formulas and clauses: reading them gives the same tree back."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Literal
 
-from rulec.syntax import tree
-from rulec.syntax.keywords import (
-    ARITHMETIC_PRECEDENCE,
-    COMPARISON_PRECEDENCE,
-    MINUS_PRECEDENCE,
-    PRECEDENCE,
-    RIGHT_ASSOCIATIVE,
-    SYMBOLS,
-    UNARY_PRECEDENCE,
-)
+from rulec.syntax import keywords, tree
 
 Style = Literal["words", "symbols", "written"]
 """How operators are spelled: ``written`` is as in the file, parentheses included."""
@@ -38,22 +24,22 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
             return f"{text} {unit}" if unit else text
         case tree.Prefix(operator, operand, bound):
             sign = _sign(operator, node.sign, style)
-            inside = _operand(operand, UNARY_PRECEDENCE, style)
+            inside = _operand(operand, keywords.UNARY_PRECEDENCE, style)
             return f"{sign}{_bound(bound)}{'' if sign == '!' else ' '}{inside}"
         case tree.Infix(operator, left, right, bound):
-            mine = PRECEDENCE[operator]
-            to_right = operator in RIGHT_ASSOCIATIVE
+            mine = keywords.PRECEDENCE[operator]
+            to_right = operator in keywords.RIGHT_ASSOCIATIVE
             first = _operand(left, mine + 1 if to_right else mine, style)
             second = _operand(right, mine if to_right else mine + 1, style)
             return f"{first} {_sign(operator, node.sign, style)}{_bound(bound)} {second}"
         case tree.Compare(relation, left, right):
-            beside = COMPARISON_PRECEDENCE + 1
+            beside = keywords.COMPARISON_PRECEDENCE + 1
             return f"{_operand(left, beside, style)} {relation} {_operand(right, beside, style)}"
         case tree.Arithmetic(operator, left, right):
-            mine = ARITHMETIC_PRECEDENCE[operator]
+            mine = keywords.ARITHMETIC_PRECEDENCE[operator]
             return f"{_operand(left, mine, style)} {operator} {_operand(right, mine + 1, style)}"
         case tree.Minus(operand):
-            return f"-{_operand(operand, MINUS_PRECEDENCE, style)}"
+            return f"-{_operand(operand, keywords.MINUS_PRECEDENCE, style)}"
         case tree.Conditional(value, condition, otherwise):
             parts = (_operand(value, 1, style), _operand(condition, 1, style))
             return f"{parts[0]} if {parts[1]} else {_operand(otherwise, 0, style)}"
@@ -73,53 +59,40 @@ def _precedence(node: tree.Formula) -> int:
         case tree.Conditional():
             return 0
         case tree.Infix():
-            return PRECEDENCE[node.operator]
+            return keywords.PRECEDENCE[node.operator]
         case tree.Prefix():
-            return UNARY_PRECEDENCE
+            return keywords.UNARY_PRECEDENCE
         case tree.Compare():
-            return COMPARISON_PRECEDENCE
+            return keywords.COMPARISON_PRECEDENCE
         case tree.Arithmetic():
-            return ARITHMETIC_PRECEDENCE[node.operator]
+            return keywords.ARITHMETIC_PRECEDENCE[node.operator]
         case tree.Minus():
-            return MINUS_PRECEDENCE
+            return keywords.MINUS_PRECEDENCE
         case _:
             return _INFINITE
 
 
-def _needs_parentheses(node: tree.Formula, least: int, style: Style) -> bool:
-    """Tell whether a node needs parentheses.
-
-    It binds less tightly than ``least``, or the file has parentheses there.
-    """
-    written = style == "written" and getattr(node, "grouped", False)
-    return written or _precedence(node) < least
-
-
 def _operand(node: tree.Formula, least: int, style: Style) -> str:
+    """Text in parentheses if it binds less tightly than ``least``, or the file has them there."""
+    written = style == "written" and isinstance(node, tree.Grouping) and node.grouped
     text = print_formula(node, style)
-    return f"({text})" if _needs_parentheses(node, least, style) else text
+    return f"({text})" if written or _precedence(node) < least else text
 
 
 def _sign(operator: str, sign: str, style: Style) -> str:
     if style == "written" and sign:
         # `weak   next` is one sign.
         return " ".join(sign.split())
-    return SYMBOLS[operator] if style == "symbols" else operator
+    return keywords.SYMBOLS[operator] if style == "symbols" else operator
 
 
 def _bound(bound: tree.BoundNode | None) -> str:
-    match bound:
-        case None:
-            return ""
-        case tree.BoundNode(low=None, high=high) if high is not None:
-            return f"[<= {print_formula(high)}]"
-        case tree.BoundNode(low=low, high=None) if low is not None:
-            return f"[>= {print_formula(low)}]"
-        case tree.BoundNode(low=low, high=high, exact=exact) if (
-            low is not None and high is not None
-        ):
-            return f"[{print_formula(low)}{'' if exact else f' .. {print_formula(high)}'}]"
-    raise ValueError("a bound has at least one side")
+    if bound is None:
+        return ""
+    ends = [print_formula(end) for end in (bound.low, bound.high) if end is not None]
+    if len(ends) == 1:
+        return f"[{'<=' if bound.low is None else '>='} {ends[0]}]"
+    return f"[{ends[0] if bound.exact else ' .. '.join(ends)}]"
 
 
 def print_atom(atom: tree.AtomUse) -> str:
@@ -134,19 +107,12 @@ def comma(names: Iterable[tree.Name]) -> str:
 
 def print_parameters(parameters: tuple[tree.Parameter, ...]) -> str:
     """Text of a parameter list with its parentheses; empty if none."""
-    if not parameters:
-        return ""
-    return f"({', '.join(map(print_parameter, parameters))})"
+    return f"({', '.join(map(print_parameter, parameters))})" if parameters else ""
 
 
 def print_parameter(parameter: tree.Parameter) -> str:
     """``name`` or ``name: type``."""
     return parameter.name.text + (f": {parameter.type.text}" if parameter.type is not None else "")
-
-
-def print_text(text: tree.Text) -> str:
-    """A text in its quotes."""
-    return quoted(text.value)
 
 
 def quoted(value: str) -> str:
@@ -169,10 +135,10 @@ def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, s
         for clause in rule.unless
     )
     clauses = [
-        ("cite", rule.cite and print_text(rule.cite)),
-        ("source", rule.source and print_text(rule.source)),
+        ("cite", rule.cite and quoted(rule.cite.value)),
+        ("source", rule.source and quoted(rule.source.value)),
         ("certainty", rule.certainty),
-        ("says", rule.says and print_text(rule.says)),
+        ("says", rule.says and quoted(rule.says.value)),
         ("in", rule.in_force and print_in_force(rule.in_force).removeprefix("in ")),
         ("when", rule.when and print_whole(rule.when, style)),
         ("require", rule.require and print_whole(rule.require, style)),

@@ -10,7 +10,6 @@ from rulec.syntax.tree_printer import (
     print_formula,
     print_in_force,
     print_parameters,
-    print_text,
     print_whole,
     quoted,
 )
@@ -59,9 +58,9 @@ def print_header_line(line):
     """A header line."""
     match line:
         case tree.TitleLine(text):
-            return f"title {print_text(text)}"
+            return f"title {quoted(text.value)}"
         case tree.LawLine(text, as_of):
-            return f"law {print_text(text)}" + (f" as of {as_of}" if as_of else "")
+            return f"law {quoted(text.value)}" + (f" as of {as_of}" if as_of else "")
         case tree.UseLine(name):
             return f"use {name.text}"
         case tree.ExtendsLine(name):
@@ -119,13 +118,13 @@ def print_provision(item, style):
             head = name.text + print_parameters(parameters)
             return f"{word} {head} = {print_formula(body, style)}"
         case tree.DropItem(name, because):
-            return f"drop rule {name.text} because {print_text(because)}"
+            return f"drop rule {name.text} because {quoted(because.value)}"
         case tree.SoftenItem(name, level, weight, because):
             place = print_place(level, weight)
-            why = f" because {print_text(because)}" if because else ""
+            why = f" because {quoted(because.value)}" if because else ""
             return f"soften rule {name.text}{place}{why}"
         case tree.SilentItem(name, because):
-            return f"silent on {name.text} because {print_text(because)}"
+            return f"silent on {name.text} because {quoted(because.value)}"
 
 
 def _dates(in_force):

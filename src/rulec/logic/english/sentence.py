@@ -12,15 +12,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 
 from rulec.logic import formula as ltl
-from rulec.logic.english.atom_phrases import (
-    atom_in_english,
-    comparison_in_english,
-    counted,
-    lasting,
-    listed,
-    single_count,
-    spoken,
-)
+from rulec.logic.english import atom_phrases
 from rulec.logic.english.temporal_phrases import adverb, pattern_of
 
 MOST_IN_A_LINE = 3
@@ -110,8 +102,8 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
     named = []
     for number, (name, of_type) in enumerate(variables):
         other = any(related(of_type, earlier) for _, earlier in variables[:number])
-        named.append(f"every {'other ' if other else ''}{spoken(of_type)} {name}")
-    return f"for {listed(named)}: "
+        named.append(f"every {'other ' if other else ''}{atom_phrases.spoken(of_type)} {name}")
+    return f"for {atom_phrases.listed(named)}: "
 
 
 def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
@@ -142,8 +134,8 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
             return _between("either {} or {}, but not both", left, right, inside=inside)
         case ltl.Binary(operator, left, right, bound):
             return _between(pattern_of(operator, bound, inside=inside), left, right, inside=True)
-        case ltl.Comparison() if (count := single_count(formula)) is not None:
-            there_are = counted(formula, count)
+        case ltl.Comparison() if (count := atom_phrases.single_count(formula)) is not None:
+            there_are = atom_phrases.counted(formula, count)
             lead = there_are if inside else f"at the start {there_are}"
             return _after(lead, phrase(count.body, inside=True))
     clause = _clause(formula, holds=True)
@@ -152,15 +144,15 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
 
 
 def _counts(formula: ltl.Formula) -> bool:
-    return isinstance(formula, ltl.Comparison) and single_count(formula) is not None
+    return isinstance(formula, ltl.Comparison) and atom_phrases.single_count(formula) is not None
 
 
 def _clause(formula: ltl.Formula, *, holds: bool) -> str | None:
     match formula:
         case ltl.Atom():
-            return atom_in_english(formula, holds=holds)
+            return atom_phrases.atom_in_english(formula, holds=holds)
         case ltl.Comparison():
-            return comparison_in_english(formula, holds=holds)
+            return atom_phrases.comparison_in_english(formula, holds=holds)
         case ltl.Constant(value):
             verb = "holds" if holds else "does not hold"
             return f"“{'true' if value else 'false'}” {verb}"
@@ -250,7 +242,7 @@ def _phases(formula: ltl.Binary) -> Phrase:
     phases: list[tuple[Phrase, str]] = []
     rest: ltl.Formula = formula
     while isinstance(rest, ltl.Binary) and rest.operator is ltl.BinaryOperator.THEN:
-        lasts = "" if rest.bound is None else f" {lasting(rest.bound)}"
+        lasts = "" if rest.bound is None else f" {atom_phrases.lasting(rest.bound)}"
         phases.append((phrase(rest.left, inside=True), lasts))
         rest = rest.right
     phases.append((phrase(rest, inside=True), ""))

@@ -9,12 +9,7 @@ from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.literals import misleads, why_not_a_day
-from rulec.syntax.messages.literal_values import (
-    control_character,
-    no_such_date,
-    number_too_large,
-    unknown_escape,
-)
+from rulec.syntax.messages import literal_values
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +37,11 @@ class NodeValues:
                 _, escaped = next(characters)
                 if escaped not in '"\\':
                     place = Span(self.source, position, position + 2)
-                    self.mistakes.append(unknown_escape(place, escaped))
+                    self.mistakes.append(literal_values.unknown_escape(place, escaped))
                 value.append(escaped)
             elif misleads(character):
                 place = Span(self.source, position, position + 1)
-                self.mistakes.append(control_character(place))
+                self.mistakes.append(literal_values.control_character(place))
             else:
                 value.append(character)
         return tree.Text("".join(value), span=self.span(leaf))
@@ -55,13 +50,13 @@ class NodeValues:
         """ISO text of a date that exists."""
         wrong = why_not_a_day(leaf.text)
         if wrong:
-            self.mistakes.append(no_such_date(self.span(leaf), leaf.text, wrong))
+            self.mistakes.append(literal_values.no_such_date(self.span(leaf), leaf.text, wrong))
         return "" if wrong else leaf.text
 
     def number(self, leaf: ParseLeaf) -> float:
         """A finite number; 0 in place of one that is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
-            self.mistakes.append(number_too_large(self.span(leaf)))
+            self.mistakes.append(literal_values.number_too_large(self.span(leaf)))
             return 0.0
         return number

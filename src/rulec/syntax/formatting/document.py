@@ -138,7 +138,7 @@ class _Layout:
                 case Nest(deeper, inside):
                     self.todo.append((indent + deeper, flat, inside))
                 case GroupDocument(inside, forced):
-                    fits = flat or (not forced and self._fits(indent, inside))
+                    fits = flat or (not forced and self._fits(inside))
                     self.todo.append((indent, fits, inside))
                 case Break(text):
                     if flat:
@@ -146,7 +146,7 @@ class _Layout:
                     else:
                         self._line(indent)
                 case Fill(deeper):
-                    if flat or self._next_fits():
+                    if flat or self._fits(" "):
                         self.rows[-1].code += " "
                     else:
                         self._line(indent + deeper)
@@ -161,13 +161,10 @@ class _Layout:
     def _line(self, indent: int) -> None:
         self.rows.append(LaidOutLine(" " * min(indent, _DEEPEST)))
 
-    def _room(self) -> int:
-        return self.width - len(self.rows[-1].code)
-
-    def _fits(self, indent: int, document: Document) -> bool:
-        """Tell whether a document and its inseparable successors fit this line."""
-        room = self._room()
-        inner: _Todo = [(indent, True, document)]
+    def _fits(self, *documents: Document) -> bool:
+        """Tell whether documents and their inseparable successors fit this line."""
+        room = self.width - len(self.rows[-1].code)
+        inner: _Todo = [(0, True, document) for document in reversed(documents)]
         behind = len(self.todo)
         while room >= 0:
             if inner:
@@ -184,39 +181,10 @@ class _Layout:
                     inner.extend((0, flat, part) for part in reversed(parts))
                 case Nest(inside=inside) | GroupDocument(inside=inside):
                     inner.append((0, flat, inside))
-                case Break(text):
-                    if not flat:
-                        return True
+                case Break(text) if flat:
                     room -= len(text)
-                case Fill():
-                    if not flat:
-                        return True
+                case Fill() if flat:
                     room -= 1
-                case LineEnd():
-                    return True
-        return False
-
-    def _next_fits(self) -> bool:
-        """Tell whether the text up to the next line end fits."""
-        room = self._room() - 1
-        inner: list[Document] = []
-        behind = len(self.todo)
-        while room >= 0:
-            if inner:
-                one = inner.pop()
-            elif behind:
-                behind -= 1
-                flat, one = self.todo[behind][1:]
-                assert not flat, "a group on one line does not ask"
-            else:
-                return True
-            match one:
-                case str():
-                    room -= len(one)
-                case Concatenation(parts):
-                    inner.extend(reversed(parts))
-                case Nest(inside=inside) | GroupDocument(inside=inside):
-                    inner.append(inside)
                 case Break() | Fill() | LineEnd():
                     return True
         return False

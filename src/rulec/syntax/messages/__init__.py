@@ -1,5 +1,5 @@
 """Messages about syntax errors, one for each mistake.
 
-``mismatch`` speaks where a piece cannot be parsed: ``expectations`` turns what the grammar would
-have taken into words, ``advice`` guesses what was meant. ``structure`` speaks about braces.
+``mismatch`` speaks where a piece cannot be parsed, ``advice`` guesses what was meant, ``structure``
+speaks about braces.
 """

@@ -7,12 +7,11 @@ from typing import Final
 
 from rulec.diagnostics import did_you_mean
 from rulec.syntax.keywords import CONTEXTUAL, ITEM_WORDS, RESERVED, UNARY_OPERATORS
-from rulec.syntax.messages.expectations import spelling
 from rulec.syntax.messages.in_bounds import advise_on_bound
 from rulec.syntax.messages.in_formulas import advise_on_aggregate, advise_on_formula
 from rulec.syntax.messages.in_items import FORMS, advise_on_item
 from rulec.syntax.messages.in_rules import advise_on_clause, advise_on_rule_head, advise_on_state
-from rulec.syntax.messages.parse_context import ParseContext
+from rulec.syntax.messages.parse_context import ParseContext, spelling
 
 _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 

@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.syntax.keywords import (
-    CLAUSE_WORDS,
-    OPERATOR_WORDS,
-    PREFIX_LETTERS,
-    RESERVED,
-    SYMBOLS,
-    UNARY_OPERATORS,
-)
-from rulec.syntax.messages.expectations import COMPARISONS
-from rulec.syntax.messages.in_chains import RELATIONS, advise_on_chain
-from rulec.syntax.messages.parse_context import ParseContext
+from rulec.syntax import keywords
+from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 
 _OTHER_SPELLINGS: Final = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
@@ -53,6 +44,7 @@ _QUANTIFIERS: Final = {
     **dict.fromkeys(("forall", "all", "each", "∀", "for"), "every"),
     **dict.fromkeys(("number", "sum", "#"), "count"),
 }
+RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 _AGGREGATES: Final = ("some", "every", "count")
 
 
@@ -139,10 +131,10 @@ def _numbers(scene: ParseContext) -> str:
     if not scene.operator:
         return ""
     if scene.is_number(scene.at) and (
-        scene.text_before == ")" or scene.text_before not in RESERVED
+        scene.text_before == ")" or scene.text_before not in keywords.RESERVED
     ):
         return "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
-    factor = scene.is_word() and text not in RESERVED
+    factor = scene.is_word() and text not in keywords.RESERVED
     if factor and scene.is_number(scene.at - 2) and scene.before and scene.before.kind == "word":
         return f"write `{scene.text_before} * {text}` for a product"
     return ""
@@ -164,7 +156,7 @@ def _comparisons(scene: ParseContext) -> str:
     if text == "**" or (before == "^" and scene.is_number(scene.at)):
         return "powers cannot be written; arithmetic is linear"
     if scene.operator and text in RELATIONS and not scene.accepted & COMPARISONS:
-        return advise_on_chain(scene)
+        return _chain(scene)
     if scene.operator and text in ("between", "in"):
         return "write `a <= x and x <= b`"
     if text == "+" and scene.quantity:
@@ -176,16 +168,18 @@ def _operators(scene: ParseContext) -> str:
     if scene.unexpected is None:
         return ""
     text, before = scene.text, scene.text_before
-    if scene.operator and len(before) > 1 and set(before) <= set(PREFIX_LETTERS):
+    if scene.operator and len(before) > 1 and set(before) <= set(keywords.PREFIX_LETTERS):
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if text == "then" and before == "and":
         return "`then` stands alone between two phases: write `p then q`"
     if scene.operator and before in ("must", "shall", "should"):
         return f"leave out `{before}`; what a formula says must hold"
-    word = _MEANT.get(text) or (text.casefold() if text.casefold() in OPERATOR_WORDS else None)
-    fits = scene.operand if word in UNARY_OPERATORS else "AND" in scene.accepted
+    word = _MEANT.get(text) or (
+        text.casefold() if text.casefold() in keywords.OPERATOR_WORDS else None
+    )
+    fits = scene.operand if word in keywords.UNARY_OPERATORS else "AND" in scene.accepted
     if word is not None and text != word and fits:
-        symbol = SYMBOLS.get(word, word)
+        symbol = keywords.SYMBOLS.get(word, word)
         return f"write `{word}` or `{symbol}`" if symbol != word else f"write `{word}`"
     if "weak" in (before, text):
         return "`weak` stands before `until`, `next` or `previously`"
@@ -200,7 +194,56 @@ def _operators(scene: ParseContext) -> str:
 
 def _joined(scene: ParseContext) -> str:
     behind = scene.token(scene.at + 1)
-    more = behind is not None and behind.text not in {")", *CLAUSE_WORDS}
+    more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):
         return "formulas are joined by `and`"
     return ""
+
+
+def _chain(scene: ParseContext) -> str:
+    """Advice on ``a < b < c``: compare two at a time."""
+    last = next((at for at in range(scene.at - 1, -1, -1) if scene.text_at(at) in RELATIONS), None)
+    if last is None:
+        return ""
+
+    def part(first: int, behind: int) -> str:
+        return scene.source.text[scene.tokens[first].start : scene.tokens[behind - 1].end]
+
+    left, right = _back(scene, last), _forward(scene, scene.at + 1)
+    if left == last or last + 1 >= scene.at or right == scene.at + 1:
+        return "compare two at a time: `a < b and b < c`"
+    middle = part(last + 1, scene.at)
+    first, second = part(left, scene.at), part(scene.at, right)
+    whole = f"{first} and {middle} {second}"
+    return "compare two at a time: " + (
+        f"write `{whole}`" if len(whole) <= 60 and "\n" not in whole else "`a < b and b < c`"
+    )
+
+
+def _belongs_to_side(scene: ParseContext, at: int) -> bool:
+    token = scene.token(at)
+    if token is None:
+        return False
+    if token.kind == "word":
+        return token.text not in keywords.RESERVED
+    return token.kind == "number" or token.text in ("+", "-", "*", "/", ".", ",", "(", ")", "^")
+
+
+def _back(scene: ParseContext, at: int) -> int:
+    depth = 0
+    while _belongs_to_side(scene, at - 1):
+        depth += (scene.text_at(at - 1) == ")") - (scene.text_at(at - 1) == "(")
+        if depth < 0:
+            break
+        at -= 1
+    return at
+
+
+def _forward(scene: ParseContext, at: int) -> int:
+    depth = 0
+    while _belongs_to_side(scene, at):
+        depth += (scene.text_at(at) == "(") - (scene.text_at(at) == ")")
+        if depth < 0:
+            break
+        at += 1
+    return at

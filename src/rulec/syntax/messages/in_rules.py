@@ -6,9 +6,8 @@ from collections.abc import Container
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
-from rulec.syntax.messages.expectations import SCOPES
 from rulec.syntax.messages.in_items import IN_FORCE, advise_on_dates
-from rulec.syntax.messages.parse_context import ParseContext
+from rulec.syntax.messages.parse_context import SCOPES, ParseContext
 
 _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
 _SCOPE: Final = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"

@@ -6,20 +6,13 @@ from bisect import bisect_left
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.diagnostics.code import Code
+from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.grammar import MAX_DEPTH, Mismatch
-from rulec.syntax.keywords import (
-    CLAUSE_WORDS,
-    ITEM_WORDS,
-    OPERATOR_LETTERS,
-    PROVISION_WORDS,
-    RESERVED,
-)
 from rulec.syntax.messages.advice import advise
-from rulec.syntax.messages.expectations import in_words
 from rulec.syntax.messages.in_items import other_word
 from rulec.syntax.messages.in_rules import other_clause
-from rulec.syntax.messages.parse_context import ParseContext
+from rulec.syntax.messages.parse_context import ParseContext, in_words
 from rulec.syntax.scanner import Token
 
 UNEXPECTED_WORD = Code(
@@ -97,7 +90,7 @@ _WHAT = {
     "accept": "the example",
     "reject": "the example",
 }
-_CLAUSE_BEGINS = CLAUSE_WORDS | {"throughout", "initially"}
+_CLAUSE_BEGINS = keywords.CLAUSE_WORDS | {"throughout", "initially"}
 """Words that may stand first on a line of a rule: clauses, and the scope of the exception above."""
 
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
@@ -118,7 +111,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         return _unterminated(span)
     if token is not None and _is_word_for_name(scene):
         return _reserved(span, token.text)
-    if piece.kind == "item" and at < 2 and first not in ITEM_WORDS:
+    if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
     begins = at == (first == "require")
@@ -156,11 +149,15 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     token, *others = inside
     way_out = ""
     if token.kind == "word":
-        way_out = other_word(token.text) or did_you_mean(token.text, ITEM_WORDS | CLAUSE_WORDS)
-        named = any(token.kind == "word" and token.text not in RESERVED for token in others[:1])
+        way_out = other_word(token.text) or did_you_mean(
+            token.text, keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
+        )
+        named = any(
+            token.kind == "word" and token.text not in keywords.RESERVED for token in others[:1]
+        )
         if others and others[0].text in ("=", ":="):
             way_out = way_out or f"write `param {token.text} = …` or `define {token.text} = …`"
-        if not (way_out or named or token.text in RESERVED):
+        if not (way_out or named or token.text in keywords.RESERVED):
             way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
     return UNEXPECTED_WORD.at(
         _span(source, token),
@@ -199,19 +196,19 @@ def _short(text: str) -> str:
 def _is_word_for_name(scene: ParseContext) -> bool:
     """Tell whether a reserved word stands in place of a name."""
     token = scene.unexpected
-    if token is None or token.kind != "word" or token.text not in RESERVED:
+    if token is None or token.kind != "word" or token.text not in keywords.RESERVED:
         return False
     if "NAME" not in scene.accepted:
         return False
-    if token.text in ("because", "rule") and scene.first in PROVISION_WORDS:
+    if token.text in ("because", "rule") and scene.first in keywords.PROVISION_WORDS:
         return False  # the name before it is missing, or `rule` stands where it need not
     if scene.operand or scene.quantity:
-        return token.text in ITEM_WORDS | CLAUSE_WORDS
-    return scene.kind != "state" or token.text in ITEM_WORDS | CLAUSE_WORDS
+        return token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
+    return scene.kind != "state" or token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
 
 
 def _reserved(span: Span, word: str) -> Diagnostic:
-    kind = "an operator" if word in OPERATOR_LETTERS else "a word of the language"
+    kind = "an operator" if word in keywords.OPERATOR_LETTERS else "a word of the language"
     return RESERVED_WORD.at(
         span,
         f"`{word}` is {kind} and cannot be a name",
