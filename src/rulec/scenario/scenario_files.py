@@ -13,8 +13,7 @@ from rulec.scenario.safe_xml import is_xml
 from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
 from rulec.scenario.scenario_model import Scenario
 from rulec.scenario.toml.conversion import to_scenario
-from rulec.scenario.toml.field_check import Findings
-from rulec.scenario.toml.field_locations import TomlText
+from rulec.scenario.toml.toml_tables import TomlFile
 from rulec.toml import parsed_toml
 
 LARGEST_BYTES = 4_000_000
@@ -28,9 +27,7 @@ def available_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
-    """A scenario by its built-in name, or from a file.
-
-    The file is TOML, or recorded traffic in XML.
+    """A scenario by its built-in name, or from a file: TOML, or recorded traffic in XML.
 
     A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
     recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.
@@ -70,9 +67,7 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
             help="leave the options for recorded scenes out, or edit the scenario's file",
         )
     source = _text(path)
-    return to_scenario(
-        parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, Findings(TomlText(source))
-    )
+    return to_scenario(parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, TomlFile(source))
 
 
 def _exists(name: str) -> bool:

@@ -2,56 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
+from typing import TypeVar
 
 from rulec.diagnostics import RulecError
 from rulec.scenario.geometry import Box
+from rulec.scenario.motion import swept
 from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
 from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
-from rulec.scenario.toml.consistency import (
-    check_collision,
-    check_ego,
-    check_interval,
-    check_lanes,
-    check_signals,
-)
-from rulec.scenario.toml.field_check import Findings, quoted, read_table
-from rulec.scenario.toml.field_locations import TomlTable
-from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles
+from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles, read_signals
 from rulec.scenario.toml.schema import RawEgo, RawGoal, RawMissing, RawRoad, RawScenario, RawSurface
+from rulec.scenario.toml.toml_tables import TomlFile, TomlTable, quoted
 
-_TOP = TomlTable("", None, "the scenario")
-_ROAD = TomlTable("road", None, "road")
-_EGO = TomlTable("ego", None, "ego")
-_GOAL = TomlTable("goal", None, "goal")
-_SIGNALS = TomlTable("signals", None, "signals")
+NARROWEST_M = 0.01
+
+_Part = TypeVar("_Part", RawSurface, RawMissing)
 
 
-def to_scenario(raw: Mapping[str, object], name: str, findings: Findings) -> Scenario:
-    """The scenario that the tables describe.
-
-    ``name`` is used if they give none.
+def to_scenario(raw: Mapping[str, object], name: str, file: TomlFile) -> Scenario:
+    """The scenario that the tables describe, called ``name`` if they give no name.
 
     Raises:
         RulecError: every mistake that was found.
     """
-    top = read_table(RawScenario, raw, _TOP, findings)
-    road = _road(raw.get("road"), findings)
-    ego = _ego(raw.get("ego"), findings)
-    obstacles = read_obstacles(raw.get("obstacle"), findings)
-    signals = _signals(raw.get("signals"), obstacles, findings)
-    goal = _goal(raw["goal"], road, findings) if "goal" in raw else None
+    table = TomlTable(file, "the scenario", "")
+    top = table.read(RawScenario, raw)
+    road = _road(raw.get("road"), file)
+    ego = _ego(raw.get("ego"), file)
+    obstacles = read_obstacles(raw.get("obstacle"), file)
+    signals = _signals(raw.get("signals"), obstacles, file)
+    goal = _goal(raw["goal"], road, file) if "goal" in raw else None
     if top is not None:
-        _check_timing(top, findings)
-    if ego is not None and road is not None:
-        check_ego(ego, road, _EGO, findings)
+        try:
+            timing(top.horizon_s, top.step_s)
+        except RulecError as error:
+            place = table.place("step_s")
+            file.errors.extend(replace(mistake, place=place) for mistake in error.diagnostics)
     if ego is not None:
-        for obstacle, table in obstacles:
-            check_collision(ego, obstacle, table, findings)
-    if findings.errors or top is None or road is None or ego is None:
-        raise RulecError(findings.errors)
+        if road is not None:
+            _check_on_road(ego, road, file)
+        _check_collisions(ego, obstacles, file)
+    if file.errors or top is None or road is None or ego is None:
+        raise RulecError(file.errors)
     return Scenario(
         name=top.name or name,
         road=road,
@@ -65,111 +60,163 @@ def to_scenario(raw: Mapping[str, object], name: str, findings: Findings) -> Sce
     )
 
 
-def _road(raw: object, findings: Findings) -> Road | None:
+def _road(raw: object, file: TomlFile) -> Road | None:
     if not isinstance(raw, Mapping):
         return None
-    table = read_table(RawRoad, raw, _ROAD, findings)
-    surfaces = _stretches(raw.get("surface"), findings)
-    missing = _missing(raw.get("missing"), table, findings)
-    if table is None:
+    table = TomlTable(file, "road", "road")
+    values = table.read(RawRoad, raw)
+    surfaces = tuple(_stretches(raw.get("surface"), file))
+    count = None if values is None else len(values.lanes) - 1
+    missing = tuple(_missing(raw.get("missing"), count, file))
+    if values is None:
         return None
-    straight = check_interval(table.s, _ROAD, "s", findings)
-    if not (check_lanes(table.lanes, _ROAD, findings) and straight):
+    straight = _is_interval(values.s, table, "s")
+    if not (_ascend(values.lanes, table) and straight):
         return None
-    return Road(table.s, tuple(table.lanes), surfaces, missing)
+    return Road(values.s, tuple(values.lanes), surfaces, missing)
 
 
-def _stretches(raw: object, findings: Findings) -> tuple[Stretch, ...]:
-    stretches: list[Stretch] = []
-    for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
-        place = TomlTable("road.surface", number, f"road.surface {number}")
-        table = read_table(RawSurface, item, place, findings)
-        if table is None or not check_interval(table.s, place, "s", findings):
-            continue
-        for stretch in stretches:
-            apart = table.s[1] <= stretch.s[0] or stretch.s[1] <= table.s[0]
-            if not apart and table.type != stretch.surface:
-                findings.add(
+def _stretches(raw: object, file: TomlFile) -> Iterator[Stretch]:
+    before: list[RawSurface] = []
+    for table, part in _parts(RawSurface, raw, "road.surface", file):
+        for other in before:
+            apart = part.s[1] <= other.s[0] or other.s[1] <= part.s[0]
+            if not apart and part.type != other.type:
+                table.add(
                     INCONSISTENT_SCENARIO,
-                    f"{place.words} is {table.type} where another one is {stretch.surface}",
-                    place,
+                    f"{table.words} is {part.type} where another one is {other.type}",
                     "s",
                     expected="one surface in one place",
                 )
-        stretches.append(Stretch(table.type, table.s))
-    return tuple(stretches)
+        before.append(part)
+        yield Stretch(part.type, part.s)
 
 
-def _missing(raw: object, road: RawRoad | None, findings: Findings) -> tuple[MissingLane, ...]:
-    missing: list[MissingLane] = []
-    for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
-        place = TomlTable("road.missing", number, f"road.missing {number}")
-        table = read_table(RawMissing, item, place, findings)
-        if table is None or not check_interval(table.s, place, "s", findings):
-            continue
-        if road is not None and table.lane >= len(road.lanes):
-            findings.add(
+def _missing(raw: object, count: int | None, file: TomlFile) -> Iterator[MissingLane]:
+    for table, part in _parts(RawMissing, raw, "road.missing", file):
+        if count is None or part.lane <= count:
+            yield MissingLane(part.lane, part.s)
+        else:
+            table.add(
                 INCONSISTENT_SCENARIO,
-                f"{place.words}: `lane` is {table.lane}",
-                place,
+                f"{table.words}: `lane` is {part.lane}",
                 "lane",
-                expected=f"a number from 1 to {len(road.lanes) - 1}, the lanes of the road",
+                expected=f"a number from 1 to {count}, the lanes of the road",
             )
-            continue
-        missing.append(MissingLane(table.lane, table.s))
-    return tuple(missing)
 
 
-def _ego(raw: object, findings: Findings) -> Ego | None:
+def _parts(
+    kind: type[_Part], raw: object, heading: str, file: TomlFile
+) -> Iterator[tuple[TomlTable, _Part]]:
+    """The parts of the road in an array of tables, without those that have mistakes."""
+    for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
+        table = TomlTable(file, f"{heading} {number}", heading, number)
+        part = table.read(kind, item)
+        if part is not None and _is_interval(part.s, table, "s"):
+            yield table, part
+
+
+def _is_interval(value: tuple[float, float] | None, table: TomlTable, key: str) -> bool:
+    """True if ``from`` is before ``to`` by more than a hair; else that is a mistake."""
+    if value is None or value[1] - value[0] >= NARROWEST_M:
+        return True
+    table.add(
+        INCONSISTENT_SCENARIO,
+        f"{table.words}: `{key}` runs from {value[0]:g} to {value[1]:g}",
+        key,
+        expected=f"a second number that is larger than the first, by {NARROWEST_M} m or more",
+        way_out=f"write `{key} = [{value[1]:g}, {value[0]:g}]`" if value[1] < value[0] else "",
+    )
+    return False
+
+
+def _ascend(lanes: Sequence[float], table: TomlTable) -> bool:
+    """True if the bounds ascend from right to left; else that is a mistake."""
+    for right, left in pairwise(lanes):
+        if left - right < NARROWEST_M:
+            table.add(
+                INCONSISTENT_SCENARIO,
+                f"{table.words}: in `lanes`, {left:g} follows {right:g}",
+                "lanes",
+                expected="bounds from right to left, each larger than the one before by "
+                f"{NARROWEST_M} m or more",
+                way_out="d is positive to the left, so sort the numbers in ascending order",
+            )
+            return False
+    return True
+
+
+def _ego(raw: object, file: TomlFile) -> Ego | None:
     if not isinstance(raw, Mapping):
         return None
-    table = read_table(RawEgo, raw, _EGO, findings)
-    if table is None:
+    values = TomlTable(file, "ego", "ego").read(RawEgo, raw)
+    if values is None:
         return None
-    return Ego(table.s, table.d, table.length or 0.0, table.width or 0.0)
+    return Ego(values.s, values.d, values.length or 0.0, values.width or 0.0)
 
 
-def _goal(raw: object, road: Road | None, findings: Findings) -> Box | None:
+def _check_on_road(ego: Ego, road: Road, file: TomlFile) -> None:
+    table = TomlTable(file, "ego", "ego")
+    if not road.outline.covers(ego.s, ego.d):
+        table.add(
+            INCONSISTENT_SCENARIO,
+            f"ego is off the road, at s = {ego.s:g}, d = {ego.d:g}",
+            expected=f"a place within {road.outline}",
+            way_out="move ego, or extend `[road]`",
+        )
+    elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
+        table.add(
+            INCONSISTENT_SCENARIO,
+            f"ego is where the road has no lane, at s = {ego.s:g}, d = {ego.d:g}",
+            expected="a place outside every `[[road.missing]]`",
+            way_out="move ego, or shorten that `[[road.missing]]`",
+        )
+
+
+def _check_collisions(ego: Ego, obstacles: Sequence[LocatedObstacle], file: TomlFile) -> None:
+    for obstacle, table in obstacles:
+        body = swept(obstacle, 0.0, 0.0)
+        if body is not None and body.overlaps(ego.body):
+            TomlTable(file, "ego", "ego").add(
+                INCONSISTENT_SCENARIO,
+                f"ego stands inside {table.words}",
+                expected=f"a place outside {body} at time 0",
+                way_out="move one of the two",
+            )
+
+
+def _goal(raw: object, road: Road | None, file: TomlFile) -> Box | None:
     if not isinstance(raw, Mapping):
         return None
-    table = read_table(RawGoal, raw, _GOAL, findings)
-    if table is None or road is None:
+    table = TomlTable(file, "goal", "goal")
+    values = table.read(RawGoal, raw)
+    if values is None or road is None:
         return None
-    ordered = [check_interval(getattr(table, key), _GOAL, key, findings) for key in ("s", "d")]
+    ordered = [_is_interval(values.s, table, "s"), _is_interval(values.d, table, "d")]
     if not all(ordered):
         return None
     outline = road.outline
-    goal = Box(*(table.s or road.s), *(table.d or (outline.d_min, outline.d_max)))
+    goal = Box(*(values.s or road.s), *(values.d or (outline.d_min, outline.d_max)))
     if not goal.overlaps(outline):
-        findings.add(
+        table.add(
             INCONSISTENT_SCENARIO,
             "the goal is off the road",
-            _GOAL,
             expected=f"a region that has some area within {outline}",
         )
     return goal
 
 
 def _signals(
-    raw: object, obstacles: tuple[LocatedObstacle, ...], findings: Findings
+    raw: object, obstacles: Sequence[LocatedObstacle], file: TomlFile
 ) -> dict[str, SignalValue]:
-    signals = check_signals(dict(raw), _SIGNALS, findings) if isinstance(raw, Mapping) else {}
-    for obstacle, table in obstacles:
-        for name in obstacle.signals:
-            if name in signals:
-                findings.add(
-                    INCONSISTENT_SCENARIO,
-                    f"{table.words} sets {quoted(name)}, and so does `[signals]`",
-                    table,
-                    "signals",
-                    expected="a signal that is either global or per object",
-                )
+    table = TomlTable(file, "signals", "signals")
+    signals = read_signals(raw, table) if isinstance(raw, Mapping) else {}
+    for obstacle, place in obstacles:
+        for name in filter(signals.__contains__, obstacle.signals):
+            place.add(
+                INCONSISTENT_SCENARIO,
+                f"{place.words} sets {quoted(name)}, and so does `[signals]`",
+                "signals",
+                expected="a signal that is either global or per object",
+            )
     return signals
-
-
-def _check_timing(top: RawScenario, findings: Findings) -> None:
-    try:
-        timing(top.horizon_s, top.step_s)
-    except RulecError as error:
-        place = findings.text.place(_TOP, "step_s")
-        findings.errors.extend(replace(diagnostic, place=place) for diagnostic in error.diagnostics)

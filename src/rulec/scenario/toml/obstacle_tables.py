@@ -1,154 +1,204 @@
-"""The obstacles of a scenario file."""
+"""The obstacles of a scenario file, with their predictions and signals."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from itertools import pairwise
+from math import isfinite
+from typing import Any
 
+import msgspec
+
+from rulec.scenario.alternatives import is_distribution, weighted
 from rulec.scenario.motion import stands_forever
-from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO, MISSING_OR_UNKNOWN_FIELD
+from rulec.scenario.scenario_messages import (
+    INCONSISTENT_SCENARIO,
+    MISSING_OR_UNKNOWN_FIELD,
+    UNFITTING_FIELD,
+)
 from rulec.scenario.scenario_model import (
     PEDESTRIAN,
+    Alternative,
     ConstantAcceleration,
     Motion,
     Obstacle,
+    SignalValue,
     Trajectory,
 )
-from rulec.scenario.toml.consistency import check_signals
-from rulec.scenario.toml.field_check import Findings, quoted, read_table
-from rulec.scenario.toml.field_locations import TomlTable
-from rulec.scenario.toml.prediction_tables import read_predictions
-from rulec.scenario.toml.schema import MOST_OBSTACLES, RawObstacle
+from rulec.scenario.toml.schema import MOST_OBSTACLES, RawObstacle, RawPrediction
+from rulec.scenario.toml.toml_tables import TomlFile, TomlTable, quoted, shown
 
 LocatedObstacle = tuple[Obstacle, TomlTable]
+
+RESERVED = ("position", "surface", "station", "lateral")
+"""What a state calls by these names comes from the partition."""
 
 _PREDICTED = ("s", "d", "speed", "acceleration", "lateral_speed", "until_d")
 
 
-def read_obstacles(raw: object, findings: Findings) -> tuple[LocatedObstacle, ...]:
+def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
     """The obstacles without mistakes, each with its place in the file."""
     if not isinstance(raw, list) or len(raw) > MOST_OBSTACLES:
-        return ()
+        return []
     listed: list[LocatedObstacle] = []
     numbers: dict[str, int] = {}
-    before = 0
+    predictions = 0
     for number, item in enumerate(raw, start=1):
-        place = TomlTable("obstacle", number, _words(item, number))
-        table = read_table(RawObstacle, item, place, findings)
-        ahead, before = before, before + _number_of_predictions(item)
-        if isinstance(item, Mapping) and isinstance(name := item.get("id"), str):
-            _check_unique(name, number, numbers, place, findings)
-        if table is None:
+        fields = item if isinstance(item, Mapping) else {}
+        name, before = fields.get("id"), predictions
+        words = f"obstacle {number}"
+        if isinstance(name, str):
+            words += f" ({quoted(name)})"
+        if isinstance(fields.get("prediction"), list):
+            predictions += len(fields["prediction"])
+        table = TomlTable(file, words, "obstacle", number)
+        values = table.read(RawObstacle, item)
+        if isinstance(name, str) and (first := numbers.setdefault(name, number)) != number:
+            table.add(
+                INCONSISTENT_SCENARIO,
+                f"obstacles {first} and {number} are both called {quoted(name)}",
+                "id",
+                expected="an id that no other obstacle has",
+            )
+        if values is None:
             continue
-        expected = read_predictions(
-            table, item, place, before=ahead, findings=findings, motion_of=_motion
-        )
-        signals = TomlTable("obstacle.signals", number, place.words)
-        values = check_signals(table.signals, signals, findings)
-        if expected is None:
+        motions = _predictions(values, fields, table, before)
+        signals = TomlTable(file, words, "obstacle.signals", number)
+        own_signals = read_signals(values.signals, signals)
+        if not motions:
             continue
+        likeliest, *others = motions
         obstacle = Obstacle(
-            id=table.id,
-            type=table.type,
-            length=table.length,
-            width=table.width,
-            motion=expected.motion,
-            walking_direction=table.walking_direction,
-            signals=values,
-            weight=expected.weight,
-            alternatives=expected.alternatives,
+            id=values.id,
+            type=values.type,
+            length=values.length,
+            width=values.width,
+            motion=likeliest.motion,
+            walking_direction=values.walking_direction,
+            signals=own_signals,
+            weight=likeliest.weight,
+            alternatives=tuple(others),
         )
-        _check_direction(obstacle, place, findings)
-        listed.append((obstacle, place))
-    return tuple(listed)
+        stands = any(stands_forever(prediction.motion) for prediction in motions)
+        if obstacle.type == PEDESTRIAN and obstacle.walking_direction is None and stands:
+            table.add(
+                MISSING_OR_UNKNOWN_FIELD,
+                f"{words} stands still and has no `walking_direction`",
+                expected="a pedestrian's direction, because its regions depend on it",
+                way_out="add a line `walking_direction = 90` for one who faces left, -90 for right",
+            )
+        listed.append((obstacle, table))
+    return listed
 
 
-def _number_of_predictions(item: object) -> int:
-    raw = item.get("prediction") if isinstance(item, Mapping) else None
-    return len(raw) if isinstance(raw, list) else 0
+def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, SignalValue]:
+    """The signals of a table, of which only the form is checked here."""
+    signals: dict[str, SignalValue] = {}
+    for name, value in raw.items():
+        if name in RESERVED:
+            table.add(
+                INCONSISTENT_SCENARIO,
+                f"{table.words} sets {quoted(name)}, which the partition supplies",
+                name,
+                way_out="leave it out, or call the signal something else",
+            )
+        elif isinstance(value, (bool, str)):
+            signals[name] = value
+        elif isinstance(value, (int, float)) and abs(value) < 1e300 and isfinite(value):
+            signals[name] = float(value)
+        else:
+            table.add(
+                UNFITTING_FIELD,
+                f"{table.words}: {quoted(name)} is {shown(value)}",
+                name,
+                expected="true, false, a finite number, or a value's name in quotes",
+            )
+    return signals
 
 
-def _words(item: object, number: int) -> str:
-    name = item.get("id") if isinstance(item, Mapping) else None
-    return f"obstacle {number} ({quoted(name)})" if isinstance(name, str) else f"obstacle {number}"
+def _predictions(
+    obstacle: RawObstacle, fields: Mapping[str, Any], table: TomlTable, before: int
+) -> Sequence[Alternative]:
+    """The obstacle's motions, the likeliest first; none after mistakes.
 
-
-def _check_unique(
-    name: str, number: int, numbers: dict[str, int], place: TomlTable, findings: Findings
-) -> None:
-    first = numbers.setdefault(name, number)
-    if first != number:
-        findings.add(
+    So many predictions stand ``before`` these in the file.
+    """
+    if not obstacle.prediction:
+        motion = _motion(obstacle, fields, table)
+        return [] if motion is None else [Alternative(Fraction(1), motion)]
+    if obstacle.trajectory is not None:
+        table.add(
             INCONSISTENT_SCENARIO,
-            f"obstacles {first} and {number} are both called {quoted(name)}",
-            place,
-            "id",
-            expected="an id that no other obstacle has",
+            f"{table.words} has a `trajectory` and also predictions",
+            "trajectory",
+            expected="either the one or the other",
+            way_out="give each prediction a `trajectory` of its own",
         )
-
-
-def _check_direction(obstacle: Obstacle, place: TomlTable, findings: Findings) -> None:
-    motions = (obstacle.motion, *(alternative.motion for alternative in obstacle.alternatives))
-    standing = obstacle.walking_direction is None and any(map(stands_forever, motions))
-    if obstacle.type == PEDESTRIAN and standing:
-        findings.add(
-            MISSING_OR_UNKNOWN_FIELD,
-            f"{place.words} stands still and has no `walking_direction`",
-            place,
-            expected="a pedestrian's direction, because its regions depend on it",
-            way_out="add a line `walking_direction = 90` for one who faces left, -90 for right",
+        return []
+    motions: list[Alternative] = []
+    for number, raw in enumerate(obstacle.prediction, start=1):
+        words = f"{table.words}, prediction {number}"
+        place = TomlTable(table.file, words, "obstacle.prediction", before + number)
+        prediction = place.read(RawPrediction, raw)
+        if prediction is None:
+            continue
+        if prediction.trajectory is None and (obstacle.s is None or obstacle.d is None):
+            _motion(obstacle, fields, table)
+            return []
+        own = {name: raw[name] for name in raw if name != "weight"}
+        values = {name: getattr(prediction, name) for name in own}
+        motion = _motion(msgspec.structs.replace(obstacle, **values), own, place)
+        if motion is not None:
+            motions.append(Alternative(Fraction(str(prediction.weight)), motion))
+    if len(motions) < len(obstacle.prediction):
+        return []
+    total = sum((motion.weight for motion in motions), Fraction(0))
+    if not is_distribution(total):
+        table.add(
+            INCONSISTENT_SCENARIO,
+            f"the weights of {table.words}'s predictions add up to {float(total):g}",
+            expected="weights that add up to 1",
         )
+        return []
+    return weighted(motions)
 
 
-def _motion(
-    table: RawObstacle, item: Mapping[str, object], place: TomlTable, findings: Findings
-) -> Motion | None:
-    if table.trajectory is not None:
-        return _trajectory(table.trajectory, item, place, findings)
-    if table.s is None or table.d is None:
+def _motion(values: RawObstacle, fields: Mapping[str, Any], table: TomlTable) -> Motion | None:
+    """The motion that ``values`` describe, of which ``fields`` stand in this table."""
+    if values.trajectory is not None:
+        return _trajectory(values.trajectory, fields, table)
+    if values.s is None or values.d is None:
         for key in ("s", "d"):
-            if getattr(table, key) is None:
-                findings.add(
+            if getattr(values, key) is None:
+                table.add(
                     MISSING_OR_UNKNOWN_FIELD,
-                    f"{place.words} has no `{key}`",
-                    place,
+                    f"{table.words} has no `{key}`",
                     expected="its centre at time 0 in metres: s along the road, d across it",
                     way_out=f"add a line `{key} = …`, or give a `trajectory` instead",
                 )
         return None
-    sideways, until = table.lateral_speed, table.until_d
-    if until is not None and (until - table.d) * sideways <= 0:
-        findings.add(
+    sideways, until = values.lateral_speed, values.until_d
+    if until is not None and (until - values.d) * sideways <= 0:
+        table.add(
             INCONSISTENT_SCENARIO,
-            f"{place.words} never comes to `until_d = {until:g}`",
-            place,
+            f"{table.words} never comes to `until_d = {until:g}`",
             "until_d",
-            expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {table.d:g}",
+            expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {values.d:g}",
             way_out="change the sign of `lateral_speed`, or leave `until_d` out",
         )
         return None
-    return ConstantAcceleration(
-        s=table.s,
-        d=table.d,
-        speed=table.speed,
-        acceleration=table.acceleration,
-        lateral_speed=sideways,
-        until_d=until,
-    )
+    return ConstantAcceleration(**{key: getattr(values, key) for key in _PREDICTED})
 
 
 def _trajectory(
-    points: list[tuple[float, float, float]],
-    item: Mapping[str, object],
-    place: TomlTable,
-    findings: Findings,
+    points: list[tuple[float, float, float]], fields: Mapping[str, Any], table: TomlTable
 ) -> Motion | None:
-    both = [key for key in _PREDICTED if key in item]
+    both = [key for key in _PREDICTED if key in fields]
     if both:
-        findings.add(
+        table.add(
             INCONSISTENT_SCENARIO,
-            f"{place.words} has a `trajectory` and also {', '.join(map(quoted, both))}",
-            place,
+            f"{table.words} has a `trajectory` and also {', '.join(map(quoted, both))}",
             both[0],
             expected="either a trajectory, or a start and a prediction",
             way_out="leave out one of the two",
@@ -156,10 +206,9 @@ def _trajectory(
         return None
     for before, after in pairwise(points):
         if after[0] <= before[0]:
-            findings.add(
+            table.add(
                 INCONSISTENT_SCENARIO,
-                f"{place.words}: in `trajectory`, time {after[0]:g} follows {before[0]:g}",
-                place,
+                f"{table.words}: in `trajectory`, time {after[0]:g} follows {before[0]:g}",
                 "trajectory",
                 expected="times in ascending order, each once",
             )
