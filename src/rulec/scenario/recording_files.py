@@ -9,9 +9,10 @@ from pathlib import Path
 from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.scene_choice import Choice
-from rulec.scenario.safe_xml import XmlFormat, is_xml, root_of, short
+from rulec.scenario.safe_xml import is_xml, root_of
 from rulec.scenario.scenario_messages import OTHER_CHOICE
 from rulec.scenario.scenario_model import Scenario
+from rulec.scenario.xml_element import XmlFormat, short
 
 RECORDING = XmlFormat(
     "recorded traffic",
@@ -21,9 +22,7 @@ RECORDING = XmlFormat(
 
 
 def read_recording(path: Path, net: Path | None = None) -> Recording:
-    """Read a file of recorded traffic.
-
-    ``net`` is for SUMO's data, which have none.
+    """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it seems to be, R0611 without the

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import gzip
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
 from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
-from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files import opened
-from rulec.scenario.scenario_messages import NOT_A_RECORDING
+from rulec.scenario.xml_element import XmlElement, XmlFormat, short
 
 LONGEST_TAG = 1_000_000
 """Bytes; expat keeps a tag in memory until it ends."""
@@ -25,51 +23,23 @@ LONGEST_TAG = 1_000_000
 _BLOCK = 1 << 16
 _PACKED = b"\x1f\x8b"
 _SUFFIXES = (".xml", ".xml.gz")
-
-
-@dataclass(frozen=True, slots=True)
-class XmlFormat:
-    """A format of XML files: its name and its root element.
-
-    The name in ``words`` has an article.
-    """
-
-    words: str
-    root: str
-    help: str
-    largest_bytes: int = 200_000_000
-
-    def refused(
-        self,
-        path: Path,
-        why: str,
-        line: int | None = None,
-        *,
-        expected: str = "",
-        help_text: str = "",
-    ) -> RulecError:
-        """The error (R0610) for a file of another format.
-
-        It has the line if that is known.
-        """
-        place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
-        message = f"the file cannot be read as {self.words}: {why}"
-        return NOT_A_RECORDING.error(place, message, expected=expected, help=help_text or self.help)
-
-
-ElementHandler = Callable[[str, Mapping[str, str], XMLParserType], None]
-"""Called where an element begins, the root included, with its name and its attributes."""
+_ENDS_EARLY = (
+    errors.XML_ERROR_NO_ELEMENTS,
+    errors.XML_ERROR_UNCLOSED_TOKEN,
+    errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
+    errors.XML_ERROR_PARTIAL_CHAR,
+)
 
 
 def scan(
     path: Path,
     form: XmlFormat,
-    begin: ElementHandler,
+    begin: Callable[[XmlElement], None],
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
 ) -> None:
-    """Scan an XML file once, with callbacks for elements and comments.
+    """Scan an XML file once, with callbacks where elements begin and end, and for comments.
 
     Raises:
         RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
@@ -83,7 +53,7 @@ def scan(
             why = f"it is XML, but of `{short(name)}`, not of `{form.root}`"
             raise form.refused(path, why, parser.CurrentLineNumber)
         rooted = True
-        begin(name, attributes, parser)
+        begin(XmlElement(name, attributes, parser, path, form))
 
     def definition(*_: object) -> None:
         why = "it has a `DOCTYPE`, which this format has not, and which could define anything"
@@ -118,20 +88,8 @@ def scan(
         raise form.refused(path, why, problem.lineno) from None
 
 
-_ENDS_EARLY = frozenset(
-    (
-        errors.XML_ERROR_NO_ELEMENTS,
-        errors.XML_ERROR_UNCLOSED_TOKEN,
-        errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
-        errors.XML_ERROR_PARTIAL_CHAR,
-    )
-)
-
-
 def root_of(path: Path, form: XmlFormat) -> str:
-    """The name of a file's root element.
-
-    ``form`` says what to call a file that has none.
+    """The name of a file's root element; ``form`` says what to call a file that has none.
 
     Raises:
         RulecError: R0610 for a file that is no XML, R0701 for one that cannot be read.
@@ -175,17 +133,9 @@ def is_xml(path: Path) -> bool:
 
 
 def is_packed(path: Path) -> bool:
-    """True if the file is a gzip file.
-
-    Raises RulecError R0701.
-    """
+    """True if the file is a gzip file. Raises RulecError R0701."""
     with opened(path) as stream:
         return stream.read(len(_PACKED)) == _PACKED
-
-
-def short(text: str) -> str:
-    """A file's text for a message: short, and without control characters."""
-    return "".join(c if c.isprintable() else "?" for c in text[:40])
 
 
 def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, load_scenario, safe_xml
 from rulec.scenario.recording_files import read_recording
+from rulec.scenario.xml_element import XmlFormat
 from support.builders.sumo_files import ROAD_NET, TYPES, body, data, moment, written
 
 GOOD = data(moment(0, body(lane="in_1")), moment(0.1, body(x=21, lane="in_1")))
@@ -196,7 +197,7 @@ def test_too_much_is_not_read(tmp_path, monkeypatch):
     monkeypatch.setattr(safe_xml, "_BLOCK", 100)
     from rulec.scenario.sumo import fcd
 
-    monkeypatch.setattr(fcd, "FCD", safe_xml.XmlFormat("data", "fcd-export", "less", 300))
+    monkeypatch.setattr(fcd, "FCD", XmlFormat("data", "fcd-export", "less", 300))
     assert "too large: at most 300 bytes" in problem_with(written(tmp_path, GOOD)).message
 
 

@@ -6,10 +6,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.scenario.recorded.recording import Light
-from rulec.scenario.sumo.lane_borders import parallel_line, without_repeats
-from rulec.scenario.sumo.lanelets import net_lanelets
+from rulec.scenario.recorded.reference_line import without_repeats
+from rulec.scenario.sumo.lanelets import net_lanelets, parallel_line
 from rulec.scenario.sumo.net import read_net
-from rulec.scenario.sumo.traffic_lights import unknown_lights
 from support.builders.sumo_files import ROAD_NET
 
 
@@ -192,7 +191,7 @@ def test_lights_that_show_the_same_are_one(tmp_path):
 )
 def test_lights_that_a_net_cannot_tell(tmp_path, light):
     assert lanelets(tmp_path, with_light(light=light))["in_1"].lights == ()
-    assert unknown_lights(read_net(tmp_path / "road.net.xml")) == ["x"]
+    assert read_net(tmp_path / "road.net.xml").unknown_lights() == ["x"]
 
 
 def test_a_light_without_this_link_is_none(tmp_path):
@@ -223,7 +222,7 @@ def test_a_border_is_parallel(pieces, offset):
 
 @given(st.lists(st.sampled_from([(0.0, 0.0), (0.001, 0.0), (5.0, 0.0), (5.0, 4.0)]), min_size=1))
 def test_points_without_repeats_are_apart(points):
-    kept = without_repeats(np.array(points))
+    kept = without_repeats(np.array(points), 0.01)
     assert (np.hypot(*np.diff(kept, axis=0).T) > 0.01).all()
     assert kept[0].tolist() == list(points[0])
     assume(len(kept) > 1)

@@ -68,7 +68,7 @@ def test_kinds_and_sizes(tmp_path, kind, element, expected):
 
 
 def test_every_class_has_a_kind_that_rulebooks_can_have_a_word_for():
-    from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
+    from rulec.scenario.recorded.recording import OBSTACLE_TYPES
 
     assert {one.kind for one in CLASSES.values()} <= set(OBSTACLE_TYPES)
 

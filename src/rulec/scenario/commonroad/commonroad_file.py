@@ -26,7 +26,6 @@ from rulec.scenario.commonroad.commonroad_participants import (
 from rulec.scenario.commonroad.country_side import side_in
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded.recording import (
-    FARTHEST_M,
     LONGEST_M,
     Lanelet,
     LaneMark,
@@ -35,6 +34,7 @@ from rulec.scenario.recorded.recording import (
     Recording,
 )
 from rulec.scenario.scenario_messages import COMMONROAD_MISSING
+from rulec.scenario.xml_element import LARGEST
 
 _MARKS: Mapping[str, LaneMark] = MappingProxyType(
     {
@@ -176,7 +176,7 @@ def _id(number: int | None) -> str | None:
 
 def _points(vertices: Any) -> Points:
     points = np.asarray(vertices, dtype=float)[:, :2]
-    if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
+    if len(points) < 2 or not (np.abs(points) < LARGEST).all():
         raise ValueError("a lanelet's bound has fewer than two points, or one that is no place")
     if np.ptp(points, axis=0).max() > LONGEST_M:
         raise ValueError(f"a lanelet's bound is longer than {LONGEST_M / 1000:g} km")

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from rulec.scenario.recorded.recording import (
-    FARTHEST_M,
     Lanelet,
     Participant,
     PlanningProblem,
@@ -20,6 +19,7 @@ from rulec.scenario.recorded.recording import (
     TrackState,
 )
 from rulec.scenario.recorded.track import rectangles
+from rulec.scenario.xml_element import LARGEST
 
 
 def commonroad_participants(scenario: Any) -> Iterator[Participant]:
@@ -111,7 +111,7 @@ def _number(value: Any) -> float:
     if value is None:
         return 0.0
     number = float(value) if isinstance(value, (int, float)) else (value.start + value.end) / 2
-    if not abs(number) < FARTHEST_M:
+    if not abs(number) < LARGEST:
         raise ValueError("a state has a value that is no number, or out of all bounds")
     return number
 

@@ -6,11 +6,10 @@ Only what the library fails on without is asked for; what it makes of the rest i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from xml.parsers.expat import XMLParserType
 
-from rulec.scenario.safe_xml import XmlFormat, is_packed, scan, short
+from rulec.scenario.safe_xml import is_packed, scan
+from rulec.scenario.xml_element import XmlElement, XmlFormat, short
 
 COMMONROAD = XmlFormat(
     "a CommonRoad scenario",
@@ -41,51 +40,39 @@ _CHILDREN: Mapping[str, tuple[str, ...]] = {
 _FEWEST_POINTS = {"leftBound": 2, "rightBound": 2}
 
 
-@dataclass(slots=True)
-class _Open:
-    """An element that has begun, with its place and content so far."""
-
-    name: str
-    line: int
-    children: list[str] = field(default_factory=list)
-
-
 def check_form(path: Path) -> None:
-    """Raise RulecError unless the file is well-formed XML with CommonRoad's required elements.
+    """Check that a file is well-formed XML with CommonRoad's required elements.
 
     Raises:
         RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
     """
-    open_ones: list[_Open] = []
+    # Name, line and children so far of the elements that have begun
+    open_elements: list[tuple[str, int, list[str]]] = []
 
-    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
-        line = parser.CurrentLineNumber
-        version = attributes.get("commonRoadVersion", "")
+    def begin(element: XmlElement) -> None:
+        name, line = element.name, element.parser.CurrentLineNumber
+        version = element.get("commonRoadVersion")
         if name == COMMONROAD.root and version not in VERSIONS:
             why = f"its `commonRoadVersion` is `{short(version)}`"
-            expected = f"expected {' or '.join(VERSIONS)}"
-            raise COMMONROAD.refused(path, why, line, expected=expected)
+            raise element.wrong(why, " or ".join(VERSIONS))
+        # A lanelet may also be referred to, by `ref` instead of an id
+        is_reference = "ref" in element.attributes
         for attribute in _ATTRIBUTES.get(name, ()):
-            # A lanelet may also be referred to, by `ref` instead of an id
-            if attribute not in attributes and "ref" not in attributes:
-                raise COMMONROAD.refused(path, f"the element `{name}` has no `{attribute}`", line)
-        if open_ones:
-            open_ones[-1].children.append(name)
-        open_ones.append(
-            _Open(name, line, list(_CHILDREN.get(name, ())) if "ref" in attributes else [])
-        )
+            if attribute not in element.attributes and not is_reference:
+                raise element.wrong(f"the element `{name}` has no `{attribute}`")
+        if open_elements:
+            open_elements[-1][2].append(name)
+        open_elements.append((name, line, list(_CHILDREN.get(name, ())) if is_reference else []))
 
-    def end(name: str) -> None:
-        element = open_ones.pop()
+    def end(_: str) -> None:
+        name, line, children = open_elements.pop()
         for child in _CHILDREN.get(name, ()):
-            if child not in element.children:
-                raise COMMONROAD.refused(
-                    path, f"the element `{name}` has no `{child}`", element.line
-                )
+            if child not in children:
+                raise COMMONROAD.refused(path, f"the element `{name}` has no `{child}`", line)
         fewest = _FEWEST_POINTS.get(name, 0)
-        if element.children.count("point") < fewest:
+        if children.count("point") < fewest:
             why = f"the element `{name}` has fewer than {fewest} points"
-            raise COMMONROAD.refused(path, why, element.line)
+            raise COMMONROAD.refused(path, why, line)
 
     scan(path, COMMONROAD, begin, end=end)
     if is_packed(path):

@@ -55,20 +55,14 @@ class ReferenceLine:
         return float(np.arctan2(dy, dx))
 
     def coordinates(self, places: Points) -> Points:
-        """Frenet coordinates ``s`` and ``d`` of places, a row each.
-
-        They are those of the nearest foot, and NaN without one.
-        """
+        """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
         every = np.arange(len(self.arc))[None, :]
         size = max(1, _AT_ONCE // len(self.arc))
         parts = [self._nearest(places[at : at + size], every) for at in range(0, len(places), size)]
         return np.concatenate(parts) if parts else np.empty((0, 2))
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
-        """Frenet coordinates of feet within ``reach`` of a given ``s`` each.
-
-        So a body is not torn apart where the road comes near itself.
-        """
+        """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
         low, high = self._piece(around - reach), self._piece(around + reach)
         steps = np.arange(int((high - low).max(initial=0)) + 1)
         size = max(1, _AT_ONCE // len(steps))
@@ -85,10 +79,7 @@ class ReferenceLine:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
 
     def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
-        """The nearest feet of places on pieces of a line.
-
-        There is a row of pieces for each place, or one for all.
-        """
+        """The nearest feet of places on pieces of the line, a row for each or one for all."""
         ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
         dx = places[:, :1] - self.start[pieces, 0]
         dy = places[:, 1:] - self.start[pieces, 1]
@@ -114,13 +105,10 @@ def reference_line(corners: Points) -> ReferenceLine:
     Raises:
         ValueError: all of them are in one place.
     """
-    kept = [corners[0]]
-    for corner in corners[1:]:
-        if np.hypot(*(corner - kept[-1])) > _CLOSEST_M:
-            kept.append(corner)
+    kept = without_repeats(corners, _CLOSEST_M)
     if len(kept) == 1:
         raise ValueError("the middle of its lane is in one place")
-    points = densified(np.array(kept), _PIECE_M)
+    points = densified(kept, _PIECE_M)
     start, end = points[1] - points[0], points[-1] - points[-2]
     extended = np.concatenate(
         (
@@ -143,6 +131,15 @@ def reference_line(corners: Points) -> ReferenceLine:
         first=first,
         change=last - first,
     )
+
+
+def without_repeats(points: Points, closest_m: float) -> Points:
+    """The points that are not too close to the one before them."""
+    kept = [points[0]]
+    for point in points[1:]:
+        if np.hypot(*(point - kept[-1])) > closest_m:
+            kept.append(point)
+    return np.array(kept)
 
 
 def densified(points: Points, every_m: float) -> Points:

@@ -7,16 +7,14 @@ degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and l
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping
 from dataclasses import dataclass, field
+from operator import itemgetter
 from pathlib import Path
-from xml.parsers.expat import XMLParserType
 
 from rulec.diagnostics import RulecError
-from rulec.scenario.recorded.recording import FARTHEST_M
-from rulec.scenario.safe_xml import XmlFormat, scan, short
+from rulec.scenario.safe_xml import scan
 from rulec.scenario.sumo.companion_files import FcdHead, fcd_head
-from rulec.scenario.sumo.xml_element import XmlElement
+from rulec.scenario.xml_element import LARGEST, XmlElement, XmlFormat, short
 
 FCD = XmlFormat(
     "SUMO's floating-car data",
@@ -26,16 +24,20 @@ FCD = XmlFormat(
 )
 BODIES = frozenset({"vehicle", "person", "container"})
 LONGEST_ID = 200
-_MICROSECONDS = 1_000_000
+MICROSECONDS = 1_000_000
+"""In a second: moments are whole numbers of them."""
+
+_PLACE = ("x", "y", "angle", "speed")
+_place_of = itemgetter(*_PLACE)
 _NOWHERE = -(2.0**30)
 """What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
 
 
 @dataclass(slots=True)
 class FcdTrack:
-    """The track of a participant in rows of floating-car data.
+    """The track of a participant in rows of floating-car data: x, y, angle and speed.
 
-    A row has the number of the moment, x, y, angle and speed.
+    ``moments`` are indices into those of the file.
     """
 
     element: str
@@ -72,19 +74,17 @@ def read_fcd(path: Path) -> FloatingCarData:
         if not data.moments and "<" in text:
             data.head = fcd_head(text)
 
-    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
+    def begin(element: XmlElement) -> None:
         nonlocal carriers
-        if name in BODIES:
+        if element.name in BODIES:
             carriers += 1
             if not data.moments:
-                element = XmlElement(name, attributes, parser, path, FCD)
-                raise element.wrong(f"a `{name}` is in no `timestep`")
-            if carriers == 1 and not attributes.get("vehicle"):
-                _add(data, name, attributes, parser, path)
-        elif name == "timestep":
-            moment = _moment(XmlElement(name, attributes, parser, path, FCD))
+                raise element.wrong(f"a `{element.name}` is in no `timestep`")
+            if carriers == 1 and not element.attributes.get("vehicle"):
+                _add(data, element)
+        elif element.name == "timestep":
+            moment = round(element.number("time") * MICROSECONDS)
             if data.moments and moment <= data.moments[-1]:
-                element = XmlElement(name, attributes, parser, path, FCD)
                 raise element.wrong("its time steps are not in ascending order")
             data.moments.append(moment)
 
@@ -96,33 +96,19 @@ def read_fcd(path: Path) -> FloatingCarData:
     return data
 
 
-def _moment(element: XmlElement) -> int:
-    return round(element.number("time") * _MICROSECONDS)
-
-
-def _add(
-    data: FloatingCarData,
-    name: str,
-    attributes: Mapping[str, str],
-    parser: XMLParserType,
-    path: Path,
-) -> None:
+def _add(data: FloatingCarData, element: XmlElement) -> None:
+    name, attributes = element.name, element.attributes
     try:
-        row = (
-            float(attributes["x"]),
-            float(attributes["y"]),
-            float(attributes["angle"]),
-            float(attributes["speed"]),
-        )
+        row = tuple(map(float, _place_of(attributes)))
         acceleration = float(attributes.get("acceleration", "nan"))
         key = attributes["id"]
     except (KeyError, ValueError):
-        raise _wrong(name, attributes, parser, path) from None
+        raise _wrong(element) from None
     if row[0] == row[1] == _NOWHERE:
         return
     # NaN is not below anything
-    if not (max(map(abs, row)) < FARTHEST_M and sum(row) == sum(row)):
-        raise _wrong(name, attributes, parser, path)
+    if not (max(map(abs, row)) < LARGEST and sum(row) == sum(row)):
+        raise _wrong(element)
     track = data.tracks.get(key)
     if track is not None and track.element != name:
         # SUMO lets a person be called like a vehicle; here ids are one for all
@@ -131,29 +117,24 @@ def _add(
     moment = len(data.moments) - 1
     if track is None:
         if not 0 < len(key) <= LONGEST_ID:
-            element = XmlElement(name, attributes, parser, path, FCD)
             raise element.wrong(f"the id of a `{name}` is empty, or longer than {LONGEST_ID}")
         track = data.tracks[key] = FcdTrack(name, attributes.get("type", ""))
     elif track.moments[-1] == moment:
-        element = XmlElement(name, attributes, parser, path, FCD)
         raise element.wrong(f"`{short(key)}` is twice in one time step")
     track.moments.append(moment)
     track.rows.extend(row)
-    track.accelerations.append(acceleration if abs(acceleration) < FARTHEST_M else float("nan"))
+    track.accelerations.append(acceleration if abs(acceleration) < LARGEST else float("nan"))
     if "signals" in attributes:
-        number = XmlElement(name, attributes, parser, path, FCD).number("signals")
-        track.lamps[moment] = int(number)
+        track.lamps[moment] = int(element.number("signals"))
     place = attributes.get("lane") or attributes.get("edge")
     if place and place not in data.on:
-        data.on[place] = ("lane" if attributes.get("lane") else "edge", parser.CurrentLineNumber)
+        kind = "lane" if attributes.get("lane") else "edge"
+        data.on[place] = kind, element.parser.CurrentLineNumber
 
 
-def _wrong(
-    name: str, attributes: Mapping[str, str], parser: XMLParserType, path: Path
-) -> RulecError:
-    element = XmlElement(name, attributes, parser, path, FCD)
+def _wrong(element: XmlElement) -> RulecError:
     element.text("id")
-    for key in ("x", "y", "angle", "speed"):
+    for key in _PLACE:
         element.number(key)
     element.number("acceleration", 0.0)
     raise AssertionError("one of these is not a number")

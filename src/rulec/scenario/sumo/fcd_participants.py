@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import pairwise
 from math import gcd
 from pathlib import Path
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lamp, Participant
 from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
-from rulec.scenario.sumo.fcd import FCD, FcdTrack
+from rulec.scenario.sumo.fcd import FCD, MICROSECONDS, FcdTrack
 from rulec.scenario.sumo.vehicle_types import VehicleType
 
 MOST_STEPS = 1_000_000
@@ -22,7 +22,6 @@ MOST_STEPS = 1_000_000
 SPARSEST = 1000
 """One in so many time steps is in the file at least; else one of its times is a slip."""
 
-_MICROSECONDS = 1_000_000
 _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (1, frozenset({"right_indicator"})),
     (2, frozenset({"left_indicator"})),
@@ -33,9 +32,7 @@ _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
 
 
 def time_step(path: Path, moments: list[int]) -> float:
-    """The time step (s): the shortest time between two moments.
-
-    The moments are those of the file.
+    """The time step (s): the shortest time between two moments of the file.
 
     Moments may be missing, as when nobody was there; what lies between two steps may not be. With
     one moment only it is a second, or the part of one that goes into its time.
@@ -44,32 +41,30 @@ def time_step(path: Path, moments: list[int]) -> float:
         RulecError: R0610 for moments that are not all on one grid from time 0 on, or too far apart.
     """
     if len(moments) < 2:
-        return gcd(_MICROSECONDS, *moments) / _MICROSECONDS
+        return gcd(MICROSECONDS, *moments) / MICROSECONDS
     step = min(after - before for before, after in pairwise(moments))
     off = next((moment for moment in moments if moment % step), None)
     if off is not None:
         why = (
-            f"its times are uneven: {off / _MICROSECONDS:g} s is no multiple of "
-            f"{step / _MICROSECONDS:g} s, the shortest time from one to the next"
+            f"its times are uneven: {off / MICROSECONDS:g} s is no multiple of "
+            f"{step / MICROSECONDS:g} s, the shortest time from one to the next"
         )
         way_out = "have SUMO write every step, or one in so many (--device.fcd.period)"
         raise FCD.refused(path, why, help_text=way_out)
     spread = (moments[-1] - moments[0]) // step
     if spread > min(MOST_STEPS, SPARSEST * len(moments)):
         why = (
-            f"its {len(moments)} time steps of {step / _MICROSECONDS:g} s are spread over "
-            f"{(moments[-1] - moments[0]) / _MICROSECONDS:g} s"
+            f"its {len(moments)} time steps of {step / MICROSECONDS:g} s are spread over "
+            f"{(moments[-1] - moments[0]) / MICROSECONDS:g} s"
         )
         raise FCD.refused(path, why, help_text="look for a time that is wrong, or take a part")
-    return step / _MICROSECONDS
+    return step / MICROSECONDS
 
 
 def fcd_participants(
     key: str, track_rows: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
 ) -> Iterator[Participant]:
-    """The vehicles, persons and containers of floating-car data.
-
-    Who vanishes and comes back is another one then.
+    """The participants of a track: who vanishes and comes back is another one then.
 
     ``steps``: the time step of every moment of the file.
     """
@@ -81,15 +76,14 @@ def fcd_participants(
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
         name = key if number == 1 else f"{key}_{number}"
-        states = TrackStates(track)
-        own_lamps = _between(lamps, track)
+        first, last = int(own[start]), int(own[end - 1])
         yield Participant(
             id=name,
             type=kind.kind,
             standing=False,
-            states=states,
+            states=TrackStates(track),
             outlines=TrackOutlines(track),
-            lamps=own_lamps,
+            lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
         )
 
 
@@ -105,10 +99,7 @@ def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
 def _accelerations(
     track_rows: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
 ) -> NDArray[float64]:
-    """The accelerations, as stated or else from differences of speed.
-
-    A difference is the one since the step before.
-    """
+    """The accelerations, as stated or else from the difference of speed since the step before."""
     stated = np.array(track_rows.accelerations, dtype=float)
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
     return np.where(np.isnan(stated), changes, stated)
@@ -116,8 +107,3 @@ def _accelerations(
 
 def _lit(bits: int) -> frozenset[Lamp]:
     return frozenset(lamp for bit, lamps in _LAMPS if bits & bit for lamp in lamps)
-
-
-def _between(lamps: Mapping[int, frozenset[Lamp]], track: Track) -> dict[int, frozenset[Lamp]]:
-    first, last = int(track.steps[0]), int(track.steps[-1])
-    return {step: lit for step, lit in lamps.items() if first <= step <= last}

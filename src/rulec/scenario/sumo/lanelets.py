@@ -12,9 +12,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.scenario.recorded.recording import Lanelet, Points
-from rulec.scenario.sumo.lane_borders import parallel_line, without_repeats
+from rulec.scenario.recorded.reference_line import without_repeats
 from rulec.scenario.sumo.net import NetConnection, NetLane, SumoNet
-from rulec.scenario.sumo.traffic_lights import lane_lights
 
 _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}
@@ -27,6 +26,7 @@ _ALL = frozenset(
     | _RIDERS
     | _BUSES
 )
+_RAILS = {name for name in _ALL if name.startswith("rail")} | {"tram", "subway", "ship"}
 _KMH = 3.6
 _ROUNDED_KMH = 0.02
 """Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
@@ -34,11 +34,14 @@ _ROUNDED_KMH = 0.02
 _STOPS = {"s", "w"}
 _GIVES_WAY = "m"
 _ARMS = 3
+_CLOSEST_M = 0.01
+_SHARPEST = 0.5
+"""Where the line turns back on itself its border would run away; so far it may, at most."""
 
 
 def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     """Lane id -> lanelet, of all lanes that are longer than nothing."""
-    shapes = {lane.id: _shape(lane) for lane in net.lanes.values()}
+    shapes = {lane.id: without_repeats(lane.shape, _CLOSEST_M) for lane in net.lanes.values()}
     there = {key for key, shape in shapes.items() if len(shape) > 1}
     after = _successors(net.connections, there, set(net.lanes))
     before: dict[str, list[str]] = defaultdict(list)
@@ -47,7 +50,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             before[end].append(start)
     limits = _limits(net, before)
     junctions = _junctions(net)
-    lights = lane_lights(net, step_s)
+    lights = net.lane_lights(step_s)
     links: dict[str, list[NetConnection]] = defaultdict(list)
     entries: dict[str, list[NetConnection]] = defaultdict(list)
     for connection in net.connections:
@@ -78,10 +81,6 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     return lanelets
 
 
-def _shape(lane: NetLane) -> Points:
-    return without_repeats(lane.shape)
-
-
 def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
     """Left and right border, and the middle."""
     if lane.edge.function == "walkingarea" and len(shape) > 3:
@@ -92,6 +91,19 @@ def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
         right, left = _resampled(right, count), _resampled(left, count)
         return left, right, (left + right) / 2
     return parallel_line(shape, lane.width / 2), parallel_line(shape, -lane.width / 2), shape
+
+
+def parallel_line(points: Points, offset: float) -> Points:
+    """The parallel of a line of two or more different points, at a distance to the left."""
+    ahead = np.diff(points, axis=0)
+    ahead /= np.hypot(*ahead.T)[:, None]
+    across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
+    before = np.concatenate((across[:1], across))
+    after = np.concatenate((across, across[-1:]))
+    # Both pieces' parallels meet on the line that halves the angle between them
+    room = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
+    line: Points = points + offset * (before + after) / room[:, None]
+    return line
 
 
 def _resampled(points: Points, count: int) -> Points:
@@ -151,10 +163,7 @@ def _unrounded(limit_mps: float) -> float:
 
 
 def _junctions(net: SumoNet) -> set[str]:
-    """The nodes at which roads from several directions meet.
-
-    A road that only goes on makes none.
-    """
+    """The nodes at which roads from several directions meet."""
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
         if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
@@ -172,7 +181,7 @@ def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> 
         yield "sidewalk" if waits else "crosswalk"
     elif lane.edge.function == "walkingarea" or (permitted and permitted <= _WALKERS):
         yield "sidewalk"
-    elif not permitted & (_ALL - _WALKERS - {"ship"}) or not permitted - _rails():
+    elif not permitted & (_ALL - _WALKERS - {"ship"}) or not permitted - _RAILS:
         yield "restricted_area"
     elif permitted <= _WALKERS | _RIDERS:
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
@@ -182,10 +191,6 @@ def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> 
         yield "highway"
     if lane.edge.function == "internal" and lane.edge.id[1:].rpartition("_")[0] in junctions:
         yield "intersection"
-
-
-def _rails() -> frozenset[str]:
-    return frozenset(name for name in _ALL if name.startswith("rail")) | {"tram", "subway", "ship"}
 
 
 def _permitted(lane: NetLane) -> frozenset[str]:

@@ -1,17 +1,16 @@
-"""A SUMO net: edges with lanes, connections, and traffic light programmes."""
+"""A SUMO net: edges with lanes, connections, and traffic lights."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from xml.parsers.expat import XMLParserType
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import LONGEST_M, Points, Side
-from rulec.scenario.safe_xml import XmlFormat, scan
-from rulec.scenario.sumo.xml_element import XmlElement
+from rulec.scenario.recorded.recording import LONGEST_M, Light, Points, Side
+from rulec.scenario.safe_xml import scan
+from rulec.scenario.xml_element import XmlElement, XmlFormat
 
 NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
 
@@ -20,13 +19,23 @@ LANE_WIDTH_M = 3.2
 
 WIDEST_M = 100.0
 
+COLOURS: Mapping[str, str] = {
+    "r": "red",
+    "s": "red",
+    "u": "redYellow",
+    "y": "yellow",
+    "Y": "yellow",
+    "g": "green",
+    "G": "green",
+    "o": "inactive",
+    "O": "inactive",
+}
+"""SUMO's letters, and CommonRoad's words; ``s`` is red with an arrow that lets turn right."""
+
 
 @dataclass(frozen=True, slots=True)
 class NetEdge:
-    """An edge of a net, with its function and type.
-
-    ``function`` is empty for a road; ``type`` is what the map's source calls it.
-    """
+    """An edge: ``function`` is empty for a road, ``type`` is what the map's source calls it."""
 
     id: str
     function: str
@@ -37,9 +46,9 @@ class NetEdge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetLane:
-    """A lane of an edge, with its shape.
+    """A lane of an edge: ``index`` counts from the kerb on.
 
-    ``index`` counts from the kerb on; ``shape`` is the middle, of a walking area the outline.
+    ``shape`` is its middle, of a walking area the outline.
     """
 
     id: str
@@ -54,9 +63,9 @@ class NetLane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetConnection:
-    """A connection from a lane to the next one.
+    """A connection from a lane to the next one, over ``via`` within a junction.
 
-    It goes over ``via`` within a junction; ``link`` is its number at its ``light``.
+    ``link`` is its number at its ``light``.
     """
 
     start: str
@@ -69,27 +78,58 @@ class NetConnection:
 
 @dataclass(frozen=True, slots=True)
 class SignalProgramme:
-    """A traffic light's programme, by phase.
-
-    A phase has its duration (s) and a letter for each link. The programme begins at a given time.
-    """
+    """A traffic light's programme: phases of a duration (s) and a letter for each link."""
 
     begin: float
     phases: tuple[tuple[float, str], ...]
 
+    def light(self, link: int, step_s: float) -> Light | None:
+        """The light of a link in time steps, if the programme has any."""
+        phases: list[tuple[str, int]] = []
+        ends, done = 0.0, 0
+        for duration, letters in self.phases:
+            if not 0 <= link < len(letters):
+                return None
+            ends += duration
+            steps = round(ends / step_s) - done
+            done += steps
+            colour = COLOURS.get(letters[link], "inactive")
+            if phases and phases[-1][0] == colour:
+                phases[-1] = colour, phases[-1][1] + steps
+            elif steps:
+                phases.append((colour, steps))
+        return Light(round(self.begin / step_s), tuple(phases)) if phases else None
+
 
 @dataclass(slots=True)
 class SumoNet:
-    """The content of a SUMO net.
-
-    A light's programme is None if it reacts to traffic.
-    """
+    """The content of a SUMO net; a light that reacts to traffic has None as programme."""
 
     side: Side = "right"
     edges: dict[str, NetEdge] = field(default_factory=dict)
     lanes: dict[str, NetLane] = field(default_factory=dict)
     connections: list[NetConnection] = field(default_factory=list)
     programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
+
+    def lane_lights(self, step_s: float) -> dict[str, list[Light]]:
+        """Lane -> the lights at its end, one for each way on that has its own.
+
+        A light that reacts to traffic, or has several programmes, has none that one could tell.
+        """
+        lights: dict[str, list[Light]] = {}
+        for connection in self.connections:
+            programmes = self.programmes.get(connection.light, [])
+            if len(programmes) != 1 or programmes[0] is None:
+                continue
+            light = programmes[0].light(connection.link, step_s)
+            known = lights.setdefault(connection.start, [])
+            if light is not None and light not in known:
+                known.append(light)
+        return lights
+
+    def unknown_lights(self) -> list[str]:
+        """The lights whose programme is not known."""
+        return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
 
 
 def read_net(path: Path) -> SumoNet:
@@ -99,55 +139,50 @@ def read_net(path: Path) -> SumoNet:
         RulecError: R0610 if it is none, R0701 if it cannot be read.
     """
     net = SumoNet()
-    edge: list[NetEdge] = []
+    edge: NetEdge | None = None
+    light: XmlElement | None = None
     phases: list[tuple[float, str]] = []
-    light: list[XmlElement] = []
 
     def finish_light() -> None:
-        if light:
-            programme = _programme(light.pop(), tuple(phases))
-            net.programmes.setdefault(programme[0], []).append(programme[1])
+        nonlocal light
+        if light is not None:
+            fixed = light.attributes.get("type", "static") == "static"
+            programme = SignalProgramme(light.number("offset", 0.0), tuple(phases))
+            known = net.programmes.setdefault(light.text("id"), [])
+            known.append(programme if fixed and phases else None)
             phases.clear()
+            light = None
 
-    def begin(name: str, attributes: Mapping[str, str], parser: XMLParserType) -> None:
-        element = XmlElement(name, attributes, parser, path, NET)
-        if name != "phase":
+    def begin(element: XmlElement) -> None:
+        nonlocal edge, light
+        if element.name != "phase":
             finish_light()
-        if name == "net":
-            net.side = "left" if attributes.get("lefthand") in ("true", "1") else "right"
-        elif name == "edge":
-            edge[:] = [_edge(element)]
-            net.edges[edge[0].id] = edge[0]
-        elif name == "lane":
-            if not edge:
-                raise element.wrong("a `lane` is in no `edge`")
-            lane = _lane(element, edge[0])
-            if lane.id in net.lanes:
-                raise element.wrong(f"there are two lanes `{lane.id}`")
-            net.lanes[lane.id] = lane
-        elif name == "connection":
-            net.connections.append(_connection(element))
-        elif name == "tlLogic":
-            light[:] = [element]
-        elif name == "phase" and light:
-            phases.append((element.positive("duration"), element.text("state")))
+        match element.name:
+            case "net":
+                net.side = "left" if element.get("lefthand") in ("true", "1") else "right"
+            case "edge":
+                named = map(element.get, ("function", "type", "from", "to"))
+                edge = NetEdge(element.text("id"), *named)
+                net.edges[edge.id] = edge
+            case "lane":
+                if edge is None:
+                    raise element.wrong("a `lane` is in no `edge`")
+                lane = _lane(element, edge)
+                if lane.id in net.lanes:
+                    raise element.wrong(f"there are two lanes `{lane.id}`")
+                net.lanes[lane.id] = lane
+            case "connection":
+                net.connections.append(_connection(element))
+            case "tlLogic":
+                light = element
+            case "phase" if light is not None:
+                phases.append((element.positive("duration"), element.text("state")))
 
     scan(path, NET, begin)
     finish_light()
     if not net.lanes:
         raise NET.refused(path, "it has no lane")
     return net
-
-
-def _edge(element: XmlElement) -> NetEdge:
-    known = element.attributes
-    return NetEdge(
-        element.text("id"),
-        known.get("function", ""),
-        known.get("type", ""),
-        known.get("from", ""),
-        known.get("to", ""),
-    )
 
 
 def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
@@ -175,23 +210,11 @@ def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
 
 
 def _connection(element: XmlElement) -> NetConnection:
-    start = f"{element.text('from')}_{element.text('fromLane')}"
-    end = f"{element.text('to')}_{element.text('toLane')}"
-    known = element.attributes
-    link = int(element.number("linkIndex", -1.0))
     return NetConnection(
-        start=start,
-        end=end,
-        via=known.get("via", ""),
-        state=known.get("state", ""),
-        light=known.get("tl", ""),
-        link=link,
+        start=f"{element.text('from')}_{element.text('fromLane')}",
+        end=f"{element.text('to')}_{element.text('toLane')}",
+        via=element.get("via"),
+        state=element.get("state"),
+        light=element.get("tl"),
+        link=int(element.number("linkIndex", -1.0)),
     )
-
-
-def _programme(
-    element: XmlElement, phases: tuple[tuple[float, str], ...]
-) -> tuple[str, SignalProgramme | None]:
-    fixed = element.attributes.get("type", "static") == "static"
-    begin = element.number("offset", 0.0)
-    return element.text("id"), SignalProgramme(begin, phases) if fixed and phases else None

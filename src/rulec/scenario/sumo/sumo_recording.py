@@ -10,27 +10,23 @@ from numpy import int64
 
 from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
-from rulec.scenario.safe_xml import short
 from rulec.scenario.scenario_messages import OTHER_NET
 from rulec.scenario.sumo.companion_files import demand_beside, net_beside
-from rulec.scenario.sumo.fcd import FCD, FloatingCarData, read_fcd
+from rulec.scenario.sumo.fcd import FCD, MICROSECONDS, FloatingCarData, read_fcd
 from rulec.scenario.sumo.fcd_participants import fcd_participants, time_step
 from rulec.scenario.sumo.lanelets import net_lanelets
 from rulec.scenario.sumo.net import SumoNet, read_net
-from rulec.scenario.sumo.traffic_lights import unknown_lights
 from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
+from rulec.scenario.xml_element import short
 
 NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""
 
-_MICROSECONDS = 1_000_000
 _NAMED = 5
 
 
 def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
-    """Read floating-car data on the roads of a net.
-
-    The net is the one given, or the one beside the data.
+    """Read floating-car data on the roads of a net: the one given, or the one beside them.
 
     Raises:
         RulecError: R0610 for a file that cannot be read as what it should be, R0614 if there is no
@@ -66,7 +62,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
 def _participants(
     data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
 ) -> Iterator[Participant]:
-    step = round(step_s * _MICROSECONDS)
+    step = round(step_s * MICROSECONDS)
     steps = np.array(data.moments, dtype=int64) // step
     for key, track in data.tracks.items():
         kind, known = vehicle_type(track.type, track.element, types)
@@ -79,7 +75,7 @@ def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     guessed = sorted(unknown)
     if guessed:
         yield f"types that no file describes are taken to be as usual: {_some(guessed)}"
-    lights = [f"`{short(name)}`" for name in unknown_lights(net)]
+    lights = [f"`{short(name)}`" for name in net.unknown_lights()]
     if lights:
         yield f"the programmes of these traffic lights are not known: {_some(lights)}"
 
@@ -90,10 +86,7 @@ def _some(names: list[str]) -> str:
 
 
 def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
-    """Check that the net has all lanes and edges of the data.
-
-    Raises RulecError R0615.
-    """
+    """Check that the net has all lanes and edges of the data. Raises RulecError R0615."""
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):
             raise OTHER_NET.error(

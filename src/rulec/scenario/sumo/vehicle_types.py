@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from xml.parsers.expat import XMLParserType
 
-from rulec.scenario.safe_xml import XmlFormat, root_of, scan
-from rulec.scenario.sumo.xml_element import XmlElement
+from rulec.scenario.safe_xml import root_of, scan
+from rulec.scenario.xml_element import XmlElement, XmlFormat
 
 DEMAND = XmlFormat(
     "SUMO's vehicle types",
@@ -79,55 +78,38 @@ _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "containe
 
 
 def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
-    """Read the vehicle types that files describe.
-
-    Other files than those with types have none.
+    """Read the vehicle types that files describe, if any.
 
     Raises:
         RulecError: R0610 if a file is broken.
     """
     types: dict[str, VehicleType] = {}
+
+    def begin(element: XmlElement) -> None:
+        if element.name == "vType":
+            usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
+            types[element.text("id")] = VehicleType(
+                usual.kind,
+                element.positive("length", usual.length),
+                element.positive("width", usual.width),
+            )
+
     for path in files:
         root = root_of(path, DEMAND)
         if root in _ROOTS:
-            form = XmlFormat(DEMAND.words, root, DEMAND.help)
-
-            def begin(
-                name: str,
-                attributes: Mapping[str, str],
-                parser: XMLParserType,
-                path: Path = path,
-                form: XmlFormat = form,
-            ) -> None:
-                if name == "vType":
-                    element = XmlElement(name, attributes, parser, path, form)
-                    types[element.text("id")] = _described(element)
-
-            scan(path, form, begin)
+            scan(path, replace(DEMAND, root=root), begin)
     return types
-
-
-def _described(element: XmlElement) -> VehicleType:
-    usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
-    return VehicleType(
-        usual.kind,
-        element.positive("length", usual.length),
-        element.positive("width", usual.width),
-    )
 
 
 def vehicle_type(
     name: str, element: str, known: Mapping[str, VehicleType]
 ) -> tuple[VehicleType, bool]:
-    """The type of a participant, with a flag for a known one.
-
-    A type that is not known is assumed.
+    """The type of a participant, with a flag for a known one; else it is assumed.
 
     ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
     """
     if name in known:
         return known[name], True
-    usual = _BUILT_IN.get(name)
-    if usual is not None:
-        return CLASSES[usual], True
+    if name in _BUILT_IN:
+        return CLASSES[_BUILT_IN[name]], True
     return CLASSES.get(name, CLASSES[_USUAL[element]]), False
