@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from rulec.extraction.drives import NoDrive as NoDrive
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
-    from rulec.extraction.selection.requested import RequestedDrives as RequestedDrives
+    from rulec.extraction.selection import RequestedDrives as RequestedDrives
     from rulec.extraction.to_trace import Drive as Drive
     from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
@@ -118,7 +118,7 @@ _HOME = {
     "rulec.diagnostics.code": "Code",
     "rulec.extraction.drives": "NoDrive",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
-    "rulec.extraction.selection.requested": "RequestedDrives",
+    "rulec.extraction.selection": "RequestedDrives",
     "rulec.extraction.to_trace": "Drive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",

@@ -7,9 +7,8 @@ import pytest
 
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import RecordingVerdicts
-from rulec.extraction.selection.requested import RequestedDrives
-from rulec.extraction.violation_tally import ViolationTally
+from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
 from rulec.scenario.recording_files import read_recording

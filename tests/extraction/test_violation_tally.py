@@ -2,9 +2,8 @@
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
 from rulec.extraction.to_trace import Drive
-from rulec.extraction.violation_tally import ViolationTally
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
     from rulec.diagnostics import RulecError
     from rulec.extraction.recording_verdicts import RecordingVerdicts
-    from rulec.extraction.selection.requested import RequestedDrives
+    from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.scenario.recorded.recording import Recording
@@ -103,7 +103,7 @@ class TraceVerbs(SessionSettings):
                 not there, R0610 for a file that is no recording.
         """
         from rulec.extraction.recording_verdicts import RecordingVerdicts
-        from rulec.extraction.selection.requested import RequestedDrives
+        from rulec.extraction.selection import RequestedDrives
 
         file = recording if isinstance(recording, str | Path) else recording.name
         if isinstance(recording, str | Path):

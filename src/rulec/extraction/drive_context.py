@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy import intp
@@ -17,31 +18,29 @@ from rulec.scenario.recorded.recording import Recording, Side
 KMH = 3.6
 """km/h in one m/s."""
 
+_ONCOMING_COSINE = -0.7
+"""The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DriveContext:
     """Arrays of one drive: a row per participant, a column per state.
 
-    The rows are the participants that are ever relevant.
-
-    ``extents`` and ``tracks`` have these rows; ``ego`` and ``ego_extents`` have one. ``relevant``:
-    whether a participant counts for ego; ``touched``: the lanes that it reaches into, a third axis;
-    ``on_lane`` and ``on_crosswalk``: whether a vulnerable road user is on one of the map.
+    The rows are the participants that are ever relevant; ``ego`` and ``ego_extents`` have one.
+    ``relevant``: whether a participant counts for ego; ``touched``: the lanes that it reaches into,
+    a third axis.
     """
 
     recording: Recording
     thresholds: Thresholds
     side: Side
     road: DrivenRoad
-    first_step: int
     ego: Tracks
     ego_extents: RoadExtents
     tracks: Tracks
     extents: RoadExtents
     relevant: Flags
     touched: Flags
-    on_lane: Flags
-    on_crosswalk: Flags
 
     @property
     def states(self) -> int:
@@ -49,63 +48,96 @@ class DriveContext:
         return int(self.ego_extents.s.shape[1])
 
     @property
+    def first_step(self) -> int:
+        """The recording's time step of the first state."""
+        return self.ego.first
+
+    @cached_property
     def ego_lane(self) -> NDArray[intp]:
         """The lane of ego's middle by state, numbered from the right."""
         lane: NDArray[intp] = self.road.lane_of(self.ego_extents.w)[0]
         return lane
 
-    @property
+    @cached_property
+    def existing_lanes(self) -> Flags:
+        """Flags of the lanes (second axis) that exist beside ego, by state."""
+        return self.road.lanes_at(self.ego_extents.s[0])
+
+    @cached_property
+    def steady_lane(self) -> NDArray[intp]:
+        """Ego's lane with hysteresis: it is left only ``changed_m`` beyond its mark."""
+        straight = self.road.lanes.straight
+        lane = np.array(self.ego_lane)
+        middle = self.ego_extents.w[0]
+        for state in range(1, len(lane)):
+            before = lane[state - 1]
+            beyond = max(straight[before] - middle[state], middle[state] - straight[before + 1])
+            if beyond < self.thresholds.changed_m and self.existing_lanes[state, before]:
+                lane[state] = before
+        return lane
+
+    @cached_property
     def going_along(self) -> Flags:
         """Flags of participants that are vehicles going ego's way on its lanes."""
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
         return self.relevant & drives & (turned < 1.0) & self.touched.any(axis=-1)
 
-    def speeds(self) -> Floats:
-        """The participants' speeds along the road (km/h), 0 for those that stand."""
-        return zero_if_standing(self.extents.along * KMH, self.thresholds)
-
-
-def zero_if_standing(speed_kmh: Floats, thresholds: Thresholds) -> Floats:
-    """Speeds (km/h), exactly 0 below the threshold of standing."""
-    standing = abs(speed_kmh) < thresholds.standing_kmh
-    speeds: Floats = speed_kmh * ~standing
-    return speeds
+    def zero_if_standing(self, speed_kmh: Floats) -> Floats:
+        """Speeds (km/h), exactly 0 below the threshold of standing."""
+        speeds: Floats = speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
+        return speeds
 
 
 def drive_context(
-    *,
     recording: Recording,
-    thresholds: Thresholds,
-    side: Side,
     road: DrivenRoad,
+    side: Side,
+    thresholds: Thresholds,
+    *,
     tracks: Tracks,
     extents: RoadExtents,
-    relevant: Flags,
-    on_lane: Flags,
-    on_crosswalk: Flags,
     ego: int,
-    columns: tuple[int, int],
+    columns: slice,
 ) -> DriveContext:
-    """The part of a recording that one drive is about.
-
-    ``ego`` is a row of the arrays; ``columns`` are the first and the last one of the drive.
-    """
-    span = slice(columns[0], columns[1] + 1)
-    rows = relevant[:, span].any(axis=1).nonzero()[0]
-    own_extents = extents.part(rows, span)
+    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
+    own = np.array([ego])
+    relevant = _relevant(ego, tracks, extents, road, thresholds)[:, columns]
+    rows = relevant.any(axis=1).nonzero()[0]
+    others = extents.part(rows, columns)
     return DriveContext(
         recording=recording,
         thresholds=thresholds,
         side=side,
         road=road,
-        first_step=tracks.first + columns[0],
-        ego=tracks.part(np.array([ego]), span),
-        ego_extents=extents.part(np.array([ego]), span),
-        tracks=tracks.part(rows, span),
-        extents=own_extents,
-        relevant=relevant[rows, span],
-        touched=lanes_touched(own_extents, road, thresholds),
-        on_lane=on_lane[rows, span],
-        on_crosswalk=on_crosswalk[rows, span],
+        ego=tracks.part(own, columns),
+        ego_extents=extents.part(own, columns),
+        tracks=tracks.part(rows, columns),
+        extents=others,
+        relevant=relevant[rows],
+        touched=lanes_touched(others, road, thresholds),
     )
+
+
+def _relevant(
+    ego: int, tracks: Tracks, extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds
+) -> Flags:
+    """Flags of participants (rows) that count for ego, by step.
+
+    On ego's lanes everything counts that is near; beside them only vulnerable road users, and
+    oncoming vehicles that move at some time.
+    """
+    own = extents.of(ego)
+    gap = np.maximum(extents.s_min - own.s_max, own.s_min - extents.s_max)
+    on_lanes = lanes_touched(extents, road, thresholds).any(axis=-1)
+    straight = road.lanes.straight
+    beside = thresholds.beside_road_m
+    close = (extents.w_max > straight[0] - beside) & (extents.w_min < straight[-1] + beside)
+    vulnerable = tracks.of_type("vulnerable_user")
+    fastest = np.nan_to_num(tracks.speed).max(axis=1, initial=0.0)
+    moves = fastest * KMH >= thresholds.standing_kmh
+    oncoming = (np.cos(extents.turned) < _ONCOMING_COSINE) & moves[:, None]
+    counts = (gap <= thresholds.near_m) & (on_lanes | (close & (vulnerable[:, None] | oncoming)))
+    counts[ego] = False
+    relevant: Flags = counts & ~np.isnan(own.s_min)
+    return relevant

@@ -10,16 +10,16 @@ import numpy as np
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
-from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road
-from rulec.extraction.tracks.driven_route import RouteStretch, driven_stretches
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
-from rulec.extraction.tracks.map_matching import MatchedLanelets, match_to_map
-from rulec.extraction.tracks.relevance import relevant_participants
+from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road, junction_lanelets
+from rulec.extraction.tracks.map_matching import (
+    MatchedLanelets,
+    RouteStretch,
+    driven_stretches,
+    match_to_map,
+)
 from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
-from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
-from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.recording import Recording, Side
 
 FEWEST_STATES = 2
@@ -27,7 +27,7 @@ FEWEST_STATES = 2
 MOST_PLACES = 1 << 17
 """Extents of recordings with more participants times steps are computed drive by drive."""
 
-_DRIVERS = ("vehicle", "light_rider")
+_DRIVERS = frozenset({"vehicle", "light_rider"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +54,6 @@ class Drives:
         self._side: Side = side
         self._tracks = tracks_of(recording, thresholds)
         self._junctions = junction_lanelets(recording)
-        self._on_lane = on_lanes(recording, self._tracks)
-        self._on_crosswalk = on_crosswalks(recording, self._tracks)
         self._matches = match_to_map(recording, self._tracks)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
@@ -64,23 +62,17 @@ class Drives:
         return tuple(
             body.id
             for body in self._tracks.participants
-            if not body.standing and set(OBSTACLE_TYPES.get(body.type, ())).intersection(_DRIVERS)
+            if not body.standing and _DRIVERS.intersection(body.object_types)
         )
 
     def kinds(self) -> dict[str, type]:
-        """The Python type of each signal of all drives.
-
-        Empty if there is no drive.
-        """
+        """The Python type of each signal of all drives, empty if there is no drive."""
         drives = (x for ego in self.egos() for x in self.of(ego) if isinstance(x, Drive))
         first = next(drives, None)
         return {} if first is None else dict(first.kinds)
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
-        """The drives of one vehicle, usually one.
-
-        There are several if it leaves its road or the recording jumps.
-        """
+        """The drives of one vehicle: several if it leaves its road or the recording jumps."""
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
         stretches = [
             stretch
@@ -100,27 +92,21 @@ class Drives:
         if isinstance(laid_out, str):
             return NoDrive(ego, laid_out)
         road, extents = laid_out
-        tracks, columns = self._tracks, (stretch.first, stretch.last)
-        on_lane, on_crosswalk = self._on_lane, self._on_crosswalk
+        tracks, columns = self._tracks, slice(stretch.first, stretch.last + 1)
         if extents is None:
-            span = slice(stretch.first, stretch.last + 1)
-            rows = tracks.present[:, span].any(axis=1).nonzero()[0]
+            rows = tracks.present[:, columns].any(axis=1).nonzero()[0]
             row = int(np.searchsorted(rows, row))
-            tracks, columns = tracks.part(rows, span), (0, stretch.last - stretch.first)
-            on_lane, on_crosswalk = on_lane[rows, span], on_crosswalk[rows, span]
+            tracks, columns = tracks.part(rows, columns), slice(0, None)
             extents = road_extents(tracks, road)
-        if np.isnan(extents.w[row, columns[0] : columns[1] + 1]).any():
+        if np.isnan(extents.w[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(
-            recording=self.recording,
-            thresholds=self._thresholds,
-            side=self._side,
-            road=road,
+            self.recording,
+            road,
+            self._side,
+            self._thresholds,
             tracks=tracks,
             extents=extents,
-            relevant=relevant_participants(row, tracks, extents, road, self._thresholds),
-            on_lane=on_lane,
-            on_crosswalk=on_crosswalk,
             ego=row,
             columns=columns,
         )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -16,10 +17,7 @@ from rulec.extraction.drive_context import DriveContext
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """A participant's row and the columns of its presence.
-
-    It is an object of a trace; the first and the last column are included.
-    """
+    """An object of a trace: a participant's row, first and last column of its presence."""
 
     name: str
     row: int
@@ -30,8 +28,7 @@ class Presence:
 def presences(context: DriveContext) -> Iterator[Presence]:
     """The contiguous presences of all participants; absences up to ``away_s`` are bridged.
 
-    An absence in which a participant is not beside the road is never bridged: there its extents
-    are not known.
+    Those in which a participant is not beside the road never are: its extents are not known then.
     """
     longest = round(context.thresholds.away_s / context.recording.step_s)
     participants = context.tracks.participants
@@ -46,13 +43,8 @@ def presences(context: DriveContext) -> Iterator[Presence]:
             if columns[k] - columns[k - 1] > longest + 1 or gone[columns[k]] > gone[columns[k - 1]]
         ]
         for number, part in enumerate(np.split(columns, breaks), 1):
-            name = body.id if number == 1 else _free_name(body.id, taken)
+            name = body.id
+            if number > 1:
+                name = next(free for k in count(2) if (free := f"{body.id}_{k}") not in taken)
+                taken.add(name)
             yield Presence(name, row, int(part[0]), int(part[-1]))
-
-
-def _free_name(name: str, taken: set[str]) -> str:
-    number = 2
-    while f"{name}_{number}" in taken:
-        number += 1
-    taken.add(f"{name}_{number}")
-    return f"{name}_{number}"

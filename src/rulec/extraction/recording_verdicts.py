@@ -1,14 +1,14 @@
-"""The verdicts on recorded drives: each vehicle is ego in turn."""
+"""The verdicts on recorded drives, each vehicle being ego in turn, and their sums."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.selection.requested import RequestedDrives, selected_drives
+from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
@@ -39,21 +39,18 @@ class RecordingVerdicts(Rows):
     """
 
     def __init__(
-        self,
-        recording: Recording,
-        rulebook: CompiledRulebook,
-        wanted: RequestedDrives,
-        file: str,
+        self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
     ) -> None:
-        rules = rulebook.fitted_to(recording.step_s)
-        self.rules = rules
+        self.rules = rulebook.fitted_to(recording.step_s)
+        formulas = [rule.formula for rule in self.rules.rules]
+        formulas += [axiom.formula for axiom in self.rules.axioms]
         self.drives = selected_drives(
             recording,
-            wanted,
+            request,
             file,
-            traffic=rules.traffic,
-            vocabulary=rules.vocabulary,
-            names=_names_read(rules),
+            traffic=self.rules.traffic,
+            vocabulary=self.rules.vocabulary,
+            names=frozenset(name for formula in formulas for name in names_in(formula)),
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
@@ -97,11 +94,6 @@ class RecordingVerdicts(Rows):
         return f"RecordingVerdicts({self.rules.name}, {len(self.egos):,} vehicles)"
 
 
-def _names_read(rules: CompiledRulebook) -> frozenset[str]:
-    formulas = [rule.formula for rule in rules.rules] + [axiom.formula for axiom in rules.axioms]
-    return frozenset(name for formula in formulas for name in names_in(formula))
-
-
 def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
     row: dict[str, Any] = {"ego": "", "trace": None, "start_s": None, "satisfied": None}
     row |= {"violated": [], "why": ""}
@@ -113,3 +105,39 @@ def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
         return row | {"why": str(verdict.error)}
     violated = [violation.rule for violation in verdict.violations]
     return row | {"satisfied": verdict.satisfied, "violated": violated}
+
+
+@dataclass(slots=True)
+class ViolationTally:
+    """Verdicts, counted drive by drive.
+
+    ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``words`` are
+    the names of the signals that every drive supplies.
+    """
+
+    satisfied: list[str] = field(default_factory=list)
+    violated: list[str] = field(default_factory=list)
+    not_judged: list[NoDrive] = field(default_factory=list)
+    first_s: dict[str, dict[str, float]] = field(default_factory=dict)
+    words: frozenset[str] | None = None
+
+    @property
+    def judged(self) -> int:
+        """The number of drives that have a verdict."""
+        return len(self.satisfied) + len(self.violated)
+
+    def add(self, verdict: DriveVerdict | NoDrive) -> None:
+        """Count a drive."""
+        if isinstance(verdict, NoDrive):
+            self.not_judged.append(verdict)
+            return
+        drive, answer = verdict.drive, verdict.answer
+        if not isinstance(answer, Verdict):
+            self.not_judged.append(NoDrive(drive.ego, answer.error.diagnostics[0].message))
+            return
+        self.words = drive.words if self.words is None else self.words & drive.words
+        (self.satisfied if answer.satisfied else self.violated).append(drive.trace.id)
+        for violation in answer.violations:
+            times = self.first_s.setdefault(violation.rule, {})
+            at = drive.time_s(violation.step)
+            times[drive.trace.id] = min(at, times.get(drive.trace.id, at))

@@ -9,22 +9,20 @@ from typing import Any
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.drive_projection import project_columns
 from rulec.extraction.presence import Presence, presences
 from rulec.extraction.signals.crossing_signals import crossing_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.junction_signals import junction_signals
-from rulec.extraction.signals.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
+from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from rulec.extraction.signals.map_signals import map_signals
 from rulec.extraction.signals.participant_signals import participant_signals
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.partition.cell_graph import PAPER_SURFACE
 from rulec.trace import State, Trace, Value
-from rulec.trace.vocabulary_projection import known_types
+from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
 from rulec.value_display import short_repr
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 
 _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
     ego_signals,
@@ -43,9 +41,7 @@ _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A drive of ``ego`` as a trace from ``start_s`` on.
-
-    ``start_s`` is in seconds of the recording.
+    """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
 
     ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
     object is there to have them.
@@ -64,10 +60,7 @@ class Drive:
         return frozenset(self.kinds)
 
     def time_s(self, state: int | None) -> float:
-        """The time of a state (s of the recording).
-
-        None stands for the last state.
-        """
+        """The time of a state (s of the recording), None being the last state."""
         number = len(self.trace.states) - 1 if state is None else state
         return round(self.start_s + number * self.trace.step_s, 9)
 
@@ -92,10 +85,9 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     signals = SignalColumns()
     for signals_of in _SIGNALS:
         signals |= signals_of(context)
-    participants = context.tracks.participants
-    types = [OBSTACLE_TYPES.get(x.type, OBSTACLE_TYPES["unknown"]) for x in participants]
+    types = [body.object_types for body in context.tracks.participants]
     if writer.vocabulary is not None:
-        signals = project_columns(signals, types, writer.vocabulary, writer.names)
+        signals = _projected(signals, types, writer.vocabulary, writer.names)
     signals |= SignalColumns(
         {name: np.full(context.states, value) for name, value in writer.assumed.items()}
     )
@@ -119,6 +111,49 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     columns = {**signals.world, **signals.about}
     kinds = {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
     return Drive(ego, start_s, trace, kinds)
+
+
+def _projected(
+    signals: SignalColumns,
+    types: Sequence[Sequence[str]],
+    vocabulary: Vocabulary,
+    names: frozenset[str] | None,
+) -> SignalColumns:
+    """The signals that a vocabulary declares, optionally only those in ``names``.
+
+    ``types`` are those of the objects, a row each, the most specific first.
+    """
+    own_types = [known_type(row, vocabulary) for row in types]
+    world, about, only = {}, {}, dict(signals.only)
+    for name, declaration in vocabulary.declarations.items():
+        if names is not None and name not in names:
+            continue
+        if name in signals.world and not declaration.parameters:
+            column = _in_paper_words(name, signals.world[name], declaration)
+            if _fits(name, column, declaration):
+                world[name] = column
+        if name in signals.about and len(declaration.parameters) == 1:
+            column = signals.about[name]
+            if _fits(name, column, declaration):
+                about[name] = column
+                suits = [is_about(declaration, own, vocabulary) for own in own_types]
+                only[name] = np.array(suits, dtype=bool) & only.get(name, True)
+    return SignalColumns(world, about, signals.unknown, only)
+
+
+def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
+    """Surfaces in the paper's two words, for vocabularies with only those."""
+    if name != "surface" or not isinstance(declaration, Enumeration):
+        return column
+    if not set(PAPER_SURFACE.values()).issuperset(declaration.values):
+        return column
+    return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
+
+
+def _fits(name: str, column: SignalColumn, declaration: Declaration) -> bool:
+    # All floats are alike; the distinct values of others are few
+    values = column.ravel()[:1] if column.dtype.kind == "f" else np.unique(column)
+    return fits(name, values.tolist(), declaration)
 
 
 def _states(signals: SignalColumns, present: Sequence[Presence], count: int) -> tuple[State, ...]:

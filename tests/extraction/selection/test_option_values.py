@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.selection.option_values import assumption_options, threshold_options
+from rulec.extraction.selection import assumption_options, threshold_options
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 

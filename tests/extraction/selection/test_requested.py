@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.extraction.selection.requested import RequestedDrives, selected_drives
+from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.drive_contexts import steady
 from support.builders.recordings import recording

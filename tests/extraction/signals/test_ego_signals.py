@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rulec.extraction.signals.ego_signals import ego_signals, steady_lane
+from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
@@ -110,8 +110,7 @@ def test_no_edge_is_kept_to_in_a_lane_hardly_wider_than_ego():
 def test_a_lane_is_left_only_well_beyond_its_mark():
     found = recording(lanes(2), [drive((0, 1.9), (5, 2.2), (10, 2.4), (15, 1.8), (20, 1.6))])
     context = context_of(found)
-    existing = context.road.lanes_at(context.ego_extents.s[0])
     assert context.ego_lane.tolist() == [0, 1, 1, 0, 0]
-    assert steady_lane(context, existing).tolist() == [0, 0, 1, 1, 0]
+    assert context.steady_lane.tolist() == [0, 0, 1, 1, 0]
     early = replace(context, thresholds=replace(context.thresholds, changed_m=0.1))
-    assert steady_lane(early, existing).tolist() == [0, 1, 1, 0, 0]
+    assert early.steady_lane.tolist() == [0, 1, 1, 0, 0]

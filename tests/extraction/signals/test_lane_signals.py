@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rulec.extraction.signals.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
+from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes

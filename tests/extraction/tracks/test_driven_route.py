@@ -2,8 +2,7 @@
 
 import pytest
 
-from rulec.extraction.tracks.driven_route import driven_stretches
-from rulec.extraction.tracks.map_matching import match_to_map
+from rulec.extraction.tracks.map_matching import driven_stretches, match_to_map
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import recording, straight, vehicle

@@ -5,7 +5,7 @@ from math import cos, radians, sin
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
+from rulec.extraction.tracks.driven_road import junction_lanelets
 from support.builders.recordings import lanelet, recording, straight
 
 

@@ -1,7 +1,6 @@
 """The surface under vulnerable road users."""
 
 from rulec.extraction.tracks.tracks import tracks_of
-from rulec.extraction.tracks.vulnerable_user_surface import on_crosswalks, on_lanes
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -17,12 +16,12 @@ def test_lanes_of_any_direction_and_crossings_count():
     car = vehicle(3, dict.fromkeys(range(5), (50, 0)))
     found = recording([straight(1, 100, 0), ZEBRA, PAVEMENT], [walker, cyclist, car])
     tracks = tracks_of(found, USUAL)
-    assert on_lanes(found, tracks).tolist() == [
+    assert tracks.on_lane.tolist() == [
         [False, True, True, False, False],
         [True, False, False, False, False],
         [False] * 5,
     ]
-    assert on_crosswalks(found, tracks).tolist() == [
+    assert tracks.on_crosswalk.tolist() == [
         [True, True, False, False, False],
         [False] * 5,
         [False] * 5,
@@ -32,5 +31,5 @@ def test_lanes_of_any_direction_and_crossings_count():
 def test_a_map_without_such_surfaces_has_nobody_on_them():
     found = recording([PAVEMENT], [vehicle(1, {0: (50, 0)}, "pedestrian")])
     tracks = tracks_of(found, USUAL)
-    assert not on_lanes(found, tracks).any()
-    assert not on_crosswalks(found, tracks).any()
+    assert not tracks.on_lane.any()
+    assert not tracks.on_crosswalk.any()

@@ -2,7 +2,7 @@
 
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
-from rulec.extraction.selection.requested import RequestedDrives
+from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 
 

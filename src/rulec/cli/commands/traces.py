@@ -124,7 +124,7 @@ def _write_drives(
 ) -> None:
     """Write what the vehicles of a recording did."""
     # numpy and shapely, 200 ms: only for recordings.
-    from rulec.extraction.selection.requested import selected_drives
+    from rulec.extraction.selection import selected_drives
     from rulec.extraction.to_trace import Drive
     from rulec.scenario.recording_files import read_recording
     from rulec.scenario.scenario_messages import NOT_IN_RECORDING

@@ -35,7 +35,7 @@ from rulec.report.text.console import print_result, progress
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.extraction.selection.requested import RequestedDrives
+    from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
@@ -161,8 +161,7 @@ class _Run:
     def recording(self, file: str, net: Path | None, wanted: RequestedDrives) -> None:
         """Judge every drive of a recording."""
         # numpy and shapely, 250 ms: only for recordings.
-        from rulec.extraction.recording_verdicts import DriveVerdict
-        from rulec.extraction.violation_tally import ViolationTally
+        from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
         from rulec.report.verdicts import recording_json

@@ -10,7 +10,7 @@ import click
 from rulec.cli.options.shared_options import combined
 
 if TYPE_CHECKING:
-    from rulec.extraction.selection.requested import RequestedDrives
+    from rulec.extraction.selection import RequestedDrives
     from rulec.vocabulary import Vocabulary
 
 
@@ -68,8 +68,7 @@ def requested_drives(
         click.BadParameter: an assumption or a threshold is none.
     """
     # numpy and shapely, 150 ms: only for recordings.
-    from rulec.extraction.selection.option_values import assumption_options, threshold_options
-    from rulec.extraction.selection.requested import RequestedDrives
+    from rulec.extraction.selection import RequestedDrives, assumption_options, threshold_options
 
     if options["assumed"] and vocabulary is None:
         raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")

@@ -45,7 +45,7 @@ def _crossing_uses(context: DriveContext) -> NDArray[intp]:
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
     walks = context.tracks.speed * KMH >= limits.standing_kmh
     towards = _towards(context)
-    crossing = beside & context.on_crosswalk & context.on_lane
+    crossing = beside & context.tracks.on_crosswalk & context.tracks.on_lane
     on = crossing & (context.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross

@@ -21,7 +21,7 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(context)
-    existing = context.road.lanes_at(context.ego_extents.s[0])
+    existing = context.existing_lanes
     dense = np.all(np.logical_or(queues, ~existing), axis=1) & np.any(existing, axis=1)
     return SignalColumns(
         {
@@ -39,7 +39,7 @@ def flow_signals(context: DriveContext) -> SignalColumns:
 
 def _close(context: DriveContext) -> Flags:
     reach = context.thresholds.flow_reach_m
-    return context.going_along & (relations.gap(context.ego_extents, context.extents) <= reach)
+    return context.going_along & (relations.gap(context) <= reach)
 
 
 def _around(context: DriveContext) -> tuple[Floats, Floats]:
@@ -89,20 +89,17 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
 
 def _sides(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego being on each participant's far and near side."""
-    lateral = relations.lateral(context.ego_extents, context.extents, context.touched, context.road)
+    lateral = relations.lateral(context)
     left, right = lateral == relations.LEFT_OF, lateral == relations.RIGHT_OF
     return (left, right) if context.side == "right" else (right, left)
 
 
 def _overtaking(context: DriveContext) -> Flags:
-    """Flags of ego overtaking a slower vehicle on its far side.
-
-    They begin shortly before ego is beside it and end just past it.
-    """
+    """Flags of ego overtaking a slower vehicle on its far side, from shortly before to past it."""
     limits = context.thresholds
     far, _ = _sides(context)
-    station = relations.station(context.ego_extents, context.extents)
-    gap = relations.gap(context.ego_extents, context.extents)
+    station = relations.station(context)
+    gap = relations.gap(context)
     faster = context.ego_extents.along - context.extents.along
     soon = (station == relations.BEHIND) & (gap <= faster * limits.catching_up_s)
     beside = station == relations.BESIDE
@@ -113,14 +110,11 @@ def _overtaking(context: DriveContext) -> Flags:
 
 
 def _being_overtaken(context: DriveContext) -> Flags:
-    """Flags of ego being overtaken, or about to be, by state.
-
-    The vehicle is faster, and ego is on its near side.
-    """
+    """Flags of a faster vehicle that overtakes ego, or is about to, on ego's far side."""
     limits = context.thresholds
     _, near = _sides(context)
-    station = relations.station(context.ego_extents, context.extents)
-    gap = relations.gap(context.ego_extents, context.extents)
+    station = relations.station(context)
+    gap = relations.gap(context)
     faster = context.extents.along - context.ego_extents.along
     soon = (station == relations.IN_FRONT_OF) & (gap <= faster * limits.passed_s)
     beside = station == relations.BESIDE

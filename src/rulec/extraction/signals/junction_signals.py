@@ -44,10 +44,7 @@ def junction_signals(context: DriveContext) -> SignalColumns:
 
 
 def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
-    """Flags that hold now or within ``preparing_s`` from now.
-
-    Intentions are read off what ego did.
-    """
+    """Flags that hold now or within ``preparing_s``: intentions are read off what ego did."""
     states = round(context.thresholds.preparing_s / context.recording.step_s)
     ahead = np.append(np.cumsum(flags[::-1])[::-1], 0)
     until = np.minimum(np.arange(context.states) + states + 1, context.states)
@@ -62,10 +59,7 @@ def _passes(front: Floats, line: float) -> Flags:
 
 
 def _crosses_stop_line(context: DriveContext, front: Floats) -> Flags:
-    """Flags of ego leaving a lanelet with a stop sign.
-
-    The line is at the lanelet's end.
-    """
+    """Flags of ego leaving a lanelet with a stop sign, at whose end the line is."""
     crosses = np.zeros(context.states, dtype=bool)
     lanes = context.ego_lane.tolist()
     for piece, end in enumerate(context.road.borders[1:].tolist()):
@@ -87,9 +81,7 @@ def _turn(context: DriveContext, start: float, end: float) -> str:
 
 
 def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags]:
-    """The light for ego, and flags of ego crossing its line.
-
-    A light that shows several colours is empty.
+    """The light for ego, empty for several colours, and flags of ego crossing its line.
 
     A light is for who is on its lanelet, at whose end the line is. In the state in which ego
     crosses the line the light is still the one that it crosses.

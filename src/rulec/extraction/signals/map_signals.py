@@ -62,20 +62,14 @@ def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
 
 
 def distance_to_crossing(context: DriveContext) -> Floats:
-    """The distance (m) from ego's front to the next crossing.
-
-    It is a pedestrian crossing; on it the distance is 0.
-    """
+    """The distance (m) from ego's front to the next pedestrian crossing, 0 on it."""
     start, _ = next_crossing(context)
     distance: Floats = np.clip(start - context.ego_extents.s_max[0], 0.0, NO_CROSSING_M)
     return distance
 
 
 def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
-    """Begin and end of ego's present or next pedestrian crossing, by state.
-
-    Infinite where there is none.
-    """
+    """Begin and end of ego's present or next pedestrian crossing by state, or infinity."""
     start, end = np.full((2, context.states), np.inf)
     for low, high in sorted(context.road.crossings, reverse=True):
         before = context.ego_extents.s_min[0] < high
@@ -84,10 +78,7 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
-    """The surface under ego, by state.
-
-    A crossing counts under any part of ego, all else under its middle.
-    """
+    """The surface under ego's middle, but a crossing under any part of it."""
     middle = context.ego_extents.s[0]
     surfaces = np.full(context.states, "carriageway", dtype="<U11")
     for start, end in context.road.junctions:

@@ -18,29 +18,27 @@ _TWO_WHEELED = ("motorcycle", "bicycle")
 
 def participant_signals(context: DriveContext) -> SignalColumns:
     """The signals of objects."""
-    own, others, limits = context.ego_extents, context.extents, context.thresholds
-    station = relations.station(own, others)
-    lateral = relations.lateral(own, others, context.touched, context.road)
-    gap = relations.gap(own, others)
+    station, lateral = relations.station(context), relations.lateral(context)
+    gap = relations.gap(context)
     bodies = context.tracks.participants
-    walking = context.tracks.of_type("pedestrian")
+    speeds = context.zero_if_standing(context.extents.along * KMH)
     follows = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
     return SignalColumns(
         about={
-            "position": relations.position(own, others, context.touched, walking, context.road),
+            "position": relations.position(context),
             "station": named_values(station, STATIONS),
             "lateral": named_values(lateral, LATERALS),
             "gap": rounded(gap),
             "time_headway": rounded(_headway(context, gap)),
-            "lateral_gap": rounded(relations.lateral_gap(own, others)),
-            "speed_difference": rounded(own.along * KMH - context.speeds()),
+            "lateral_gap": rounded(relations.lateral_gap(context)),
+            "speed_difference": rounded(context.ego_extents.along * KMH - speeds),
             "safe_gap": np.logical_or(~follows, gap >= safe_distance(context)),
             "precedes": _precedes(context, follows, gap),
             "oncoming": is_oncoming(context) | _waits_oncoming(context),
-            "stopped": context.tracks.speed * KMH < limits.standing_kmh,
+            "stopped": context.tracks.speed * KMH < context.thresholds.standing_kmh,
             "parked": _constant(context, [body.standing for body in bodies]),
             "two_wheeled": _constant(context, [body.type in _TWO_WHEELED for body in bodies]),
-            "in_the_road": context.on_lane,
+            "in_the_road": context.tracks.on_lane,
         },
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
     )
@@ -74,11 +72,9 @@ def is_oncoming(context: DriveContext) -> Flags:
 
 
 def _waits_oncoming(context: DriveContext) -> Flags:
-    """Flags of vehicles that stand on lanes against ego's way.
+    """Flags of vehicles that stand on lanes against ego's way, in a queue for example.
 
-    They do so in a queue there, for example.
-
-    Ego does not overtake it, no more than one that moves. A vehicle that stands the wrong way
+    Ego does not overtake them, no more than ones that move. A vehicle that stands the wrong way
     round in ego's own lanes is an obstacle there.
     """
     stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh

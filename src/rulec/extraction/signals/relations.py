@@ -11,9 +11,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.tracks.tracks import Floats
 from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
 
@@ -27,25 +27,27 @@ _STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
-def station(ego: RoadExtents, others: RoadExtents) -> Codes:
+def station(context: DriveContext) -> Codes:
     """Ego behind, beside or in front of others, as indices into ``STATIONS``."""
-    behind = ego.s_max <= others.s_min
-    ahead = ego.s_min >= others.s_max
-    return np.where(behind, BEHIND, np.where(ahead, IN_FRONT_OF, BESIDE))
+    return _along(context.ego_extents, context.extents.s_min, context.extents.s_max)
 
 
-def lateral(ego: RoadExtents, others: RoadExtents, touched: Flags, road: DrivenRoad) -> Codes:
-    """Ego's lateral relation to others, as indices into ``LATERALS``.
-
-    Ego is right of them, in their lanes, or left of them.
-    """
-    low, high = _widened(others, touched, road)
-    return _side(ego.w, low, high)
+def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
+    return np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
 
 
-def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Floats, Floats]:
+def lateral(context: DriveContext) -> Codes:
+    """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``."""
+    return _across(context.ego_extents, *_lane_bounds(context))
+
+
+def _across(ego: RoadExtents, low: Floats, high: Floats) -> Codes:
+    return np.where(ego.w <= low, RIGHT_OF, np.where(ego.w >= high, LEFT_OF, SAME_LANE))
+
+
+def _lane_bounds(context: DriveContext) -> tuple[Floats, Floats]:
     """The bounds of others' lanes; their own bounds off the lanes."""
-    straight = road.lanes.straight
+    straight, touched, others = context.road.lanes.straight, context.touched, context.extents
     first = touched.argmax(axis=-1)
     last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
     inside = touched.any(axis=-1)
@@ -55,42 +57,39 @@ def _widened(others: RoadExtents, touched: Flags, road: DrivenRoad) -> tuple[Flo
     )
 
 
-def _side(w: Floats, low: Floats, high: Floats) -> Codes:
-    return np.where(w <= low, RIGHT_OF, np.where(w >= high, LEFT_OF, SAME_LANE))
-
-
-def gap(ego: RoadExtents, others: RoadExtents) -> Floats:
+def gap(context: DriveContext) -> Floats:
     """The distance (m) along the road between bodies, 0 beside each other."""
+    ego, others = context.ego_extents, context.extents
     return np.maximum(np.maximum(others.s_min - ego.s_max, ego.s_min - others.s_max), 0.0)
 
 
-def lateral_gap(ego: RoadExtents, others: RoadExtents) -> Floats:
+def lateral_gap(context: DriveContext) -> Floats:
     """The distance (m) across the road between bodies, 0 behind each other."""
+    ego, others = context.ego_extents, context.extents
     return np.maximum(np.maximum(others.d_min - ego.d_max, ego.d_min - others.d_max), 0.0)
 
 
-def position(
-    ego: RoadExtents, others: RoadExtents, touched: Flags, walking: Flags, road: DrivenRoad
-) -> NDArray[np.str_]:
+def position(context: DriveContext) -> NDArray[np.str_]:
     """The paper's position letters b, f, l and r.
 
-    Pedestrians have a frame of their own.
-
-    Where bodies are beside each other in one lane their middles decide.
+    Pedestrians have a frame of their own. Where bodies are beside each other in one lane their
+    middles decide.
     """
-    low, high = _widened(others, touched, road)
-    s_min, s_max = others.s_min.copy(), others.s_max.copy()
-    facing = np.where(walking[:, None], _facing(others), 0)
-    across = walking[:, None] & (facing % 2 == 1)
+    ego, others = context.ego_extents, context.extents
+    walking = context.tracks.of_type("pedestrian")[:, None]
+    low, high = _lane_bounds(context)
+    s_min, s_max = others.s_min, others.s_max
+    facing = np.where(walking, _facing(others), 0)
+    across = walking & (facing % 2 == 1)
     low, high = np.where(across, others.w_min, low), np.where(across, others.w_max, high)
-    for start, end in road.crossings:
+    for start, end in context.road.crossings:
         on = across & (s_min < end) & (s_max > start)
         s_min, s_max = (
             np.where(on, np.minimum(s_min, start), s_min),
             np.where(on, np.maximum(s_max, end), s_max),
         )
-    column = np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
-    row = _side(ego.w, low, high)
+    column = _along(ego, s_min, s_max)
+    row = _across(ego, low, high)
     inside = (row == SAME_LANE) & (column == BESIDE)
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])
@@ -99,9 +98,7 @@ def position(
 
 
 def _facing(others: RoadExtents) -> Codes:
-    """The direction of motion, or heading at rest, by right angles.
-
-    The angles are relative to the road.
+    """The direction of motion, or heading at rest, by right angles to the road.
 
     Indices into ``_FACING``; half-way counts as across the road.
     """

@@ -19,7 +19,6 @@ class SignalColumns:
     """The signals of a drive, in arrays with a column per state.
 
     ``world``: a value for each state. ``about``: a row of values for each participant.
-
     ``unknown``: the states in which a signal of the world has no value. ``only``: the participants
     that a signal about objects applies to.
     """
@@ -44,8 +43,5 @@ def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
 
 
 def rounded(values: SignalColumn) -> SignalColumn:
-    """Round numbers to a hundredth, without negative zeros.
-
-    Places are no better known.
-    """
+    """Round numbers to a hundredth, no better being known, without negative zeros."""
     return np.round(values, 2) + 0.0

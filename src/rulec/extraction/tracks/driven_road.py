@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import groupby
+from math import radians
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -16,19 +18,25 @@ from rulec.scenario.recorded.crosswalks import road_crossings
 from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes_along
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
-from rulec.scenario.recorded.route import extended_route, lanes_beside
+from rulec.scenario.recorded.route import (
+    directions_beside,
+    extended_route,
+    is_lane,
+    lanes_beside,
+)
 from rulec.scenario.recorded.traffic_obstacles import TrafficView
+
+_CROSSING_ANGLE = radians(30.0)
+"""Ways that meet at a smaller angle run into each other, as where lanes join or part."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DrivenRoad:
     """The road of a drive, with ego's own lanelets end to end.
 
-    Lanelet ``i`` lies from ``borders[i]`` to ``borders[i + 1]``.
-
-    ``rows[i]`` are those beside each other there, a lane each, from the right; None where the map
-    has none. ``crossings`` are pedestrian crossings and ``junctions`` junctions, from where to
-    where along the road.
+    Lanelet ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are those beside each
+    other there, a lane each, from the right, None where the map has none. ``crossings`` are
+    pedestrian crossings and ``junctions`` junctions, from where to where along the road.
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
@@ -108,3 +116,29 @@ def _runs(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float
         if flag:
             run = list(pieces)
             yield float(borders[run[0]]), float(borders[run[-1] + 1])
+
+
+def junction_lanelets(recording: Recording) -> frozenset[str]:
+    """The ids of the lanelets in junctions, by the map or by crossing ways.
+
+    Where a map marks any, only those count: whoever drew it has thought of junctions.
+    """
+    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
+    marked = {lanelet.id for lanelet in lanes if "intersection" in lanelet.types}
+    if marked or not lanes:
+        return frozenset(marked)
+    lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
+    firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
+    crossing: set[str] = set()
+    for first, second in zip(firsts.tolist(), seconds.tolist(), strict=True):
+        meeting = shapely.intersection(lines[first], lines[second])
+        if first < second and _angle(lanes[first], lanes[second], meeting) > _CROSSING_ANGLE:
+            crossing.update((lanes[first].id, lanes[second].id))
+    return frozenset(crossing)
+
+
+def _angle(first: Lanelet, second: Lanelet, meeting: shapely.Geometry) -> float:
+    """The angle (rad) between two lanelets where they meet, at most a right angle."""
+    place = np.array([shapely.point_on_surface(meeting)])
+    turn = directions_beside(first, place)[0] - directions_beside(second, place)[0]
+    return float(abs(np.arctan(np.tan(turn))))

@@ -1,14 +1,19 @@
-"""Map matching, first step: candidate lanelets of a vehicle's states.
+"""Map matching: the chain of lanelets of a vehicle's states.
 
-A state matches the lanelets within ``NEAR_M`` that lead its way; each match has a cost. The second
-step, ``driven_route``, takes the cheapest chain of them, as matching by hidden Markov models does
-(Newson, Krumm, "Hidden Markov map matching through noise and sparseness", GIS 2009).
+A state matches the lanelets within ``NEAR_M`` that lead its way; each match has a cost. Lanelets
+overlap in junctions, and ego changes lanes, so that the match of a single state says little. Of all
+chains in which each lanelet leads to the next, the cheapest is chosen: a shortest path over the
+moments by dynamic programming (Viterbi, "Error bounds for convolutional codes", 1967; for map
+matching Newson, Krumm, "Hidden Markov map matching through noise and sparseness", GIS 2009), where
+a lane beside a match costs more the farther away it is. Where no chain goes on, as when a recording
+jumps, the drive is parted.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -16,12 +21,22 @@ import shapely
 
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area
+from rulec.scenario.recorded.route import (
+    directions_beside,
+    is_lane,
+    lanelet_area,
+    lanes_beside,
+)
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""
 
+MOST_HOPS = 4
+"""The number of lanelets that a vehicle passes at most between two of its states."""
+
 _BESIDE_COST = 1.0
+_HOP_COST = 0.05
+_LANE_COST = 1.0
 _LARGEST_ANGLE = pi / 2
 
 MatchedLanelets = Mapping[int, Mapping[str, float]]
@@ -29,10 +44,7 @@ MatchedLanelets = Mapping[int, Mapping[str, float]]
 
 
 def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanelets]:
-    """The matches of each moving participant, by row and column.
-
-    Columns without a match are left out.
-    """
+    """The matches of each moving participant, by row and by column that has any."""
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
     rows, columns = np.nonzero(tracks.present & moving[:, None])
@@ -53,3 +65,99 @@ def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanel
         for index, cost in zip(chosen[along], costs[along].tolist(), strict=True):
             matches[int(rows[index])][int(columns[index])][lanes[lane].id] = cost
     return {row: dict(sorted(by_column.items())) for row, by_column in matches.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class RouteStretch:
+    """Columns ``first`` to ``last`` inclusive of one chain of lanelets."""
+
+    first: int
+    last: int
+    route: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _ChainEnd:
+    """The cheapest chain to a lanelet: its cost, its last hops, and what is before them."""
+
+    cost: float
+    hops: tuple[str, ...]
+    before: _ChainEnd | None
+
+
+def driven_stretches(recording: Recording, matches: MatchedLanelets) -> Iterator[RouteStretch]:
+    """The stretches of a drive, each along one road, in their order."""
+    first = last = -1
+    best: dict[str, _ChainEnd] = {}
+    for column, matched in matches.items():
+        costs = _costs_of_rows(recording, matched)
+        onward = _onward(recording, best, costs)
+        if not onward:
+            if best:
+                yield RouteStretch(first, last, _cheapest_route(best))
+            first = column
+            onward = {number: _ChainEnd(cost, (number,), None) for number, cost in costs.items()}
+        best, last = onward, column
+    if best:
+        yield RouteStretch(first, last, _cheapest_route(best))
+
+
+def _costs_of_rows(recording: Recording, matched: Mapping[str, float]) -> dict[str, float]:
+    """The costs of the lanelets that match a state, neighbours included."""
+    costs: dict[str, float] = {}
+    for number, cost in matched.items():
+        for left in (True, False):
+            row = (number, *lanes_beside(recording, number, left=left))
+            for lanes, lanelet in enumerate(row):
+                beside_cost = cost + lanes * _LANE_COST
+                costs[lanelet] = min(costs.get(lanelet, beside_cost), beside_cost)
+    return costs
+
+
+def _onward(
+    recording: Recording, best: Mapping[str, _ChainEnd], costs: Mapping[str, float]
+) -> dict[str, _ChainEnd]:
+    """The cheapest chains on to a next state's lanelets, or none."""
+    onward: dict[str, _ChainEnd] = {}
+    for start, chain in best.items():
+        for hops in _hops(recording, start, costs):
+            end = hops[-1] if hops else start
+            cost = chain.cost + costs[end] + _HOP_COST * len(hops)
+            if end not in onward or cost < onward[end].cost:
+                onward[end] = (
+                    _ChainEnd(cost, hops, chain)
+                    if hops
+                    else _ChainEnd(cost, chain.hops, chain.before)
+                )
+    return onward
+
+
+def _hops(
+    recording: Recording, start: str, targets: Mapping[str, float]
+) -> Iterator[tuple[str, ...]]:
+    """The shortest chain of successors to each target; that to the start is empty."""
+    if start in targets:
+        yield ()
+    reached = {start}
+    chains: list[tuple[str, ...]] = [()]
+    for _ in range(MOST_HOPS):
+        longer = []
+        for chain in chains:
+            for number in recording.lanelets[chain[-1] if chain else start].successors:
+                lanelet = recording.lanelets.get(number)
+                if lanelet is None or number in reached or not is_lane(lanelet):
+                    continue
+                reached.add(number)
+                longer.append((*chain, number))
+                if number in targets:
+                    yield (*chain, number)
+        chains = longer
+
+
+def _cheapest_route(best: Mapping[str, _ChainEnd]) -> tuple[str, ...]:
+    chain: _ChainEnd | None = min(best.values(), key=lambda end: (end.cost, end.hops))
+    parts: list[tuple[str, ...]] = []
+    while chain is not None:
+        parts.append(chain.hops)
+        chain = chain.before
+    return tuple(number for hops in reversed(parts) for number in hops)

@@ -5,22 +5,26 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
+import shapely
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
-from rulec.scenario.recorded.recording import Participant, Points, Recording
+from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Recording
+from rulec.scenario.recorded.route import is_lane, lanelet_area
 
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
 
-_ARRAYS = ("present", "x", "y", "heading", "vx", "vy", "speed", "acceleration")
+_ARRAYS = (
+    *("present", "x", "y", "heading", "vx", "vy", "speed", "acceleration"),
+    *("on_lane", "on_crosswalk"),
+)
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -29,6 +33,8 @@ class Tracks:
 
     ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
     (m/s²) are differences of places, since what files say of speeds may not agree with them.
+    ``on_lane`` and ``on_crosswalk``: is the middle of a vulnerable road user on a lane, of any
+    direction, or on a pedestrian crossing of the map?
     """
 
     participants: tuple[Participant, ...]
@@ -41,12 +47,11 @@ class Tracks:
     vy: Floats
     speed: Floats
     acceleration: Floats
+    on_lane: Flags
+    on_crosswalk: Flags
 
     def outlines(self) -> Iterator[tuple[int, int, Points]]:
-        """Row, column and outline of all participants.
-
-        Participants that stand for good have one outline.
-        """
+        """Row, column and outline of participants; those that stand for good have one."""
         for row, body in enumerate(self.participants):
             if body.standing:
                 yield row, 0, next(iter(body.outlines.values()))
@@ -65,8 +70,7 @@ class Tracks:
 
     def of_type(self, name: str) -> Flags:
         """Flags of participants of an object type or its subtypes."""
-        types = [OBSTACLE_TYPES.get(x.type, OBSTACLE_TYPES["unknown"]) for x in self.participants]
-        return np.array([name in own for own in types], dtype=bool)
+        return np.array([name in body.object_types for body in self.participants], dtype=bool)
 
 
 def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
@@ -99,6 +103,10 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
     vy = np.where(single, stated * np.sin(heading), vy)
     speed = np.hypot(vx, vy)
     gained = (speed[rows, after] - speed[rows, before]) / seconds
+    vulnerable = np.array(["vulnerable_user" in body.object_types for body in bodies], dtype=bool)
+    users = present & vulnerable[:, None]
+    lanelets = recording.lanelets.values()
+    crosswalks = (lanelet for lanelet in lanelets if "crosswalk" in lanelet.types)
     return Tracks(
         participants=bodies,
         first=first,
@@ -110,7 +118,21 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
         vy=vy,
         speed=speed,
         acceleration=np.where(present, np.nan_to_num(gained), np.nan),
+        on_lane=_inside(users, x, y, filter(is_lane, lanelets)),
+        on_crosswalk=_inside(users, x, y, crosswalks),
     )
+
+
+def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> Flags:
+    """Flags of those of the flagged places that are on a lanelet."""
+    inside = np.zeros(flags.shape, dtype=bool)
+    areas = [lanelet_area(lanelet) for lanelet in lanelets]
+    rows, columns = np.nonzero(flags)
+    if areas and len(rows):
+        points = shapely.points(x[rows, columns], y[rows, columns])
+        at, _ = shapely.STRtree(areas).query(points, predicate="intersects")
+        inside[rows[at], columns[at]] = True
+    return inside
 
 
 def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
@@ -127,10 +149,7 @@ def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
 
 
 def _windows(present: Flags, reach: int) -> tuple[NDArray[np.intp], ...]:
-    """The lengths, firsts and lasts of unbroken windows around moments.
-
-    Lengths are in steps.
-    """
+    """The lengths (steps), firsts and lasts of unbroken windows around moments."""
     columns = np.arange(present.shape[1])
     absent = np.where(present, -1, columns)
     since = np.maximum.accumulate(absent, axis=1) + 1

@@ -7,8 +7,7 @@ from textwrap import shorten
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
-from rulec.extraction.violation_tally import ViolationTally
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import Verdict
 from rulec.report.text.terminal_text import table_lines, visible

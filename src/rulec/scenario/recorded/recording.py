@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 from numpy import float64
@@ -16,9 +17,6 @@ from rulec.value_display import short_repr
 
 Points = NDArray[float64]
 """Places: one row each, x and y."""
-
-FARTHEST_M = 1e8
-"""Numbers in a file are smaller than this, places included: the earth is not so large."""
 
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
@@ -34,12 +32,39 @@ def id_order(identifier: str) -> tuple[int, str]:
     return len(identifier), identifier
 
 
+_VEHICLE = ("vehicle", "road_user", "obstacle")
+_RIDER = ("light_rider", "vulnerable_user", "road_user", "obstacle")
+OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "car": ("car", *_VEHICLE),
+        "taxi": ("car", *_VEHICLE),
+        "truck": ("truck", *_VEHICLE),
+        "bus": ("bus", *_VEHICLE),
+        "motorcycle": ("motorcycle", *_VEHICLE),
+        "priorityVehicle": ("emergency_vehicle", *_VEHICLE),
+        "parkedVehicle": _VEHICLE,
+        "bicycle": ("cyclist", *_RIDER),
+        "pedestrian": ("pedestrian", "vulnerable_user", "road_user", "obstacle"),
+        "train": ("train", "rail_vehicle", "rail_borne", "road_user", "obstacle"),
+        "unknown": ("road_user", "obstacle"),
+        "constructionZone": ("obstacle",),
+        "roadBoundary": ("obstacle",),
+        "building": ("obstacle",),
+        "pillar": ("obstacle",),
+        "median_strip": ("obstacle",),
+    }
+)
+"""CommonRoad's obstacle types -> object types of vocabularies, the most specific word first.
+
+A rulebook that does not tell cars from other vehicles judges a car as a vehicle. What is not a road
+user is an obstacle at most; a rulebook without that word has no rule about it, but it is in the way
+all the same.
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Light:
-    """A traffic light's programme: colours with durations, from a step on.
-
-    Durations are in time steps.
-    """
+    """A traffic light's programme from a step on: colours with durations in time steps."""
 
     begin: int
     phases: tuple[tuple[str, int], ...]
@@ -56,9 +81,7 @@ class Light:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lanelet:
-    """A piece of a lane.
-
-    ``left`` and ``right`` are its bounds in the direction of travel.
+    """A piece of a lane, with its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
     the names of those that hold here; ``lights`` are those that have a programme. Marks are those
@@ -96,9 +119,7 @@ class TrackState:
 
 @dataclass(frozen=True, slots=True)
 class Participant:
-    """An obstacle of the file, with its outlines by time step.
-
-    An outline is the corners of a polygon.
+    """An obstacle of the file, with its outlines (corners of polygons) by time step.
 
     ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
     are lit; steps that the file says nothing about are missing.
@@ -112,6 +133,11 @@ class Participant:
     states: Mapping[int, TrackState]
     outlines: Mapping[int, Points]
     lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
+
+    @property
+    def object_types(self) -> tuple[str, ...]:
+        """Its types in vocabularies, the most specific first."""
+        return OBSTACLE_TYPES.get(self.type, OBSTACLE_TYPES["unknown"])
 
 
 @dataclass(frozen=True, slots=True)

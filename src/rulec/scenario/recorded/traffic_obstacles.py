@@ -12,13 +12,13 @@ import numpy as np
 from rulec.scenario.alternatives import weighted
 from rulec.scenario.geometry import Box
 from rulec.scenario.recorded.lane_coordinates import Lanes
-from rulec.scenario.recorded.obstacle_types import OBSTACLE_TYPES
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.scene_choice import Prediction
 from rulec.scenario.scenario_model import (
     PEDESTRIAN,
+    Alternative,
     ConstantAcceleration,
     Footprints,
     Motion,
@@ -90,28 +90,28 @@ def traffic_obstacles(
     others = [participant for participant in view.recording.participants if participant.id != ego]
     for participant, steps, own in _laid_out(view, others):
         motions = [
-            (weight, motion)
+            Alternative(weight, motion)
             for kind, weight in predictions.items()
             if (motion := _motion(view, participant, steps, own, kind)) is not None
         ]
         if not motions:
             continue
-        expected = weighted(motions)
+        likeliest, *alternatives = weighted(motions)
         first = next(box for box in own if box is not None)
-        words = OBSTACLE_TYPES.get(participant.type, OBSTACLE_TYPES["unknown"])
+        words = participant.object_types
         yield Obstacle(
             id=participant.id,
             type=words[0],
             length=first.s_max - first.s_min,
             width=first.d_max - first.d_min,
-            motion=expected.motion,
+            motion=likeliest.motion,
             walking_direction=_walking_direction(view, participant)
             if words[0] == PEDESTRIAN
             else None,
             signals=_signals(participant),
             broader=words[1:],
-            weight=expected.weight,
-            alternatives=expected.alternatives,
+            weight=likeliest.weight,
+            alternatives=tuple(alternatives),
         )
 
 

@@ -1,0 +1,177 @@
+"""The drives that a user requests: egos, thresholds and assumptions, from texts too."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from fractions import Fraction
+from math import isfinite
+
+from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.rulebook.rulebook_model import Traffic
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.scenario_messages import NOT_IN_RECORDING
+from rulec.trace import Value
+from rulec.value_display import short_repr
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary.units import parse_unit
+
+_MOST_NAMED = 12
+_NUMBER = re.compile(r"(-?[0-9]{1,15}(?:\.[0-9]{1,15})?)\s*(\S*)")
+
+
+@dataclass(frozen=True, slots=True)
+class RequestedDrives:
+    """A choice of egos and thresholds, and what is assumed.
+
+    No ``egos`` are all vehicles. ``assumed`` holds in every state. ``as_recorded``: a recording of
+    traffic on the other side than the rulebook's is not mirrored.
+    """
+
+    __repr__ = short_repr
+
+    egos: tuple[str, ...] = ()
+    thresholds: Thresholds = USUAL
+    assumed: Mapping[str, Value] = field(default_factory=dict)
+    as_recorded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SelectedDrives:
+    """The drives of ``egos`` and the ``recording`` they are from, perhaps mirrored."""
+
+    recording: Recording
+    mirrored: bool
+    egos: tuple[str, ...]
+    drives: Drives
+
+    def of(self, ego: str) -> Iterator[Drive | NoDrive]:
+        """The drives of one vehicle, computed when they are asked for."""
+        return self.drives.of(ego)
+
+
+def selected_drives(
+    recording: Recording,
+    request: RequestedDrives,
+    file: str,
+    traffic: Traffic = "",
+    vocabulary: Vocabulary | None = None,
+    *,
+    names: frozenset[str] | None = None,
+) -> SelectedDrives:
+    """The drives of a recording, in a vocabulary's words, for rules of a side of ``traffic``.
+
+    Raises:
+        RulecError: R0612 for a vehicle that is not there.
+    """
+    side = traffic or recording.side or "right"
+    mirrored = recording.side not in (None, side) and not request.as_recorded
+    if mirrored:
+        recording = mirrored_recording(recording)
+    writer = TraceWriter(vocabulary, names, request.assumed)
+    drives = Drives(recording, side, request.thresholds, writer)
+    known = drives.egos()
+    for ego in request.egos:
+        if ego not in known:
+            raise NOT_IN_RECORDING.error(
+                SourceLocation(file),
+                f"there is no vehicle `{ego}` that drives",
+                help=did_you_mean(ego, known) or _examples(known),
+            )
+    egos = tuple(ego for ego in known if not request.egos or ego in request.egos)
+    return SelectedDrives(recording, mirrored, egos, drives)
+
+
+def _examples(known: tuple[str, ...]) -> str:
+    if not known:
+        return "nobody in this file does"
+    more = f", or one of {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
+    return f"choose {named(known[:_MOST_NAMED])}{more}"
+
+
+def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
+    """Name -> value, from texts such as ``built_up=true`` and ``limit=30 mph``.
+
+    Raises:
+        ValueError: with what is wrong, for people.
+    """
+    values: dict[str, Value] = {}
+    for text in texts:
+        name, value = _pair(text, "built_up=true")
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None:
+            known = [x.name for x in vocabulary.declarations.values() if not x.parameters]
+            message = f"vocabulary `{vocabulary.name}` has no `{name}`"
+            raise ValueError(_hinted(message, name, known))
+        if declaration.parameters:
+            raise ValueError(f"`{name}` is about objects; only what is about none can be assumed")
+        values[name] = _value(value, declaration)
+    return values
+
+
+def _pair(text: str, example: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise ValueError(f"`{text}` is not written as in `{example}`")
+    return name.strip(), value.strip()
+
+
+def _hinted(message: str, name: str, known: Iterable[str], otherwise: str = "") -> str:
+    hint = did_you_mean(name, list(known))
+    return f"{message}; {hint}" if hint else message + otherwise
+
+
+def _value(text: str, declaration: Declaration) -> Value:
+    match declaration:
+        case Signal(name):
+            if text not in ("true", "false"):
+                raise ValueError(f"`{name}` is `true` or `false`, not `{text}`")
+            return text == "true"
+        case Enumeration(name, _, values):
+            if text not in values:
+                message = f"`{name}` is one of {named(values)}, not `{text}`"
+                raise ValueError(_hinted(message, text, values))
+            return text
+        case Quantity(name, _, unit):
+            return _measure(text, name, unit)
+
+
+def _measure(text: str, name: str, unit: str) -> float:
+    """A number in its unit, which a bare number has, from any unit of its dimension."""
+    match = _NUMBER.fullmatch(text)
+    own = parse_unit(unit)
+    given = own if match is None or not match[2] else parse_unit(match[2])
+    if match is None or own is None or given is None or given.dimension != own.dimension:
+        example = f"50 {unit}" if unit else "50"
+        raise ValueError(f"`{name}` is a number such as `{example}`, not `{text}`")
+    return float(Fraction(match[1]) * given.factor / own.factor)
+
+
+def threshold_options(texts: Iterable[str]) -> Thresholds:
+    """The usual thresholds but for some, from texts such as ``near_m=200``.
+
+    Raises:
+        ValueError: with what is wrong, for people.
+    """
+    known = {field.name: field.default for field in fields(Thresholds)}
+    numbers: dict[str, float | int] = {}
+    for text in texts:
+        name, value = _pair(text, "near_m=200")
+        if name not in known:
+            message, among = f"there is no threshold `{name}`", f" among {named(list(known))}"
+            raise ValueError(_hinted(message, name, known, among))
+        try:
+            number = float(value)
+        except ValueError:
+            number = -1.0
+        if not isfinite(number) or number < 0:
+            raise ValueError(f"`{name}` is a number from 0 on, not `{value}`")
+        if isinstance(known[name], int) and number != int(number):
+            raise ValueError(f"`{name}` is a whole number, not `{value}`")
+        numbers[name] = int(number) if isinstance(known[name], int) else number
+    return replace(Thresholds(), **numbers)  # type: ignore[arg-type]

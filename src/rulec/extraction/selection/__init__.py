@@ -1,1 +1,0 @@
-"""The choice of drives, thresholds, and participants that count for ego."""

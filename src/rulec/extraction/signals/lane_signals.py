@@ -1,0 +1,101 @@
+"""Signals of lane changes, ego's indicator, and road marks where the map has marks."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.signal_columns import SignalColumns, named_values
+from rulec.extraction.tracks.tracks import Flags
+from rulec.scenario.recorded.recording import Lanelet, LaneMark
+
+_INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
+_Marks = tuple[LaneMark | None, LaneMark | None]
+
+
+def lane_change_signals(context: DriveContext) -> SignalColumns:
+    """The signals of ego's lane changes."""
+    lane = context.steady_lane
+    changes = np.append(False, lane[1:] != lane[:-1])
+    clear = ~changes | ~_disturbs(context)
+    changing = SignalColumns({"lane_change": changes, "lane_is_clear": clear})
+    return changing | _indicator(context)
+
+
+def _indicator(context: DriveContext) -> SignalColumns:
+    """Ego's indicator, if the recording has its lamps; both at once are no indication."""
+    (ego,) = context.ego.participants
+    if not ego.lamps:
+        return SignalColumns()
+    far = "left_indicator" if context.side == "right" else "right_indicator"
+    steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
+    lit = [(lamps or frozenset()) - {"brake_light"} for lamps in steps]
+    codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
+    return SignalColumns(
+        {"indicator": named_values(codes, _INDICATIONS)},
+        unknown={"indicator": np.array([lamps is None for lamps in steps])},
+    )
+
+
+def _disturbs(context: DriveContext) -> Flags:
+    """Flags of states in which a vehicle in ego's lane must brake for ego.
+
+    One beside ego has to, and one behind it that would have to brake harder than
+    ``disturbing_mps2`` after its reaction time not to run into it.
+    """
+    limits = context.thresholds
+    station = relations.station(context)
+    lanes = np.arange(context.touched.shape[-1])
+    same = context.touched & (lanes == context.ego_lane[None, :, None])
+    faster = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
+    room = relations.gap(context) - faster * limits.reaction_s
+    brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(room, 0.0)
+    behind = (station == relations.IN_FRONT_OF) & brakes
+    beside = station == relations.BESIDE
+    disturbs: Flags = (context.going_along & same.any(axis=-1) & (behind | beside)).any(axis=0)
+    return disturbs
+
+
+def lane_mark_signals(context: DriveContext) -> SignalColumns:
+    """The signals of marks; none at all if the map has none."""
+    known = context.recording.lanelets.values()
+    if not any(lanelet.left_mark or lanelet.right_mark for lanelet in known):
+        return SignalColumns()
+    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
+    names = ("marked_lanes", "on_solid_line", "broken_on_own_side")
+    columns = np.zeros((len(names), context.states), dtype=bool)
+    unknown = np.zeros(context.states, dtype=bool)
+    for state, piece in enumerate(pieces):
+        lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
+        row = [lanelet if exists else None for lanelet, exists in lanelets]
+        between = [_between(*pair) for pair in pairwise(row) if all(pair)]
+        unknown[state] = any(not any(marks) for marks in between)
+        columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
+        crossed = _marks_under_ego(context, state, row)
+        columns[1, state] = any("solid" in marks for marks in crossed)
+        columns[2, state] = any(marks == ("broken", "solid") for marks in crossed)
+    return SignalColumns(dict(zip(names, columns, strict=True)), unknown={"marked_lanes": unknown})
+
+
+def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
+    """The marks between two lanes, that of the right one first."""
+    return right.left_mark if right else None, left.right_mark if left else None
+
+
+def _marks_under_ego(context: DriveContext, state: int, row: list[Lanelet | None]) -> list[_Marks]:
+    """The marks of the lines that ego's body lies across, those at ego's side first.
+
+    Line ``k`` lies right of lane ``k``.
+    """
+    straight, own = context.road.lanes.straight, context.ego_extents
+    low, high = (float(bound[0, state]) for bound in (own.w_min, own.w_max))
+    reach = context.thresholds.touching_m
+    crossed = []
+    for line, (right, left) in enumerate(pairwise([None, *row, None])):
+        if min(straight[line] - low, high - straight[line]) > reach:
+            marks = _between(right, left)
+            crossed.append(marks[::-1] if context.steady_lane[state] >= line else marks)
+    return crossed
