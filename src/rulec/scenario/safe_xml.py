@@ -86,6 +86,9 @@ def scan(
         if words in _ENDS_EARLY:
             why = "it ends before all that has begun in it ends; it has been cut short"
         raise form.refused(path, why, problem.lineno) from None
+    finally:
+        # Parser and handlers hold each other, and all that has been read
+        parser.StartElementHandler = parser.EndElementHandler = parser.CommentHandler = None
 
 
 def root_of(path: Path, form: XmlFormat) -> str:
